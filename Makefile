@@ -1,5 +1,6 @@
 # make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
 # make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI) and runs every test
+# make lint   checks formatting, clippy, the API documentation and, if cargo-deny is installed, licences and advisories
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make trade  measures every stage's error against its time, over its knobs, and writes the plots and fronts into the guide
 #             (the benches' sections that draw them; make bench ONLY=stylit:knobs runs one)
@@ -25,7 +26,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo test bench trade blender docs peers setup clean
+.PHONY: all lib demo format lint test bench trade blender docs peers setup clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -56,13 +57,24 @@ setup:
 	fi
 	@benches/peers/install.sh mitsuba python dask exr usd onnx docs
 
-test: setup lib
+# Rustup's minimal profile has neither rustfmt nor clippy: a tool that is not installed is named and skipped.
+format:
+	@if $(CARGO) fmt --version >/dev/null 2>&1; then $(CARGO) fmt --check; else echo "skipped: cargo fmt is not installed"; fi
+
+lint: format
+	@if $(CARGO) clippy --version >/dev/null 2>&1; then $(CARGO) clippy --quiet --all-targets -- -D warnings; \
+	  else echo "skipped: cargo clippy is not installed"; fi
+	@RUSTDOCFLAGS="-D warnings" $(CARGO) doc --quiet --no-deps
+	@if $(CARGO) deny --version >/dev/null 2>&1; then $(CARGO) deny check; else echo "skipped: cargo deny is not installed"; fi
+
+test: setup format lib
 	$(CARGO) test
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2
 	ctest --test-dir build -j 2 --output-on-failure
 
-# One after the other: they would measure each other. The figures printed go into the table of README.md.
+# The benches run one after the other, so that they do not disturb each other. benches/table.py writes the figures into
+# docs/figures.md and README.md.
 bench: SHELL := /bin/bash -o pipefail
 bench: peers
 	@mkdir -p out/bench

@@ -11,7 +11,7 @@
 //! blur of 3 pixels, it still has 113.6.) Its samples lie anywhere in the picture, so they fall into 44.3 % of its cells on
 //! average when all exemplar patches are used alike, and into fewer otherwise (`stylit.bound.used`): no picture reaches 45.
 //! Its `guide` has a standard error of 13, and most of it is that patches which look alike lie in different light: see
-//! `src/stylize/mod.rs`. Pictures go to `out/bench/`.
+//! `docs/notes/stylize.md`. Pictures go to `out/bench/`.
 
 mod harness;
 
@@ -499,7 +499,7 @@ fn knobs(pair: &Pair, pool: &Pool) {
     knob("settle", &[0, 1, 2, 4], |p, v| p.settle = v);
     knob("coverage %", &[50, 70, 90, 95, 99], |p, v| p.coverage = v as f32 / 100.0);
     knob("patch", &[3, 5, 7], |p, v| p.patch = v);
-    let votes = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most];
+    let votes = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
     let last = |&final_vote: &Vote| (format!("{final_vote:?}"), Params { final_vote, ..Params::default() });
     knobs.push(("last vote", votes.iter().map(last).collect()));
 

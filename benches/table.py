@@ -1,6 +1,7 @@
-"""Writes the figures that `make bench` printed (out/bench/figures.txt) into the table of README.md.
+"""Writes the figures that `make bench` printed (out/bench/figures.txt) into docs/figures.md, and ten of them into README.md.
 
-Each bench replaces its own lines, so that the table can be brought up to date bench by bench.
+Each bench replaces its own lines, so that the tables can be brought up to date bench by bench. Without new figures the
+README's table is written anew from docs/figures.md.
 """
 
 import pathlib
@@ -8,21 +9,47 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BEGIN, END = "<!-- figures: written by `make bench` -->\n", "<!-- end of figures -->"
+PRINTED, FIGURES, README = ROOT / "out/bench/figures.txt", ROOT / "docs/figures.md", ROOT / "README.md"
+ALL = "<!-- figures: written by `make bench` -->\n", "<!-- end of figures -->"
+TEN = "<!-- headlines: written by `make bench` -->\n", "<!-- end of headlines -->"
 
-figures = {}
-for line in (ROOT / "out/bench/figures.txt").read_text().splitlines():
-    match = re.fullmatch(r"figure (\S+) (\S+) (.+)", line)
-    if match:
-        figures[match[1]] = (match[2], match[3])
+#: The figures of the README: name, meaning, and how the value is shown.
+HEADLINES = [
+    ("transfer.demo.seconds", "a whole lighting transfer at final quality, 640 x 360 pixels, two threads", "{:.1f} s"),
+    ("peak.transfer_demo.mb", "peak memory of this transfer", "{:.0f} MB"),
+    ("segment.iou.ours", "overlap (IoU) of masks from strokes with the true masks", "{:.2f}"),
+    ("vp.yud_dev.auc10", "accuracy of vanishing points on York Urban (area under the recall curve up to 10 degrees)", "{:.0f} %"),
+    ("emission.2048.seconds", "synthesis of an emissive texture of 2048 x 2048 texels", "{:.2f} s"),
+    ("relight.to_1pct.seconds", "solving for the strength of the lights, to 1 %", "{:.2f} s"),
+    ("render.time_to_1pct.kitchen.vs_cycles", "time of Cycles to render a kitchen to an error of 1 %, over luxfer's", "{:.1f}"),
+    ("render.time_to_1pct.kitchen.vs_mitsuba_llvm", "time of Mitsuba 3 (LLVM) for this, over luxfer's", "{:.1f}"),
+    ("render.interval_coverage", "pixels whose stated 95 % interval contains the true radiance", "{:.1f} %"),
+    ("stylit.full.seconds", "a stylisation of 1200 x 912 pixels with four guides", "{:.1f} s"),
+]
 
-readme = ROOT / "README.md"
-text = readme.read_text()
-if BEGIN not in text or END not in text:
-    sys.exit("README.md has no place for the table")
-before, rest = text.split(BEGIN, 1)
-old, after = rest.split(END, 1)
-rows = dict(re.findall(r"\| `([^`]+)` (\|.*)", old))
-rows.update({name: f"| {value} | {unit} |" for name, (value, unit) in figures.items()})
-table = "".join(f"| `{name}` {row}\n" for name, row in sorted(rows.items()))
-readme.write_text(f"{before}{BEGIN}| figure | value | unit |\n|---|---|---|\n{table}{END}{after}")
+
+def replaced(path: pathlib.Path, marks: tuple[str, str], table: str) -> None:
+    """Writes a table between two marks of a file."""
+    text = path.read_text()
+    begin, end = marks
+    if begin not in text or end not in text:
+        sys.exit(f"{path.name} has no place for the table")
+    before, rest = text.split(begin, 1)
+    path.write_text(f"{before}{begin}{table}{end}{rest.split(end, 1)[1]}")
+
+
+rows = dict(re.findall(r"^\| `([^`]+)` \| (.*) \|$", FIGURES.read_text(), re.M))
+for line in PRINTED.read_text().splitlines() if PRINTED.exists() else []:
+    if match := re.fullmatch(r"figure (\S+) (\S+) (.+)", line):
+        rows[match[1]] = f"{match[2]} | {match[3]}"
+every = "".join(f"| `{name}` | {row} |\n" for name, row in sorted(rows.items()))
+replaced(FIGURES, ALL, f"| figure | value | unit |\n|---|---|---|\n{every}")
+
+
+def shown(name: str, form: str) -> str:
+    value = rows[name].split(" | ")[0]
+    return value if value == "absent" else form.format(float(value))
+
+
+ten = "".join(f"| {meaning} | {shown(name, form)} |\n" for name, meaning, form in HEADLINES)
+replaced(README, TEN, f"| figure | value |\n|---|---|\n{ten}")

@@ -160,8 +160,8 @@ def limits(stage: str, path: str) -> str:
 
 
 def figures() -> dict[str, tuple[str, str]]:
-    """What README.md has from `make bench`, or this machine has printed since."""
-    rows = re.findall(r"^\| `([^`]+)` \| (\S+) \| (.+) \|$", (ROOT / "README.md").read_text(), re.M)
+    """The figures of docs/figures.md from `make bench`, or newer ones that this machine has printed."""
+    rows = re.findall(r"^\| `([^`]+)` \| (\S+) \| (.+) \|$", (ROOT / "docs" / "figures.md").read_text(), re.M)
     out = {name: (number, unit) for name, number, unit in rows}
     if (BENCH / "figures.txt").exists():
         for line in (BENCH / "figures.txt").read_text().splitlines():

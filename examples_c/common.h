@@ -1,4 +1,4 @@
-/* What all the examples do: give up on errors in the library's own words, and wait for jobs. */
+/* Functions of all examples: end the program on an error, with the library's message, and wait for jobs. */
 #ifndef COMMON_H
 #define COMMON_H
 
@@ -15,7 +15,7 @@ int isatty(int file);
 
 static luxfer_context *context;
 
-/* Ends the program with the library's own words if a call has failed. */
+/* Ends the program with the library's message if a call has failed. */
 static inline void check(luxfer_status status, const char *what) {
     char message[1024] = "";
     if (status == LUXFER_OK) return;
@@ -33,13 +33,13 @@ static inline int show_progress(void *title, double fraction) {
     return 0;
 }
 
-/* Waits for a job, with a progress bar where somebody looks, and lets go of it. */
+/* Waits for a job, with a progress bar in a terminal, and releases it. */
 static inline void finish(luxfer_job *job, const char *title) {
     check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
     check(luxfer_job_release(job), title);
 }
 
-/* A photo of the generated office; luxfer_image_load would load one. */
+/* A photo of the generated office. To load your own photo, use luxfer_image_load. */
 static inline luxfer_image *take_photo(uint32_t width, uint32_t height, uint32_t samples) {
     luxfer_demo_photo_params params;
     luxfer_demo_photo *demo = NULL;

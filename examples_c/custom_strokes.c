@@ -1,14 +1,14 @@
-/* Strokes of a user's own: what on a photo is the ceiling, and what on the ceiling is a lamp.
+/* Segmentation by strokes: finds the ceiling in a photo, and the lamps on the ceiling.
  *
- * A segmentation learns from a few strokes and tells how sure it is, so a painting program shows its mask while the user
- * paints. Here the strokes are written down. Writes custom_strokes.png: the photo; the ceiling after the first strokes, and
- * after one more; the lamps in it.
+ * A segmentation learns from a few strokes and estimates its error, so a painting program can show the mask while the
+ * user paints. This program has fixed strokes. It writes custom_strokes.png: the photo; the ceiling after the first
+ * strokes, and after one more stroke; the lamps.
  */
 #include "common.h"
 #include "panels.h"
 
-/* Runs stages first to last, says how good the result is, and shows it. The error is that of strokes held out: it knows nothing
- * of what no stroke has touched, which LUXFER_SEGMENT_UNSEEN of a luxfer_segment shows. */
+/* Runs the stages first to last, prints the error of the result, and shows it. The error is estimated from held-out
+ * strokes, so it does not cover surfaces without strokes; LUXFER_SEGMENT_UNSEEN of a luxfer_segment shows these. */
 static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last, luxfer_transfer_image which, sheet *s,
                 int column, int row) {
     luxfer_transfer_report report;
@@ -26,7 +26,7 @@ static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last
 }
 
 int main(void) {
-    /* Polylines, x and y in pixels of the photo, the top-left pixel's centre at (0.5, 0.5). */
+    /* Polylines: x and y in pixels of the photo; the centre of the top-left pixel is (0.5, 0.5). */
     static const float ceiling[] = {50, 11, 90, 40, 128, 58}, beside_lamps[] = {214, 89, 253, 73};
     static const float far_wall[] = {50, 163, 167, 160}, cupboards[] = {190, 185, 292, 171};
     static const float left_wall[] = {5, 152, 7, 179};
@@ -44,12 +44,12 @@ int main(void) {
     check(luxfer_transfer_set_photo(transfer, photo), "photo");
 
     /* --8<-- [start:strokes] */
-    /* The ceiling: 1 is on it, 0 off it. Strokes on lamps count for it as well. */
+    /* The ceiling: 1 marks strokes on it, 0 strokes off it. Strokes on lamps count as strokes on the ceiling. */
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, ceiling, 3, radius, 1), "stroke");
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, far_wall, 2, radius, 0), "stroke");
     run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_PLANE, LUXFER_TRANSFER_PLANE_CONFIDENCE, &s, 1, 0);
 
-    /* More strokes where it was wrong; only what depends on them is done again. */
+    /* Add strokes where the mask was wrong; run again only the stages that depend on them. */
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, beside_lamps, 2, radius, 1), "stroke");
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, cupboards, 2, radius, 0), "stroke");
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, left_wall, 2, radius, 0), "stroke");

@@ -1,7 +1,7 @@
-/* What can go wrong, and how one is told: statuses, messages, versions.
+/* Error handling: statuses, messages, versions.
  *
- * Makes mistakes on purpose and prints what the library says about each. Nothing here ends the program: the library never
- * prints, aborts, or leaves an output half written.
+ * Makes mistakes on purpose and prints the library's status and message for each. No mistake ends the program: the
+ * library does not print or abort, and it writes outputs only on success.
  */
 #include "luxfer.h"
 
@@ -12,11 +12,11 @@
 static luxfer_context *context;
 
 /* --8<-- [start:report] */
-/* What a program does with a failure: the status is for deciding, the message for people. */
+/* Handles a failure: the program decides by the status, people read the message. */
 static void report(const char *attempt, luxfer_status status, luxfer_status expected) {
     char *message;
     size_t needed = 0;
-    /* Messages have any length: ask for it first. They are kept for each thread, until its next failure. */
+    /* A message may have any length, so get its length first. The library keeps it until the thread's next failure. */
     luxfer_context_last_error(context, NULL, 0, &needed);
     message = malloc(needed);
     if (!message) exit(1);
@@ -39,7 +39,7 @@ int main(void) {
     float pixels[2 * 2 * 3] = {0};
 
     /* --8<-- [start:version] */
-    /* Is the library that was loaded one for this header? Before 1.0 those of one minor version are. */
+    /* Check that the loaded library is compatible with this header. Before 1.0 the minor versions must be equal. */
     if (luxfer_version() / 100 != LUXFER_VERSION / 100) {
         fprintf(stderr, "built for luxfer %d.%d, loaded %s\n", LUXFER_VERSION_MAJOR, LUXFER_VERSION_MINOR,
                 luxfer_version_string());
@@ -52,7 +52,7 @@ int main(void) {
     report("A file that is something else:",
            luxfer_scene_load_memory(context, "not a scene", 11, NULL, &scene), LUXFER_FORMAT);
 
-    /* Views carry the size of their memory, so that its end is never passed. */
+    /* A view states the size of its memory, so that the library never accesses memory beyond it. */
     luxfer_image_view_init(&view, sizeof view);
     view.width = 2;
     view.height = 3;
@@ -72,7 +72,7 @@ int main(void) {
     report("An expression that is none:",
            luxfer_render_add_expression(render, "direct", "C<RD>L("), LUXFER_INVALID_ARGUMENT);
 
-    /* What a job meets is told by whoever waits for it; settings are checked when it starts or runs. */
+    /* The wait for a job returns its errors; the library checks settings when a job starts or runs. */
     luxfer_render_params_init(&params, sizeof params);
     params.width = params.height = 16;
     luxfer_render_set_scene(render, scene);
@@ -82,7 +82,7 @@ int main(void) {
     report("The picture that it would have made:",
            luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), LUXFER_NOT_READY);
 
-    /* Outputs were left alone all the time. A handle of the wrong kind, or NULL, is an error like any other. */
+    /* The outputs are still unchanged. A handle of the wrong kind, or NULL, is an error like any other. */
     if (image != NULL || luxfer_job_wait(NULL, -1, NULL, NULL) != LUXFER_INVALID_ARGUMENT) return 1;
 
     luxfer_job_release(job);

@@ -1,6 +1,7 @@
-/* Light groups: one rendering, and the light of each lamp on its own, to be mixed afterwards without rendering again.
+/* Light groups: renders the light of each lamp as a layer of its own, and mixes the layers without rendering again.
  *
- * Light path expressions choose the light of a lamp by its name. Writes light_groups.png (all light, three groups, and two
+ * Light path expressions select the light of a lamp by its
+ * name. Writes light_groups.png (all light, three groups, and two
  * mixtures of them) and light_groups.exr with every group as a layer, as compositing programs read it.
  */
 #include "common.h"
@@ -8,7 +9,7 @@
 
 enum { GROUPS = 3, MIXTURES = 2 };
 
-/* Luminance in cd/m2 that is shown as white. */
+/* Luminance in cd/m2 shown as white. */
 #define WHITE 450.0f
 
 /* A warm spot light from the left. */
@@ -25,12 +26,12 @@ static void add_spot(luxfer_scene *scene) {
 
 int main(void) {
     /* --8<-- [start:expressions] */
-    /* C is the camera, .* whatever happens on the way, <L.'name'> a light: a mesh or material of that name, light0 the first
-     * light without a surface, environment what surrounds the scene. Every path ends at one light, so groups add up. */
+    /* C is the camera, .* any events, <L.'name'> a light: a mesh or material of that name, light0 the first punctual
+     * light, environment the environment. Every path ends at one light, so the sum of the groups is the picture. */
     static const char *const names[GROUPS] = {"lamp", "spot", "surroundings"};
     static const char *const expressions[GROUPS] = {"C.*<L.'Lamp'>", "C.*<L.'light0'>", "C.*<L.'environment'>"};
     /* --8<-- [end:expressions] */
-    /* How much of each group a mixture has, per channel. */
+    /* Factor of each group in a mixture, per channel. */
     static const float mixtures[MIXTURES][GROUPS][3] = {{{0.05f, 0.05f, 0.05f}, {0.8f, 0.8f, 0.8f}, {0.3f, 0.3f, 0.3f}},
                                                         {{0.5f, 0.7f, 1.2f}, {0, 0, 0}, {0.4f, 0.7f, 1.6f}}};
     luxfer_scene *scene = NULL;

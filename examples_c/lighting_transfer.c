@@ -2,7 +2,7 @@
  *
  *   lighting_transfer [PHOTO SCENE --surface NAME --strokes FILE] [--distance M] [--size WxH] [--samples N] [--out DIR]
  *
- * Without arguments it makes its own input: the photo of a generated office and a generated living room. FILE holds the
+ * Without arguments it generates its input: the photo of an office, and a living room. FILE holds the
  * strokes: an image of the photo's size (green: plane, red: not plane, yellow: light, blue: not light) or a text (.txt).
  * Writes overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR.
  */
@@ -57,7 +57,7 @@ static int ends_with(const char *text, const char *end) {
     return n >= m && !strcmp(text + n - m, end);
 }
 
-/* A small text file in memory, ended with a zero. */
+/* Reads a small text file into memory, zero-terminated. */
 static char *read_text(const char *name) {
     FILE *file = fopen(name, "rb");
     char *text = calloc(1, 1 << 20);
@@ -86,7 +86,7 @@ static void load_input(const options *o, luxfer_transfer *transfer, luxfer_image
     check(luxfer_scene_load(context, o->scene, scene), "scene");
 }
 
-/* The same from nothing. */
+/* Generates photo, strokes and scene. */
 static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxfer_scene **scene) {
     luxfer_demo_photo *demo = NULL;
     luxfer_job *job = NULL;
@@ -103,7 +103,7 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     luxfer_demo_photo_release(demo);
 }
 
-/* Gives a scene without lights one before the camera, so that there is something to see. */
+/* Adds a light at the camera to a scene without lights, so that its picture is not black. */
 static void add_headlight(luxfer_scene *scene, const luxfer_camera_params *camera) {
     luxfer_scene_counts counts;
     luxfer_light_params light;
@@ -119,7 +119,7 @@ static void add_headlight(luxfer_scene *scene, const luxfer_camera_params *camer
     check(luxfer_scene_add_light(scene, &light, NULL), "light");
 }
 
-/* A quick picture of a scene. */
+/* Renders a scene with few paths. */
 static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer_camera_params *camera,
                              unsigned samples, const char *title) {
     luxfer_render *render = NULL;
@@ -140,7 +140,7 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     return image;
 }
 
-/* NaN, which JSON lacks, stands for an error that is not known. */
+/* NaN marks an unknown error; JSON has no NaN. */
 static void write_number(FILE *file, double value) {
     if (value == value && value - value == 0) fprintf(file, "%.6g", value);
     else fprintf(file, "null");
@@ -220,7 +220,8 @@ int main(int argc, char **argv) {
     check(luxfer_transfer_save_fixtures(transfer, path(&o, "luminaires.csv")), "luminaires.csv");
     write_report(&o, &report, &solution);
 
-    /* What to compare it with: the scene before, under its own lights or a lamp before the camera, and in white light. */
+    /* For comparison: the scene before the transfer, with its own lights or a light at the camera, and in white
+     * light. */
     check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
     check(luxfer_scene_get_camera(lit_scene, 0, &camera), "camera");
     add_headlight(scene, &camera);

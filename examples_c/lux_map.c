@@ -1,11 +1,12 @@
-/* Illuminance on a plane, as lighting designers plan it.
+/* Illuminance on a calculation grid.
  *
- * Measures the generated office 1.5 m above its floor, over the screens between desks, prints mean, extremes and uniformity with
- * their error, and writes lux_map.png: dark blue is 0 lux, red 1500.
+ * Computes the illuminance in the generated office 1.5 m above the floor, higher than the screens between desks.
+ * Prints the mean, the extremes and the uniformity with their error, and writes lux_map.png: dark blue is 0 lux, red
+ * is 1500 lux.
  */
 #include "common.h"
 
-enum { COLUMNS = 22, ROWS = 40, SCALE = 6 }; /* A point every 20 cm, and its pixels. */
+enum { COLUMNS = 22, ROWS = 40, SCALE = 6 }; /* One point every 20 cm; SCALE x SCALE pixels for each. */
 
 /* Blue, green, yellow, red, for t in [0, 1]. */
 static void false_colour(float t, unsigned char *rgb) {
@@ -36,7 +37,8 @@ int main(void) {
     check(luxfer_illuminance_set_scene(illuminance, scene), "illuminance");
 
     /* --8<-- [start:grid] */
-    /* The plane: a corner and two edges; light counts from above. Points are the centres of the cells. */
+    /* The grid: a corner, two edges, and the normal of the side that receives the light. Points are the centres of the
+     * cells. */
     check(luxfer_illuminance_grid_init(&grid, sizeof grid), "grid");
     grid.origin[0] = 0.5f, grid.origin[1] = 1.5f, grid.origin[2] = 0.5f;
     grid.across[0] = 4.4f;
@@ -53,7 +55,7 @@ int main(void) {
     printf("mean %.0f lux (+- %.1f, 95 %%), least %.0f, largest %.0f, uniformity %.2f\n", report.mean, 1.96 * report.mean_error,
            report.least, report.largest, report.least / report.mean);
 
-    /* The values, one channel, into an array of our own. */
+    /* Read the values, one channel, into an array. */
     check(luxfer_illuminance_get_image(illuminance, LUXFER_ILLUMINANCE_LUX, &image), "lux");
     check(luxfer_image_view_init(&view, sizeof view), "lux");
     view.width = COLUMNS;

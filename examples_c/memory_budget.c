@@ -1,6 +1,6 @@
-/* A budget of memory: what a host allows the library to keep for it.
+/* A memory budget: the limit for images and scenes that a host creates in a context.
  *
- * Loads pictures into a context of 8 MiB until one does not fit, lets go of one, and goes on.
+ * Creates images in a context of 8 MiB until one does not fit, releases one, and continues.
  */
 #include "luxfer.h"
 
@@ -9,7 +9,7 @@
 
 enum { SIDE = 512, MOST = 16 };
 
-/* A grey picture of 512 x 512 pixels: 3 MiB as 32-bit floating point, whatever the samples of the caller are. */
+/* A grey image of 512 x 512 pixels: 3 MiB, because the library stores 32-bit floating point for any sample type. */
 static luxfer_status load(luxfer_context *context, luxfer_image **image) {
     luxfer_image_view view;
     luxfer_status status = luxfer_image_view_init(&view, sizeof view);
@@ -21,7 +21,7 @@ static luxfer_status load(luxfer_context *context, luxfer_image **image) {
     view.data = pixels;
     view.byte_size = (size_t)SIDE * SIDE * 3;
     if (status == LUXFER_OK) status = luxfer_image_create(context, &view, image);
-    free(pixels); /* The library keeps a copy and no pointer. */
+    free(pixels); /* The library has copied the pixels. */
     return status;
 }
 
@@ -32,7 +32,7 @@ int main(void) {
     luxfer_status status = luxfer_context_params_init(&params, sizeof params);
     int count = 0, i;
 
-    /* Also how many threads it may have; 0 would be one for each core. */
+    /* Also set the number of threads; 0 is one for each core. */
     params.memory_budget_mib = 8;
     params.num_threads = 1;
     if (status == LUXFER_OK) status = luxfer_context_create(&params, &context);
@@ -41,14 +41,14 @@ int main(void) {
     /* --8<-- [start:budget] */
     while (count < MOST && (status = load(context, &images[count])) == LUXFER_OK) count++;
     if (status == LUXFER_OUT_OF_MEMORY) {
-        /* Nothing is lost: the message says how much is in use, and the context goes on working. */
+        /* The message gives the memory in use. The context remains usable. */
         char message[512] = "";
         luxfer_context_last_error(context, message, sizeof message, NULL);
         printf("after %d pictures: %s\n", count, message);
     }
     if (count == 0 || status != LUXFER_OUT_OF_MEMORY) return 1;
 
-    /* A host with a cache would drop what was used least lately. */
+    /* A host with a cache would release the least recently used image. */
     luxfer_image_release(images[0]);
     images[0] = NULL;
     status = load(context, &images[0]);

@@ -1,4 +1,4 @@
-/* The least there is to it: a scene, a picture of it, a file.
+/* The smallest program: renders a scene into a file.
  *
  *   minimal [SCENE.glb]
  *
@@ -17,26 +17,26 @@ int main(int argc, char **argv) {
     luxfer_render_params params;
     luxfer_status status;
 
-    /* A context owns the threads. All else is made in it; NULL stands for default settings. */
+    /* A context owns the threads. All objects are created in a context; NULL means default settings. */
     if (luxfer_context_create(NULL, &context) != LUXFER_OK) return 1;
 
-    /* Settings are filled with their defaults before any is changed. */
+    /* Fill settings with their defaults, then change some. */
     luxfer_render_params_init(&params, sizeof params);
     params.width = 300;
     params.height = 200;
     params.samples = 8;
 
-    /* Every call returns a status, and does nothing once its input is missing: the first failure is the one to report. */
+    /* Every call returns a status. A call whose input is missing fails too, so report the first failure. */
     status = argc > 1 ? luxfer_scene_load(context, argv[1], &scene)
                       : luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene);
     if (status == LUXFER_OK) status = luxfer_render_create(context, &render);
     if (status == LUXFER_OK) status = luxfer_render_set_scene(render, scene);
 
-    /* Long work is a job: started here, done on the library's threads, waited for without limit (-1). */
+    /* Long work is a job that runs on the library's threads. Wait for it without limit (-1). */
     if (status == LUXFER_OK) status = luxfer_render_start(render, &params, &job);
     if (status == LUXFER_OK) status = luxfer_job_wait(job, -1, NULL, NULL);
 
-    /* Pictures are in cd/m2; the last argument is what 1 cd/m2 becomes, here 0.005: white is 200 cd/m2. */
+    /* Pictures are in cd/m2; the last argument is the exposure: with 0.005, 200 cd/m2 become white. */
     if (status == LUXFER_OK) status = luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture);
     if (status == LUXFER_OK) status = luxfer_image_save(picture, "minimal.png", 0.005f);
 
@@ -48,7 +48,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s: %s\n", luxfer_status_name(status), message);
     }
 
-    /* In any order; NULL is nothing to release. */
+    /* Release in any order; releasing NULL does nothing. */
     luxfer_image_release(picture);
     luxfer_job_release(job);
     luxfer_render_release(render);

@@ -1,5 +1,5 @@
-/* A sheet of all that a lighting transfer went through. Above: photo, mask of the plane, mask of the lights, the plane
- * unwarped. Below: emissive texture, scene before, in white light, in the light of the photo. */
+/* A sheet of pictures with the steps of a lighting transfer. Above: photo, mask of the plane, mask of the lights, the
+ * unwarped plane. Below: emissive texture, scene before, in white light, in the light of the photo. */
 #ifndef OVERVIEW_H
 #define OVERVIEW_H
 

@@ -1,4 +1,4 @@
-/* A sheet of pictures side by side, made through the library's own images. */
+/* A sheet of pictures side by side, from images of the library. */
 #ifndef PANELS_H
 #define PANELS_H
 
@@ -14,7 +14,7 @@ typedef struct sheet {
     int width, height, panel_width, panel_height;
 } sheet;
 
-/* An empty sheet for columns x rows panels; its pixels are NULL if there is no memory. */
+/* Creates an empty sheet for columns x rows panels; its pixels are NULL if memory is short. */
 static sheet panels_begin(int columns, int rows, int panel_width, int panel_height) {
     sheet s;
     size_t k, count;
@@ -27,7 +27,7 @@ static sheet panels_begin(int columns, int rows, int panel_width, int panel_heig
     return s;
 }
 
-/* All pixels of an image as packed floats; the caller frees them. */
+/* Reads all pixels of an image as packed floats; the caller frees them. */
 static float *panels_pixels(luxfer_image *image, luxfer_image_view *view) {
     float *data = NULL;
     if (luxfer_image_view_init(view, sizeof *view) != LUXFER_OK) return NULL;
@@ -42,7 +42,7 @@ static float *panels_pixels(luxfer_image *image, luxfer_image_view *view) {
     return data;
 }
 
-/* Averages an image into a panel of the sheet, keeping its shape. */
+/* Scales an image down into a panel of the sheet, keeping its aspect ratio. */
 static void panels_add(sheet *s, int column, int row, luxfer_image *image, float exposure) {
     luxfer_image_view v;
     float *data = panels_pixels(image, &v);

@@ -1,7 +1,7 @@
-/* A picture in a given time, or of a given quality: a plan says with which settings, and what to expect.
+/* Renders a picture in a given time, or of a given quality: a plan chooses the settings and predicts time and error.
  *
- * Renders the generated office twice: with at most 10 % of noise, and in a second. Prints what was expected and what came
- * out, and writes plan.png.
+ * Renders the generated office twice: with at most 10 % of noise, and within a second. Prints the predicted and the
+ * actual time and error, and writes plan.png.
  */
 #include "common.h"
 
@@ -28,10 +28,10 @@ int main(void) {
         luxfer_plan_report expected;
         expected.struct_size = sizeof expected;
         check(luxfer_plan_params_init(&params, sizeof params), "plan");
-        if (i == 0) params.target_error = 0.1f; /* of the picture, relative to its mean */
+        if (i == 0) params.target_error = 0.1f; /* error of the picture, relative to its mean */
         else params.time_budget_ms = 1000;
 
-        /* What is no matter of quality is the caller's: the size of the picture, the seed. */
+        /* Set what does not affect quality yourself: the size of the picture, the seed. */
         check(luxfer_render_params_init(&settings, sizeof settings), "settings");
         settings.width = 160;
         settings.height = 90;
@@ -49,7 +49,7 @@ int main(void) {
         check(luxfer_render_get_report(render, &report), "report");
         printf("%s: %.2f s and an error of %.1f %% expected; it is %.1f %% with %u paths per pixel\n", goals[i],
                expected.seconds, 100 * expected.error, 100 * report.error, report.samples);
-        /* What was asked for is kept by the stage itself: it stops at the error. */
+        /* The rendering stops when it reaches the target error. */
         if (i == 0 && report.error > 0.15) return 1;
     }
 

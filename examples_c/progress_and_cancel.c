@@ -1,12 +1,13 @@
-/* Long work without a frozen program: progress, cancelling, and what is done so far.
+/* Long work in a responsive program: progress, cancelling, and intermediate results.
  *
- * Starts a rendering that would take hours, twice: once waiting inside the library with a progress function that cancels
- * after a second, once in a loop of the program's own, as a user interface has one. Writes progress_and_cancel.png.
+ * Starts a rendering that would take hours, twice: first it waits inside the library, with a progress function that
+ * cancels after a second; then it waits in its own loop, as a user interface does. Writes progress_and_cancel.png.
  */
 #include "common.h"
 
 /* --8<-- [start:progress] */
-/* Called about 50 times a second, on the thread that waits: it may call any function of the library, or of the host's. */
+/* The library calls this about 50 times a second, on the waiting thread: it may call any function of library and
+ * host. */
 typedef struct watch {
     luxfer_render *render;
     int calls;
@@ -17,10 +18,10 @@ static int32_t on_progress(void *user, double fraction) {
     luxfer_render_report report;
     report.struct_size = sizeof report;
     w->calls++;
-    /* Results grow while the job runs. Of one path for each pixel there is no error yet. */
+    /* Results improve while the job runs. The error is unknown before the second path of each pixel. */
     if (w->calls % 10 == 0 && luxfer_render_get_report(w->render, &report) == LUXFER_OK && report.samples > 1)
         printf("%7.3f %%: %u paths per pixel, standard error %.0f %%\n", 100 * fraction, report.samples, 100 * report.error);
-    /* Anything but 0 cancels. */
+    /* A value other than 0 cancels. */
     return w->calls >= 50;
 }
 /* --8<-- [end:progress] */
@@ -57,19 +58,19 @@ int main(void) {
     luxfer_job_release(job);
     if (status != LUXFER_CANCELLED) return 1;
 
-    /* What was done before the cancel is a picture, with an error of its own. */
+    /* The passes before the cancel give a picture, with its error. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
     check(luxfer_render_get_report(render, &report), "report");
     check(luxfer_image_save(picture, "progress_and_cancel.png", 1 / 450.0f), "picture");
     printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
     luxfer_image_release(picture);
 
-    /* 2. In a loop of the program's own: a wait that is over after 16 ms, then a frame of the user interface. */
+    /* 2. Waiting in a loop of the program: wait at most 16 ms, then draw a frame of the user interface. */
     check(luxfer_render_start(render, &params, &job), "start");
     /* --8<-- [start:loop] */
     while ((status = luxfer_job_wait(job, 16, NULL, NULL)) == LUXFER_NOT_READY) {
         check(luxfer_job_poll(job, &fraction, NULL), "poll");
-        /* Any thread may cancel; the work ends within about 100 ms, and releasing the job would do the same. */
+        /* Any thread may cancel; the work ends within about 100 ms. Releasing the job cancels it too. */
         if (++frames == 20) check(luxfer_job_cancel(job), "cancel");
     }
     /* --8<-- [end:loop] */

@@ -1,8 +1,8 @@
-/* A rendering on many machines: each renders parts of it into files, and one merges the files.
+/* A rendering on many machines: each machine renders parts into files, and one machine merges the files.
  *
  *   render_parts part INDEX FILE      renders part INDEX of PARTS into FILE: a task of a farm
  *   render_parts merge FILE...        merges the parts, in any order, into render_parts.exr and render_parts.png
- *   render_parts                      does both, and compares with a rendering of the whole in one part
+ *   render_parts                      does both, and compares the result with a rendering in one part
  */
 #include "common.h"
 
@@ -11,7 +11,7 @@
 /* The image as 3 x 2 rectangles with 2 ranges of paths each. */
 enum { COLUMNS = 3, ROWS = 2, RANGES = 2, PARTS = COLUMNS * ROWS * RANGES };
 
-/* The same in every task, or the merge refuses: scene, camera, layers, settings. */
+/* Scene, camera, layers and settings must be equal in every task; the merge checks this. */
 static luxfer_render *describe(luxfer_render_params *params) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
@@ -29,7 +29,7 @@ static luxfer_render *describe(luxfer_render_params *params) {
 }
 
 /* --8<-- [start:part] */
-/* A task: renders one part into a file, which appears when it is complete. */
+/* A task: renders one part into a file, which appears only when it is complete. */
 static void render_part(luxfer_render *render, const luxfer_render_params *params, uint32_t index, const char *file) {
     luxfer_render_part part;
     luxfer_job *job = NULL;
@@ -41,7 +41,7 @@ static void render_part(luxfer_render *render, const luxfer_render_params *param
 /* --8<-- [end:part] */
 
 /* --8<-- [start:merge] */
-/* When all tasks are done: the rendering, as if it had been made here. */
+/* After all tasks: merges the files. The rendering is then as if this machine had made it. */
 static void merge(luxfer_render *render, const luxfer_render_params *params, char **files, int count) {
     luxfer_job *job = NULL;
     int i;
@@ -53,7 +53,7 @@ static void merge(luxfer_render *render, const luxfer_render_params *params, cha
 }
 /* --8<-- [end:merge] */
 
-/* The pixels of the picture; frees nothing. */
+/* Reads the pixels of the picture; the caller frees them. */
 static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     luxfer_image *image = NULL;
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
@@ -68,7 +68,7 @@ static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     return view->data;
 }
 
-/* All parts, the last first, and the whole in one: the same bits. */
+/* Renders all parts, the last first, and the whole in one part, and checks that the bits are equal. */
 static int demonstrate(luxfer_render *render, const luxfer_render_params *params) {
     char names[PARTS][32], *files[PARTS], *whole = "whole.part.exr";
     luxfer_image_view view;

@@ -1,16 +1,17 @@
-/* A photo with depth: what a depth camera, or a network, knows of a photo, in place of the library's own guess.
+/* A photo with depth, from a depth camera or a network, instead of the library's guess.
  *
  *   rgbd_input [PHOTO DEPTH]
  *
- * Without arguments it photographs the generated office and renders its depth. DEPTH has one channel, in any unit, and holes
- * where it is not positive. Writes rgbd_input.png: photo and depth; normals without the depth and with it.
+ * Without arguments it renders a photo of the generated office and its depth. DEPTH has one channel, in any unit;
+ * values that are not positive are holes. Writes rgbd_input.png: photo and depth; normals without the depth and with
+ * it.
  */
 #include "common.h"
 #include "panels.h"
 
 enum { WIDTH = 300, HEIGHT = 200 };
 
-/* The distance along the viewing axis of each pixel, in metres: a layer of a rendering by the photo's camera. */
+/* The distance of each pixel along the viewing axis, in metres: a layer of a rendering by the photo's camera. */
 static luxfer_image *measure_depth(void) {
     luxfer_scene *office = NULL;
     luxfer_render *render = NULL;
@@ -70,7 +71,7 @@ int main(int argc, char **argv) {
     check(luxfer_context_create(NULL, &context), "context");
     if (argc == 3) {
         check(luxfer_image_load(context, argv[1], LUXFER_COLOUR_SRGB, &photo), argv[1]);
-        check(luxfer_image_load(context, argv[2], LUXFER_COLOUR_LINEAR, &depth), argv[2]); /* Data, no colour. */
+        check(luxfer_image_load(context, argv[2], LUXFER_COLOUR_LINEAR, &depth), argv[2]); /* Data, not colour. */
     } else {
         photo = take_photo(WIDTH, HEIGHT, 4);
         depth = measure_depth();
@@ -86,7 +87,7 @@ int main(int argc, char **argv) {
     show_normals(features, "with depth", &s, 1);
     /* --8<-- [end:features] */
     check(panels_save(&s, context, "rgbd_input.png"), "rgbd_input.png");
-    /* A whole transfer takes the same by luxfer_transfer_set_depth. */
+    /* For a whole transfer, use luxfer_transfer_set_depth. */
 
     luxfer_features_release(features);
     luxfer_image_release(depth);

@@ -5,7 +5,7 @@
 #include "common.h"
 
 /* --8<-- [start:mesh] */
-/* As a host has its vertices: attributes interleaved, and more of them than the library wants. */
+/* A vertex of a host: interleaved attributes, some of which the library does not need. */
 typedef struct vertex {
     float position[3], uv[2];
     int selected;
@@ -34,7 +34,7 @@ static void add_quad(luxfer_scene *scene, const char *name, uint32_t material, c
     mesh.uv_stride = sizeof(vertex);
     mesh.triangle_count = 2;
     mesh.indices = triangles;
-    check(luxfer_scene_add_mesh(scene, &mesh, NULL), name); /* Copied: the arrays may go now. */
+    check(luxfer_scene_add_mesh(scene, &mesh, NULL), name); /* The arrays have been copied. */
 }
 /* --8<-- [end:mesh] */
 
@@ -45,7 +45,7 @@ static uint32_t add_material(luxfer_scene *scene, const char *name, float r, flo
     material.name = name;
     material.base_color[0] = r, material.base_color[1] = g, material.base_color[2] = b;
     material.emission[0] = material.emission[1] = material.emission[2] = emission; /* cd/m2 */
-    material.double_sided = emission == 0; /* Lamps shine from their front alone. */
+    material.double_sided = emission == 0; /* Lamps emit from their front side only. */
     check(luxfer_scene_add_material(scene, &material, &index), name);
     return index;
 }
@@ -67,7 +67,7 @@ int main(void) {
     uint32_t white, red, green, wood, glowing;
     counts.struct_size = sizeof counts;
 
-    /* Materials, then the meshes that use them, then cameras. */
+    /* Add materials, then the meshes that use them, then cameras. */
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_scene_create(context, &scene), "scene");
     white = add_material(scene, "White paint", 0.75f, 0.75f, 0.72f, 0);

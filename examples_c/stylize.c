@@ -1,4 +1,4 @@
-/* Paints a scene in the manner of an artwork, three times.
+/* Paints a scene in the style of an artwork, for three artworks.
  *
  *   stylize [--size WxH] [--samples N] [--out DIR]
  *
@@ -14,7 +14,7 @@
 
 enum { STYLES = 3 };
 
-/* Luminance in cd/m2 that is shown as white. */
+/* Luminance in cd/m2 shown as white. */
 #define EXPOSURE 450.0f
 
 /* The guides of a scene, rendered. */
@@ -84,7 +84,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    /* What the light does in the exemplar and in the target. */
+    /* Render the guides of the exemplar and of the target. */
     check(luxfer_context_create(NULL, &context), "context");
     if (luxfer_stylize_create(context, &stylize) == LUXFER_UNSUPPORTED) {
         fprintf(stderr, "this build of luxfer has no stylisation\n");
@@ -93,7 +93,8 @@ int main(int argc, char **argv) {
     /* --8<-- [start:guides] */
     source = render(LUXFER_DEMO_SPHERE_ON_TABLE, &params, "exemplar");
     target = render(LUXFER_DEMO_STILL_LIFE, &params, "target");
-    /* All things are of one red: edges tell a ball from the ring behind it, so they weigh more than any kind of light. */
+    /* All objects have one red: only edges separate a ball from the ring behind it, so they weigh more than the light
+     * guides. */
     check(luxfer_stylize_add_guides(stylize, source, target, LUXFER_GUIDES_WITH_EDGES, 2.5f), "guides");
     /* --8<-- [end:guides] */
     s = panels_begin(1 + STYLES, 2, 480, 360);
@@ -105,7 +106,7 @@ int main(int argc, char **argv) {
     panels_add(&s, 0, 1, image, 1 / EXPOSURE);
     luxfer_image_release(image);
 
-    /* The same target in the manner of each artwork. */
+    /* Paint the target in the style of each artwork. */
     for (i = 0; i < STYLES; i++) {
         luxfer_stylize_report report;
         luxfer_image *artwork = NULL;

@@ -1,9 +1,9 @@
 /* luxfer: lighting from one photo onto a 3D scene.
  *
- * This file is generated from src/ffi by tests/abi_header.rs. It needs C99 or C++11 and nothing but the standard headers.
+ * tests/abi_header.rs generates this file from src/ffi. It needs C99 or C++11 and only the standard headers.
  *
- * In short: create a context; make objects in it; start a stage, which gives a job; wait for the job, which may report
- * progress to you; read the results; release everything, in any order.
+ * In short: create a context, create objects in it, start a stage (this returns a job), wait for the job (optionally
+ * with progress), read the results, and release everything in any order.
  *
  *     luxfer_context *context = NULL;
  *     luxfer_image *photo = NULL;
@@ -16,8 +16,8 @@
  *     luxfer_image_release(photo);
  *     luxfer_context_release(context);
  *
- * Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709; where light is photometric its luminance
- * is in cd/m², illuminance in lux, flux in lumens.
+ * Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709; luminance is in cd/m², illuminance in
+ * lux, luminous flux in lumens.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
@@ -34,12 +34,13 @@ extern "C" {
 /* ====================================================================================================================
  * Version
  *
- * The macros say what this header was made for, the functions what library is loaded. Before 1.0 libraries of one minor
- * version are compatible (libluxfer.so.0.1); from 1.0 on those of one major version.
+ * The macros give the version of this header, the functions give the version of the loaded library. Before 1.0,
+ * libraries with the same minor version are compatible (libluxfer.so.0.1); from 1.0 on, libraries with the same major
+ * version.
  *
- * A program that meets its library at run time (dlopen, a folder of plug-ins) asks at its start whether
- * luxfer_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, whether the two are equal when divided by 10000 and the
- * library is not the older one. luxfer::Context::create of bindings/cpp does.
+ * A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
+ * luxfer_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that the
+ * library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
  * ==================================================================================================================== */
 
 /** The version of this header. */
@@ -59,17 +60,18 @@ const char *luxfer_version_string(void);
 /* ====================================================================================================================
  * Status
  *
- * Every function that can fail returns a luxfer_status. Values are never changed or reused; new ones may be added.
- * Outputs are written only when LUXFER_OK is returned. luxfer_context_last_error says in words what went wrong.
+ * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added. A
+ * function writes its outputs only when it returns LUXFER_OK. luxfer_context_last_error describes the failure in
+ * words.
  * ==================================================================================================================== */
 
-/** The result of a call: LUXFER_OK, or why it failed. */
+/** The result of a call: LUXFER_OK, or the reason for the failure. */
 typedef int32_t luxfer_status;
 
 /** Success. */
 #define LUXFER_OK 0
 
-/** A cause that has no status of its own. */
+/** An error that has no status value of its own. */
 #define LUXFER_UNKNOWN 1
 
 /** A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another. */
@@ -81,22 +83,22 @@ typedef int32_t luxfer_status;
 /** The memory budget of the context, or the machine, is used up. */
 #define LUXFER_OUT_OF_MEMORY 4
 
-/** The file or the request is valid, but uses something this library does not do. */
+/** The file or the request is valid, but uses a feature that this library does not support. */
 #define LUXFER_UNSUPPORTED 5
 
 /** The job was cancelled by the caller. */
 #define LUXFER_CANCELLED 6
 
-/** The operating system could not read or write a file, or the caller's writer refused. */
+/** The operating system could not read or write a file, or the caller's write function returned an error. */
 #define LUXFER_IO 7
 
 /** A file is truncated, corrupt, or not what it claims to be. */
 #define LUXFER_FORMAT 8
 
-/** A result was asked for before the job that makes it has succeeded, or a wait timed out. */
+/** A result was requested before its job has succeeded, or a wait timed out. */
 #define LUXFER_NOT_READY 9
 
-/** A defect in this library: please report it. */
+/** A bug in this library: please report it. */
 #define LUXFER_INTERNAL 10
 
 /** The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only. */
@@ -105,62 +107,71 @@ typedef int32_t luxfer_status;
 /** No surface, image or entry has the given name or index. */
 #define LUXFER_NOT_FOUND 12
 
-/** No light can reach the target: no path, a channel fully absorbed, or negative light would be needed. */
+/**
+ * No light can reach the target: there is no light path, a channel is fully absorbed, or negative light would be
+ * needed.
+ */
 #define LUXFER_UNREACHABLE 13
 
 /**
- * The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is none. The string is static:
- * never free it. Any thread.
+ * The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The string is
+ * static: never free it. Any thread.
  */
 const char *luxfer_status_name(luxfer_status status);
 
 /* ====================================================================================================================
  * Context
  *
- * A context owns the threads that do the work, a memory budget and the error messages. All other objects are made in a
- * context and keep it alive, so objects may be released in any order; objects of two contexts cannot be mixed
+ * A context owns the worker threads, a memory budget and the error messages. All other objects are created in a
+ * context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
  * (LUXFER_INVALID_ARGUMENT).
  *
- * Handles, of every kind: X_retain adds a reference, X_release gives one back; the last one frees the object. Releasing
- * NULL does nothing. A handle is checked on entry: NULL, a handle of another kind or one released before is
- * LUXFER_INVALID_ARGUMENT, as far as the memory behind it still shows it.
+ * Handles of every kind are reference counted: X_retain adds a reference, X_release removes one, and removing the last
+ * reference frees the object. Releasing NULL does nothing. Each call checks its handles: NULL and a handle of another
+ * kind give LUXFER_INVALID_ARGUMENT; so does a released handle in most cases, but not if its memory has been reused.
  *
- * Threads: different objects may be used from different threads at the same time, and so may one object; calls that
- * change it take turns. Only the release of the last reference must not overlap any other use.
+ * Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
+ * use different objects at the same time, and also the same object: calls that change an object wait for each other.
+ * Only the release of the last reference must not overlap with another use of the object.
  *
- * The library has no global state, prints nothing, reads no environment variables, never ends the process and installs
- * no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads and
- * whatever floating-point mode (rounding, flush to zero) the host is in: calls work in the standard mode, so do callbacks
- * they make, and hand the host's back.
+ * The library prints nothing, reads no environment variables, does not end the process on an error and installs no
+ * handlers. All state belongs to a context, with one exception: an emergency reserve of memory, shared by all contexts
+ * of the process. The library uses it for small allocations when the system has no memory left; all running jobs of
+ * the process then end with LUXFER_OUT_OF_MEMORY.
+ *
+ * With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
+ * any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
+ * the mode of the host on return. Callbacks run in the standard mode.
  * ==================================================================================================================== */
 
 /** A context: threads, memory budget and error messages. See luxfer_context_create. */
 typedef struct luxfer_context luxfer_context;
 
-/** How a context is set up. Fill it with luxfer_context_params_init. */
+/** Settings of a context. Fill it with luxfer_context_params_init. */
 typedef struct luxfer_context_params {
     /** sizeof(luxfer_context_params), set by luxfer_context_params_init. */
     uint32_t struct_size;
-    /** Number of worker threads in [0, 1024]; 0, the default, is one for each core the process may use. */
+    /** Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. */
     uint32_t num_threads;
     /**
-     * Limit in MiB for the pixels, meshes and textures of all objects the caller makes in this context; what exceeds it
-     * is LUXFER_OUT_OF_MEMORY. 0, the default, is no limit. Working memory of a job and its results are not counted.
+     * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
+     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. The working memory of jobs and
+     * their results do not count.
      */
     uint64_t memory_budget_mib;
 } luxfer_context_params;
 
 /**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is not that
- * of any version of the struct.
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
+ * the struct has this size.
  */
 luxfer_status luxfer_context_params_init(luxfer_context_params *params,
                                          size_t size);
 
 /**
  * Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
- * LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY if
- * the threads cannot be started.
+ * LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY
+ * if the threads cannot be started.
  */
 luxfer_status luxfer_context_create(const luxfer_context_params *params,
                                     luxfer_context **context);
@@ -169,16 +180,17 @@ luxfer_status luxfer_context_create(const luxfer_context_params *params,
 luxfer_status luxfer_context_retain(luxfer_context *context);
 
 /**
- * Gives a reference back. The threads end, and are waited for, when the context and everything made in it are released.
- * Any thread.
+ * Removes a reference. When the context and all objects created in it are released, the call waits until the worker
+ * threads have ended. Any thread.
  */
 luxfer_status luxfer_context_release(luxfer_context *context);
 
 /**
- * Copies the message of the calling thread's latest failure in this context into buffer, as UTF-8 that ends with a zero,
- * cut if it does not fit into capacity bytes. *needed, unless NULL, becomes the capacity for all of it. Without a failure
- * the message is empty. Messages stay until the thread's next failure; those of the last 256 threads are kept. buffer may
- * be NULL if capacity is 0. A call that fails because its first handle is no handle leaves no message. Any thread.
+ * Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,
+ * truncated to capacity bytes. *needed, unless NULL, receives the capacity that the whole message needs. If no call
+ * has failed, the message is empty. A message stays until the thread's next failure; the messages of the 256 threads
+ * that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
+ * valid leaves no message. Any thread.
  */
 luxfer_status luxfer_context_last_error(luxfer_context *context,
                                         char *buffer,
@@ -188,9 +200,9 @@ luxfer_status luxfer_context_last_error(luxfer_context *context,
 /* ====================================================================================================================
  * Image
  *
- * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run downwards.
- * Images never change after they are made, so results are shared and not copied. The caller's pixels are described by a
- * view; the library never keeps a pointer to them. Sides are at most 65536 pixels.
+ * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top to
+ * bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels in
+ * the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
  * ==================================================================================================================== */
 
 /** Flag of a view: the first row in memory is the bottom one. */
@@ -199,10 +211,10 @@ luxfer_status luxfer_context_last_error(luxfer_context *context,
 /** An image. See luxfer_image_create. */
 typedef struct luxfer_image luxfer_image;
 
-/** How a sample is stored: a LUXFER_SAMPLE_ value, in the machine's byte order. */
+/** Storage type of a sample, in the machine's byte order: a LUXFER_SAMPLE_ value. */
 typedef int32_t luxfer_sample;
 
-/** What the numbers mean: a LUXFER_COLOUR_ value. */
+/** Encoding of the values: a LUXFER_COLOUR_ value. */
 typedef int32_t luxfer_colour_space;
 
 /** An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data. */
@@ -219,15 +231,15 @@ typedef struct luxfer_image_view {
     uint32_t width;
     /** Rows, in [1, 65536]; default 0, to be set. */
     uint32_t height;
-    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are refused. */
+    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error. */
     uint32_t flags;
     /** Must be 0. */
     uint32_t reserved;
-    /** Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed. */
+    /** Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed. */
     size_t pixel_stride;
-    /** Bytes from a row to the next; at least the row's size, or 0, the default: packed. */
+    /** Bytes from one row to the next; at least the size of a row, or 0, the default: packed. */
     size_t row_stride;
-    /** Bytes at data that may be accessed; what the layout needs beyond is LUXFER_INVALID_ARGUMENT. To be set. */
+    /** Size of the memory at data in bytes; LUXFER_INVALID_ARGUMENT if the layout needs more. To be set. */
     size_t byte_size;
     /** The pixels; any alignment. Bytes between pixels and rows are never touched. To be set. */
     void *data;
@@ -245,32 +257,32 @@ typedef struct luxfer_image_view {
 /** 32-bit floating point. */
 #define LUXFER_SAMPLE_F32 3
 
-/** Scene-linear Rec.709, or data that is no colour. */
+/** Scene-linear Rec.709, or data that is not colour. */
 #define LUXFER_COLOUR_LINEAR 0
 
-/** Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is linear. */
+/** Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear. */
 #define LUXFER_COLOUR_SRGB 1
 
 /**
- * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or size is not that of any
- * version of the struct.
+ * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or no version of the
+ * struct has this size.
  */
 luxfer_status luxfer_image_view_init(luxfer_image_view *view,
                                      size_t size);
 
 /**
- * Creates an image from a copy of the caller's pixels; integers and sRGB are decoded, NaN and infinities kept. The caller
- * releases *image. Any thread.
- * LUXFER_INVALID_ARGUMENT if the view contradicts itself; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
+ * Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The
+ * caller releases *image. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
  */
 luxfer_status luxfer_image_create(luxfer_context *context,
                                   const luxfer_image_view *view,
                                   luxfer_image **image);
 
 /**
- * Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space says how integer samples are encoded:
- * LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; files with floating-point
- * samples are linear. The caller releases *image. Any thread.
+ * Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space is the encoding of integer samples:
+ * LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; floating-point samples are
+ * always linear. The caller releases *image. Any thread.
  * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if an
  * OpenEXR file has neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -279,7 +291,7 @@ luxfer_status luxfer_image_load(luxfer_context *context,
                                 luxfer_colour_space colour_space,
                                 luxfer_image **image);
 
-/** Loads an image from the size bytes of a file held in memory, otherwise as luxfer_image_load. */
+/** Loads an image from a file in memory of size bytes; otherwise as luxfer_image_load. */
 luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
@@ -288,26 +300,26 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
 
 /**
  * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
- * (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels as
- * they are, in 32-bit floating point; exposure is not used. An existing file is replaced only by a complete one. Any
- * thread.
+ * (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels,
+ * unchanged, in 32-bit floating point; exposure is not used. An existing file is replaced only once the new one is
+ * complete. Any thread.
  * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
                                 const char *path,
                                 float exposure);
 
-/** Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
+/** Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
 luxfer_status luxfer_image_size(luxfer_image *image,
                                 uint32_t *width,
                                 uint32_t *height,
                                 uint32_t *channels);
 
 /**
- * Writes an image into the caller's pixels. The view must have the image's size; if the image has more channels than the
- * view, those from first_channel on are written. Integers are clamped to their range and rounded, NaN becomes 0 in them.
+ * Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
+ * of the image, starting at first_channel. Integers are clamped to their range and rounded; NaN becomes 0 in integers.
  * Any thread.
- * LUXFER_INVALID_ARGUMENT if the view contradicts itself or the image.
+ * LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
  */
 luxfer_status luxfer_image_read(luxfer_image *image,
                                 uint32_t first_channel,
@@ -316,34 +328,35 @@ luxfer_status luxfer_image_read(luxfer_image *image,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_image_retain(luxfer_image *image);
 
-/** Gives a reference back. Any thread. */
+/** Removes a reference. Any thread. */
 luxfer_status luxfer_image_release(luxfer_image *image);
 
 /* ====================================================================================================================
  * Job
  *
- * Long work is started with X_start, which returns a job at once; it runs on threads of the library. Inputs are taken as
- * they are at the start: changing or releasing them later does not affect the job. While a job runs its object refuses
- * changes and further jobs (LUXFER_INVALID_OPERATION). Results are read from the object after the job has succeeded.
- * Releasing the last reference to a job that runs cancels it and waits for it to end.
+ * X_start starts long work and returns a job at once; the job runs on threads of the library. It works on the inputs
+ * as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
+ * refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
+ * succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
  * ==================================================================================================================== */
 
 /** Work in progress. See luxfer_job_wait. */
 typedef struct luxfer_job luxfer_job;
 
 /**
- * Told how far a job is: fraction rises from 0, never falls, and is exactly 1 once, last, and only after success. Returns
- * 0 to go on, anything else to cancel the job. Called about 50 times a second, only on the thread that is inside
- * luxfer_job_wait and with no lock held, so any luxfer function may be called from it. Must not throw or jump out.
+ * Receives the progress of a job: fraction starts at 0 and never falls. Only after success it is exactly 1, once, in
+ * the last call. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the function about 50
+ * times a second, on the waiting thread and with no lock held, so it may call any luxfer function. It must not throw
+ * an exception or leave by longjmp.
  */
 typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
 /**
- * Waits until a job has ended, or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. progress
- * may be NULL; user is handed to it. Any thread, several at once.
+ * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
+ * progress may be NULL; it receives user. Any thread; several threads may wait for one job.
  *
- * Returns LUXFER_OK if the job has succeeded, else why it has not, with its message: LUXFER_CANCELLED after a cancel
- * request that came in time, LUXFER_NOT_READY only if it still runs (it goes on running).
+ * Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
+ * request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
@@ -351,60 +364,65 @@ luxfer_status luxfer_job_wait(luxfer_job *job,
                               void *user);
 
 /**
- * Asks how far a job is, without waiting. *fraction becomes its progress in [0, 1], *finished 1 if it has ended, well or
- * not, else 0; either may be NULL. Any thread.
+ * Gets the progress of a job without waiting. *fraction receives the progress in [0, 1]; *finished receives 1 if the
+ * job has ended, with or without success, else 0. Either may be NULL. Any thread.
  */
 luxfer_status luxfer_job_poll(luxfer_job *job,
                               double *fraction,
                               int32_t *finished);
 
-/** How a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any thread. */
+/**
+ * Gets the status with which a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any
+ * thread.
+ */
 luxfer_status luxfer_job_status(luxfer_job *job);
 
 /**
- * Asks a job to end early, and returns at once; the work ends within about 100 ms. A request cannot be taken back; one
- * that comes after the end has no effect. Any thread.
+ * Asks a job to end early and returns at once; the work ends within about 100 ms. A request cannot be withdrawn; a
+ * request after the end has no effect. Any thread.
  */
 luxfer_status luxfer_job_cancel(luxfer_job *job);
 
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_job_retain(luxfer_job *job);
 
-/** Gives a reference back; the last one cancels a running job and waits for it to end. Any thread. */
+/** Removes a reference. Removing the last reference cancels a running job and waits until it has ended. Any thread. */
 luxfer_status luxfer_job_release(luxfer_job *job);
 
 /* ====================================================================================================================
  * Scene
  *
- * A scene is what the host describes: meshes, materials, textures, lights, cameras. Metres, right-handed, Y up, all in
- * world space. Emission is in cd/m², punctual lights in candela and lux as in glTF 2.0. A job works on the scene as it
- * was at the start of the job. Calls that change a scene take turns; each either succeeds or leaves it as it was.
+ * A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
+ * world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
+ * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
+ * unchanged.
  * ==================================================================================================================== */
 
 /** A scene. See luxfer_scene_load and luxfer_scene_create. */
 typedef struct luxfer_scene luxfer_scene;
 
 /**
- * Takes size bytes of a file that is being written; called one or more times, in order, on the calling thread with no
- * lock held. Returns 0 to go on, anything else to give up: the export then returns LUXFER_IO. Must not throw or jump out.
+ * Receives the next size bytes of a file. The export calls it one or more times, in order, on the calling thread and
+ * with no lock held. Return 0 to continue, any other value to stop: the export then returns LUXFER_IO. It must not
+ * throw an exception or leave by longjmp.
  */
 typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
 
-/** How much there is in a scene. Set struct_size before the call. */
+/** Numbers of the objects in a scene. Set struct_size before the call. */
 typedef struct luxfer_scene_counts {
     /** sizeof(luxfer_scene_counts), set by the caller. */
     uint32_t struct_size;
-    /** Number of meshes, whose indices are 0 to meshes - 1; so with what follows. */
+    /** Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below. */
     uint32_t meshes;
     /** Number of materials. */
     uint32_t materials;
     /** Number of textures. */
     uint32_t textures;
-    /** Number of lights without a surface. */
+    /** Number of punctual lights: points, spots, directional lights and luminaires. */
     uint32_t lights;
     /** Number of cameras. */
     uint32_t cameras;
-    /** Triangles of all meshes. */
+    /** Number of triangles in all meshes. */
     uint64_t triangles;
 } luxfer_scene_counts;
 
@@ -412,22 +430,23 @@ typedef struct luxfer_scene_counts {
 typedef struct luxfer_surface {
     /** sizeof(luxfer_surface), set by the caller. */
     uint32_t struct_size;
-    /** Number of its triangles. */
+    /** Number of triangles. */
     uint32_t triangles;
-    /** Corner of its bounding rectangle where u = v = 0, in metres. */
+    /** Corner of the bounding rectangle where u = v = 0, in metres. */
     float origin[3];
-    /** Unit direction of u, along the first side of the rectangle. */
+    /** Unit vector of u, along the first side of the rectangle. */
     float u_axis[3];
-    /** Unit direction of v, along the second side. */
+    /** Unit vector of v, along the second side. */
     float v_axis[3];
-    /** Unit normal on the side that will emit: into the room. */
+    /** Unit normal on the side that will emit; it points into the room. */
     float normal[3];
     /** Lengths of the sides along u and v, in metres. */
     float size[2];
     /** Area of the triangles in m². */
     float area;
     /**
-     * Area of what was named besides and slopes from this plane by 5 to 75 degrees, in m²: as of a vault, which gets no light.
+     * Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, as
+     * those of a vault; they receive no emission.
      */
     float bent;
 } luxfer_surface;
@@ -437,16 +456,17 @@ luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene)
 
 /**
  * Loads a glTF 2.0 file, .glb or .gltf with the files it names; path is UTF-8. The caller releases *scene. Any thread.
- * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if one is damaged or refers to what is not there, LUXFER_UNSUPPORTED
- * for a required extension this library does not know, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
+ * LUXFER_UNSUPPORTED for a required extension that this library does not know, LUXFER_OUT_OF_MEMORY beyond the memory
+ * budget.
  */
 luxfer_status luxfer_scene_load(luxfer_context *context,
                                 const char *path,
                                 luxfer_scene **scene);
 
 /**
- * Loads a scene from the size bytes of a GLB or glTF file held in memory. Other files that it names are looked up in the
- * folder base_path (UTF-8); NULL allows none. Otherwise as luxfer_scene_load.
+ * Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
+ * base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
  */
 luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const void *data,
@@ -455,25 +475,25 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        luxfer_scene **scene);
 
 /**
- * Saves a scene as a GLB file with all of its textures inside; path is UTF-8 and ends in .glb. An existing file is
- * replaced only by a complete one. Any thread.
+ * Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is replaced
+ * only once the new one is complete. Any thread.
  * LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_scene_export(luxfer_scene *scene,
                                   const char *path);
 
 /**
- * Writes a scene as GLB through the caller's function, which gets user. Any thread.
- * LUXFER_IO if the function gives up.
+ * Writes a scene as GLB through the caller's function, which receives user. Any thread.
+ * LUXFER_IO if the function returns anything but 0.
  */
 luxfer_status luxfer_scene_export_memory(luxfer_scene *scene, luxfer_write_fn write, void *user);
 
-/** Tells how much there is in a scene. Any thread. */
+/** Gets the numbers of the objects in a scene. Any thread. */
 luxfer_status luxfer_scene_get_counts(luxfer_scene *scene, luxfer_scene_counts *counts);
 
 /**
- * Surrounds a scene with light of one colour from all directions, red, green and blue in cd/m², each finite and >= 0;
- * replaces any environment it had. Any thread.
+ * Sets an environment that emits the same radiance from all directions: red, green and blue in cd/m², each finite and
+ * >= 0. It replaces any earlier environment. Any thread.
  */
 luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            float red,
@@ -481,10 +501,11 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            float blue);
 
 /**
- * Surrounds a scene with the light of an equirectangular image, linear, times (red, green, blue), each finite and >= 0:
- * radiance in cd/m², chosen in proportion to its brightness while tracing. The image's centre lies towards -z, its top
- * towards +y, its right quarter towards +x; it is copied, and replaces any environment there was. Any thread.
- * LUXFER_INVALID_ARGUMENT if the image has values that are negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
+ * Sets an environment from an equirectangular image in linear values, multiplied by (red, green, blue), each finite
+ * and >= 0: radiance in cd/m². The renderer samples it in proportion to its brightness. The centre of the image is
+ * towards -z, its top towards +y, the centre of its right half towards +x. The image is copied and replaces any
+ * earlier environment. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
 luxfer_status luxfer_scene_set_environment_image(luxfer_scene *scene,
@@ -494,8 +515,8 @@ luxfer_status luxfer_scene_set_environment_image(luxfer_scene *scene,
                                                  float blue);
 
 /**
- * Sets the emission of a material, which multiplies its emission texture if it has one: red, green and blue in cd/m², each
- * finite and >= 0. Any thread.
+ * Sets the emission of a material: red, green and blue in cd/m², each finite and >= 0. An emission texture of the
+ * material is multiplied by it. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
 luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
@@ -505,17 +526,20 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
                                         float blue);
 
 /**
- * Finds the planar surface, of the object or material of that name, that faces the room; name is UTF-8. Any thread.
- * LUXFER_NOT_FOUND if nothing has that name, the message lists names that exist; LUXFER_DEGENERATE if it has no plane.
+ * Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. Any
+ * thread.
+ * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
+ * there is no planar surface.
  */
 luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
                                         const char *name,
                                         luxfer_surface *found);
 
 /**
- * Lays an emissive texture (linear, 1 or 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
- * finds by name. The surface becomes a mesh of its own, *mesh, with a copy of its material, *material, that emits
- * texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material may be NULL. Any thread.
+ * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
+ * luxfer_scene_find_surface finds by name. The surface becomes a separate mesh, index *mesh, with a copy of its
+ * material, index *material, that emits texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material
+ * may be NULL. Any thread.
  * As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
@@ -530,84 +554,87 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_scene_retain(luxfer_scene *scene);
 
-/** Gives a reference back. Any thread. */
+/** Removes a reference. Any thread. */
 luxfer_status luxfer_scene_release(luxfer_scene *scene);
 
 /* ====================================================================================================================
  * Materials
  *
- * What surfaces are made of, as in glTF 2.0: metallic-roughness, with clear glass, cut-outs, emission, and textures that
- * multiply these. All can be read back and replaced; textures stay with the material when its numbers change.
+ * Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
+ * textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when its
+ * values change.
  * ==================================================================================================================== */
 
-/** What the alpha of a surface means: a LUXFER_ALPHA_ value. */
+/** Meaning of a surface's alpha: a LUXFER_ALPHA_ value. */
 typedef int32_t luxfer_alpha_mode;
 
 /** A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init. */
 typedef struct luxfer_material_params {
     /** sizeof(luxfer_material_params), set by luxfer_material_params_init. */
     uint32_t struct_size;
-    /** Whether back faces reflect and emit as front faces do: 0 or 1, the default. */
+    /** 1, the default: back faces reflect and emit as front faces do; 0: only front faces do. */
     uint32_t double_sided;
-    /** Name in UTF-8, copied; NULL, the default, is none. */
+    /** Name in UTF-8, copied; NULL, the default: no name. */
     const char *name;
-    /** Linear colour of the surface, each in [0, 1]; default 0.8. */
+    /** Linear colour of the surface, each channel in [0, 1]; default 0.8. */
     float base_color[3];
-    /** In [0, 1]; default 0. */
+    /** Share of the surface that is metal, in [0, 1]; default 0. */
     float metallic;
     /** Perceptual roughness in [0, 1]; default 1. */
     float roughness;
     /** Emitted luminance per channel in cd/m², >= 0; default 0. */
     float emission[3];
-    /** Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0. */
+    /**
+     * Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1]; default 0.
+     */
     float transmission;
     /** Index of refraction in [1, 4]; default 1.5. */
     float ior;
-    /** In [0, 1], multiplies the alpha of the base colour's texture; default 1. */
+    /** Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1. */
     float alpha;
     /** LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE. */
     luxfer_alpha_mode alpha_mode;
-    /** For LUXFER_ALPHA_MASK, >= 0; default 0.5. */
+    /** Threshold of alpha for LUXFER_ALPHA_MASK, >= 0; default 0.5. */
     float alpha_cutoff;
-    /** How far the normal texture bends: multiplies its x and y; finite; default 1. */
+    /** Strength of the normal texture: multiplies its x and y; finite; default 1. */
     float normal_scale;
 } luxfer_material_params;
 
-/** How a texture continues beyond its edges: a LUXFER_WRAP_ value. */
+/** Continuation of a texture beyond its edges: a LUXFER_WRAP_ value. */
 typedef int32_t luxfer_wrap;
 
-/** What a material uses a texture for: a LUXFER_TEXTURE_ value. */
+/** Purpose of a material's texture: a LUXFER_TEXTURE_ value. */
 typedef int32_t luxfer_texture_role;
 
-/** A texture as a material uses it. Set struct_size before the call. */
+/** The texture that a material uses for one purpose. Set struct_size before the call. */
 typedef struct luxfer_texture_use {
     /** sizeof(luxfer_texture_use), set by the caller. */
     uint32_t struct_size;
-    /** Index of the texture; LUXFER_NONE if there is none, and what follows is 0. */
+    /** Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0. */
     uint32_t texture;
-    /** Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1. */
+    /** Set of the mesh's texture coordinates that it uses, 0 or 1. */
     uint32_t uv_set;
-    /** LUXFER_WRAP_ value, along u. */
+    /** LUXFER_WRAP_ value along u. */
     luxfer_wrap wrap_u;
-    /** LUXFER_WRAP_ value, along v. */
+    /** LUXFER_WRAP_ value along v. */
     luxfer_wrap wrap_v;
-    /** Two rows of three, applied to (u, v, 1) before the look-up. */
+    /** Affine map of the texture coordinates: two rows of three, applied to (u, v, 1) before the look-up. */
     float transform[6];
 } luxfer_texture_use;
 
-/** Nothing: it is there everywhere. */
+/** The alpha is ignored: the surface is opaque. */
 #define LUXFER_ALPHA_OPAQUE 0
 
-/** It is there where alpha is at least alpha_cutoff. */
+/** The surface is opaque where alpha is at least alpha_cutoff, and absent elsewhere. */
 #define LUXFER_ALPHA_MASK 1
 
-/** That share of light meets it, the rest finds nothing in its way. */
+/** The surface stops the share alpha of the light; the rest passes straight through. */
 #define LUXFER_ALPHA_BLEND 2
 
 /** Multiplies the base colour; its alpha multiplies the material's. */
 #define LUXFER_TEXTURE_BASE_COLOR 0
 
-/** Green multiplies the roughness, blue the metallic share. */
+/** The green channel multiplies the roughness, the blue channel the metallic value. */
 #define LUXFER_TEXTURE_METALLIC_ROUGHNESS 1
 
 /** Normals in tangent space. */
@@ -616,13 +643,13 @@ typedef struct luxfer_texture_use {
 /** Multiplies the emission; looked up without interpolation. */
 #define LUXFER_TEXTURE_EMISSION 3
 
-/** It repeats. */
+/** The texture repeats. */
 #define LUXFER_WRAP_REPEAT 0
 
-/** Its border goes on. */
+/** The texels at the edge continue. */
 #define LUXFER_WRAP_CLAMP 1
 
-/** It repeats, every other one mirrored. */
+/** The texture repeats, mirrored every second time. */
 #define LUXFER_WRAP_MIRROR 2
 
 /**
@@ -632,7 +659,7 @@ luxfer_status luxfer_material_params_init(luxfer_material_params *params,
                                           size_t size);
 
 /**
- * Adds a material; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+ * Adds a material; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
@@ -640,8 +667,8 @@ luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
                                         uint32_t *index);
 
 /**
- * Replaces the numbers of a material; its textures stay, and so does its name if params->name is NULL. params may be NULL
- * for the defaults. To change some of them, read the material first. Any thread.
+ * Replaces the values of a material. It keeps its textures, and its name if params->name is NULL. params may be NULL
+ * for the defaults. To change single values, read the material first. Any thread.
  * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
@@ -649,7 +676,7 @@ luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
                                         const luxfer_material_params *params);
 
 /**
- * Reads a material; set params->struct_size before the call. Its name becomes NULL. Any thread.
+ * Reads a material; set params->struct_size before the call. params->name becomes NULL. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
 luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
@@ -657,9 +684,9 @@ luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
                                         luxfer_material_params *params);
 
 /**
- * Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth alpha; wrap_u and wrap_v are LUXFER_WRAP_
- * values. It is copied. *index, unless NULL, becomes its index. Any thread.
- * LUXFER_INVALID_ARGUMENT if the image has 2 channels or values that are not finite; LUXFER_OUT_OF_MEMORY beyond the
+ * Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth is alpha; wrap_u and wrap_v are
+ * LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the image has 2 channels or a value that is not finite; LUXFER_OUT_OF_MEMORY beyond the
  * memory budget.
  */
 luxfer_status luxfer_scene_add_texture(luxfer_scene *scene,
@@ -669,11 +696,11 @@ luxfer_status luxfer_scene_add_texture(luxfer_scene *scene,
                                        uint32_t *index);
 
 /**
- * Makes a material use a texture for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or LUXFER_NONE for no
- * texture. uv_set is 0 or 1: which of the mesh's sets of texture coordinates. transform is two rows of three, finite,
- * applied to (u, v, 1) before the look-up; NULL changes nothing. Any thread.
- * LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if a
- * texture of emission has negative values.
+ * Sets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or
+ * LUXFER_NONE for no texture. uv_set, 0 or 1, chooses the mesh's set of texture coordinates. transform is two rows of
+ * three, finite, applied to (u, v, 1) before the look-up; NULL is the identity. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if an
+ * emission texture has negative values.
  */
 luxfer_status luxfer_scene_set_material_texture(luxfer_scene *scene,
                                                 uint32_t material,
@@ -683,7 +710,7 @@ luxfer_status luxfer_scene_set_material_texture(luxfer_scene *scene,
                                                 const float *transform);
 
 /**
- * Tells which texture a material uses for a purpose, and how; role is a LUXFER_TEXTURE_ value. Any thread.
+ * Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread.
  * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
  */
 luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
@@ -692,7 +719,7 @@ luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
                                                 luxfer_texture_use *texture_use);
 
 /**
- * Gets a texture as an image, linear. The caller releases *image. Any thread.
+ * Gets a texture as an image in linear values. The caller releases *image. Any thread.
  * LUXFER_NOT_FOUND if there is no such texture.
  */
 luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxfer_image **image);
@@ -700,37 +727,40 @@ luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxf
 /* ====================================================================================================================
  * Scene description
  *
- * Scenes can be described by the host's own arrays: materials first, then the meshes that use them, then cameras. Arrays
- * are copied during the call, from any alignment and with any stride.
+ * Describes a scene by arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
+ * copy the arrays, which may have any alignment and stride.
  * ==================================================================================================================== */
 
 /** A triangle mesh in world space. Fill it with luxfer_mesh_params_init. */
 typedef struct luxfer_mesh_params {
     /** sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init. */
     uint32_t struct_size;
-    /** Index of its material, as luxfer_scene_add_material has returned it; default 0. */
+    /** Index of the mesh's material, from luxfer_scene_add_material; default 0. */
     uint32_t material;
-    /** Name in UTF-8, copied; surfaces are found by it. NULL, the default, is none. */
+    /** Name in UTF-8, copied; luxfer_scene_find_surface finds surfaces by it. NULL, the default: no name. */
     const char *name;
     /** Number of vertices in [3, 2^32 - 1]; to be set. */
     size_t vertex_count;
-    /** Three floats for each vertex, in metres, in [-1e15, 1e15]; to be set. */
+    /** Three floats per vertex, in metres, each in [-1e15, 1e15]; to be set. */
     const void *positions;
-    /** Bytes from a position to the next; at least 12, or 0, the default: packed. */
+    /** Bytes from one position to the next; at least 12, or 0, the default: packed. */
     size_t position_stride;
-    /** Three floats for each vertex, finite; NULL, the default: faces are flat. */
+    /** Three floats per vertex, finite; NULL, the default: flat faces. */
     const void *normals;
-    /** Bytes from a normal to the next; at least 12, or 0, the default: packed. */
+    /** Bytes from one normal to the next; at least 12, or 0, the default: packed. */
     size_t normal_stride;
-    /** Two floats for each vertex, finite, (0, 0) the top-left corner of a texture; NULL, the default: none. */
+    /**
+     * Texture coordinates: two floats per vertex, finite; (0, 0) is the top-left corner of a texture. NULL, the
+     * default: no texture coordinates.
+     */
     const void *uvs;
-    /** Bytes from a pair of texture coordinates to the next; at least 8, or 0, the default: packed. */
+    /** Bytes from one pair of texture coordinates to the next; at least 8, or 0, the default: packed. */
     size_t uv_stride;
     /** Number of triangles, at least 1; to be set. */
     size_t triangle_count;
-    /** Three uint32_t for each triangle, each below vertex_count, counter-clockwise seen from the front; to be set. */
+    /** Three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the front; to be set. */
     const void *indices;
-    /** Bytes from a triangle to the next; at least 12, or 0, the default: packed. */
+    /** Bytes from one triangle to the next; at least 12, or 0, the default: packed. */
     size_t index_stride;
 } luxfer_mesh_params;
 
@@ -740,11 +770,11 @@ typedef struct luxfer_camera_params {
     uint32_t struct_size;
     /** Full vertical angle of view in radians, in [0.001, 3.1]; default 1. */
     float fov_y;
-    /** Where it stands, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    /** Position in metres, in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
-    /** What it looks at, another point, in [-1e15, 1e15]; default (0, 0, -1). */
+    /** The point that it looks at, in metres, in [-1e15, 1e15], different from position; default (0, 0, -1). */
     float target[3];
-    /** Direction that is up in the image, not along the view; default (0, 1, 0). */
+    /** Up direction of the image, not parallel to the viewing direction; default (0, 1, 0). */
     float up[3];
     /** Must be 0. */
     uint32_t reserved;
@@ -763,16 +793,16 @@ luxfer_status luxfer_camera_params_init(luxfer_camera_params *params,
                                         size_t size);
 
 /**
- * Adds a mesh, copying its arrays; *index, unless NULL, becomes its index. Any thread.
- * LUXFER_INVALID_ARGUMENT if an array is missing, a stride too small, a number not finite or an index out of range;
- * LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * Adds a mesh and copies its arrays; *index, unless NULL, receives its index. Any thread.
+ * LUXFER_INVALID_ARGUMENT if an array is missing, a stride is too small, a number is not finite or an index is out of
+ * range; LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_scene_add_mesh(luxfer_scene *scene,
                                     const luxfer_mesh_params *params,
                                     uint32_t *index);
 
 /**
- * Adds a camera; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+ * Adds a camera; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
@@ -798,8 +828,8 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
 /* ====================================================================================================================
  * Luminous intensity distributions
  *
- * What a luminaire sends out in which direction, from and to IES (LM-63) and EULUMDAT files. These calls return when they
- * are done.
+ * The luminous intensity of a luminaire by direction, read from and written to IES (LM-63) and EULUMDAT files. These
+ * calls return when their work is done.
  * ==================================================================================================================== */
 
 /** A luminous intensity distribution. See luxfer_distribution_load. */
@@ -808,21 +838,21 @@ typedef struct luxfer_distribution luxfer_distribution;
 /** A file format of distributions: a LUXFER_DISTRIBUTION_ value. */
 typedef int32_t luxfer_distribution_format;
 
-/** A distribution on the whole. Set struct_size before the call. */
+/** Summary of a distribution. Set struct_size before the call. */
 typedef struct luxfer_distribution_report {
     /** sizeof(luxfer_distribution_report), set by the caller. */
     uint32_t struct_size;
-    /** C planes. */
+    /** Number of C planes. */
     uint32_t planes;
-    /** Vertical angles of each plane. */
+    /** Number of vertical angles in each plane. */
     uint32_t angles;
     /** 0. */
     uint32_t reserved;
-    /** Luminous flux in lumens: the intensity over all directions. */
+    /** Luminous flux in lumens: the integral of the intensity over all directions. */
     double flux;
-    /** Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry). */
+    /** Rated flux of the lamps in lumens; 0 if the file does not state it (absolute photometry). */
     double lamp_flux;
-    /** Electric power in watts; 0 if not known. */
+    /** Electric power in watts; 0 if unknown. */
     double watts;
     /** Length, width and height of the luminous opening in metres; negative for round ones. */
     double size[3];
@@ -836,15 +866,15 @@ typedef struct luxfer_distribution_report {
 
 /**
  * Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT, with the line, if it is malformed, LUXFER_UNSUPPORTED for types A and
- * B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is malformed: the message names the line,
+ * LUXFER_UNSUPPORTED for types A and B of IES, LUXFER_INVALID_ARGUMENT for another extension.
  */
 luxfer_status luxfer_distribution_load(luxfer_context *context,
                                        const char *path,
                                        luxfer_distribution **distribution);
 
 /**
- * Loads from the size bytes of a file held in memory; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
+ * Loads a distribution from a file in memory of size bytes; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
  * luxfer_distribution_load.
  */
 luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
@@ -854,19 +884,20 @@ luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
                                               luxfer_distribution **distribution);
 
 /**
- * Saves to an .ies or .ldt file; path is UTF-8. An existing file is replaced only by a complete one. Any thread.
+ * Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
+ * complete. Any thread.
  * LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
                                        const char *path);
 
-/** Tells the distribution on the whole. Any thread. */
+/** Gets the summary of a distribution. Any thread. */
 luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
                                              luxfer_distribution_report *report);
 
 /**
- * Copies the luminaire's name, zero-terminated, into buffer of capacity bytes, cut if it is longer. *needed, unless NULL,
- * receives the capacity for all of it. Any thread.
+ * Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
+ * receives the capacity that the whole name needs. Any thread.
  */
 luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
                                            char *buffer,
@@ -874,8 +905,8 @@ luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
                                            size_t *needed);
 
 /**
- * Tells the luminous intensity in candela in a direction, in degrees: c around the axis, gamma from straight down at 0 to
- * straight up at 180. Any thread.
+ * Gets the luminous intensity in candela in a direction. Angles are in degrees: c turns around the axis, gamma goes
+ * from straight down at 0 to straight up at 180. Any thread.
  */
 luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
                                                 double c,
@@ -885,70 +916,73 @@ luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distributio
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_distribution_retain(luxfer_distribution *distribution);
 
-/** Gives a reference back. Any thread. */
+/** Removes a reference. Any thread. */
 luxfer_status luxfer_distribution_release(luxfer_distribution *distribution);
 
 /* ====================================================================================================================
  * Lights of a scene
  *
- * Lights without a surface: points, spots, the parallel light of something far away, and luminaires that were measured.
- * Lights with a surface are materials that emit.
+ * Punctual lights: points, spots, directional lights (parallel light from far away) and luminaires with a measured
+ * intensity distribution. Area lights are surfaces whose material emits.
  * ==================================================================================================================== */
 
 /** A kind of light: a LUXFER_LIGHT_ value. */
 typedef int32_t luxfer_light_kind;
 
-/** A light without a surface. Fill it with luxfer_light_params_init. */
+/** A punctual light. Fill it with luxfer_light_params_init. */
 typedef struct luxfer_light_params {
     /** sizeof(luxfer_light_params), set by luxfer_light_params_init. */
     uint32_t struct_size;
     /** LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT. */
     luxfer_light_kind kind;
-    /** Where a point or a spot stands, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    /** Position of a point or a spot, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
-    /** Where a spot or a directional light shines; any length but 0; default (0, -1, 0). */
+    /** Direction in which a spot or a directional light shines; any length but 0; default (0, -1, 0). */
     float direction[3];
     /**
-     * Luminous intensity per channel in cd, on the axis of a spot; of a directional light the illuminance in lux on a
-     * surface that faces it. Each >= 0; default (1, 1, 1).
+     * Luminous intensity per channel in cd, of a spot on its axis; for a directional light, the illuminance in lux on
+     * a surface that faces it. Each channel >= 0; default (1, 1, 1).
      */
     float intensity[3];
-    /** Half the angle of a spot's cone of full intensity, in radians, in [0, outer_angle]; default 0. */
+    /** Half angle of the cone in which a spot has its full intensity, in radians, in [0, outer_angle]; default 0. */
     float inner_angle;
-    /** Half the angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4. */
+    /** Half angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4. */
     float outer_angle;
     /** Must be 0. */
     uint32_t reserved;
 } luxfer_light_params;
 
-/** How a luminaire hangs. Fill it with luxfer_luminaire_params_init. */
+/** Flux, position, orientation and colour of a luminaire. Fill it with luxfer_luminaire_params_init. */
 typedef struct luxfer_luminaire_params {
     /** sizeof(luxfer_luminaire_params), set by luxfer_luminaire_params_init. */
     uint32_t struct_size;
     /** Must be 0. */
     uint32_t reserved;
-    /** Luminous flux in lumens, finite and >= 0; default 0: that of the distribution. */
+    /** Luminous flux in lumens, finite and >= 0; default 0: the flux of the distribution. */
     double flux;
-    /** Where it hangs, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    /** Position in metres, in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
-    /** The direction of its axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
+    /** Direction of the axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
     float axis[3];
     /**
-     * About where C is 0: what of it is at right angles to the axis counts, which must not be 0; default (1, 0, 0). C grows
-     * anticlockwise as seen from above a luminaire that shines down.
+     * Direction of the plane C = 0. Only its component perpendicular to axis counts, which must not be 0; default (1,
+     * 0, 0). Seen from above a luminaire that shines down, C grows anticlockwise.
      */
     float c0[3];
-    /** Linear colour of its light, each >= 0 and not all 0; its brightness does not count; default (1, 1, 1). */
+    /**
+     * Linear colour of the light, each channel >= 0 and not all 0; only the ratio of the channels counts; default (1,
+     * 1, 1).
+     */
     float colour[3];
 } luxfer_luminaire_params;
 
-/** Shines the same in every direction. */
+/** A point light: equal intensity in every direction. */
 #define LUXFER_LIGHT_POINT 0
 
-/** Shines in a cone. */
+/** A spot light: shines into a cone. */
 #define LUXFER_LIGHT_SPOT 1
 
-/** Shines from infinitely far away. */
+/** A directional light: shines from infinitely far away. */
 #define LUXFER_LIGHT_DIRECTIONAL 2
 
 /**
@@ -958,7 +992,7 @@ luxfer_status luxfer_light_params_init(luxfer_light_params *params,
                                        size_t size);
 
 /**
- * Adds a light; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+ * Adds a light; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
@@ -972,9 +1006,9 @@ luxfer_status luxfer_luminaire_params_init(luxfer_luminaire_params *params,
                                            size_t size);
 
 /**
- * Adds a luminaire: a light at a point, as strong in each direction as a distribution says; *index, unless NULL, becomes its
- * index among the lights. A luminaire must be small beside how far it is from what it lights: a fifth of that at most. params
- * may be NULL for the defaults. Any thread.
+ * Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
+ * index among the lights. It is a good model only if the luminaire is at most a fifth as large as its distance from
+ * the surfaces that it lights. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
@@ -985,23 +1019,24 @@ luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene queries
  *
- * What the library itself sees in a scene: the nearest hits of rays. These calls return when they are done.
+ * Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls return
+ * when their work is done.
  * ==================================================================================================================== */
 
-/** No mesh, no texture. */
+/** No index: no mesh, no triangle, no texture. */
 #define LUXFER_NONE 4294967295
 
-/** A half-line. An element of arrays, so it will never change. */
+/** A ray. An element of arrays, so this struct never changes. */
 typedef struct luxfer_ray {
-    /** Where it starts, in metres. */
+    /** Start of the ray, in metres. */
     float origin[3];
-    /** Where it goes; need not be of unit length, but not 0. */
+    /** Direction; any length but 0. */
     float direction[3];
     /** Hits lie at distances in (0, t_max), in units of direction; may be infinite. */
     float t_max;
 } luxfer_ray;
 
-/** Where a ray meets a scene. An element of arrays, so it will never change. */
+/** The nearest hit of a ray. An element of arrays, so this struct never changes. */
 typedef struct luxfer_hit {
     /** Distance in units of the ray's direction; infinite for a miss. */
     float t;
@@ -1016,10 +1051,10 @@ typedef struct luxfer_hit {
 } luxfer_hit;
 
 /**
- * Finds the nearest hits of count rays, all surfaces taken as opaque and two-sided; equal distances are decided by the
- * lower mesh and triangle. Rays that are not finite or have no direction hit nothing. The first call after a change of the
- * scene, and after it was loaded, makes it ready for tracing. Any thread.
- * LUXFER_INVALID_ARGUMENT if the scene is not valid, the message tells where.
+ * Finds the nearest hits of count rays; all surfaces count as opaque and two-sided. Of hits at equal distance, the hit
+ * with the lower index of mesh, then of triangle, is returned. Rays that are not finite or whose direction is 0 hit
+ * nothing. The first call after a scene is loaded or changed prepares it for tracing, which takes longer. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the place.
  */
 luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
                                      const luxfer_ray *rays,
@@ -1029,71 +1064,74 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene requirements
  *
- * What the renderer finds out about a scene before the first ray: which ways of scattering and which lights can occur, and
- * how much light a bounce can leave. What cannot occur is left out of tracing, which changes no image. Nothing here has to
- * be called: it tells what is done anyway.
+ * The renderer analyses a scene before the first ray: which kinds of scattering and which lights can occur, and how
+ * much light can remain after a bounce. It skips the code for everything that cannot occur, which does not change any
+ * image. You need not call these functions: they only report what the renderer does by itself.
  * ==================================================================================================================== */
 
-/** Some surface scatters diffusely. */
+/** At least one surface scatters diffusely. */
 #define LUXFER_SCATTERING_DIFFUSE 1
 
-/** Some surface has a rough reflecting layer. */
+/** At least one surface has a rough specular reflection. */
 #define LUXFER_SCATTERING_GLOSSY 2
 
-/** Some surface reflects as a mirror. */
+/** At least one surface is a mirror. */
 #define LUXFER_SCATTERING_MIRROR 4
 
-/** Some surface is a clear pane. */
+/** At least one surface is a clear pane of glass. */
 #define LUXFER_SCATTERING_GLASS 8
 
-/** Some surface is partly not there. */
+/** At least one surface is partly transparent by its alpha. */
 #define LUXFER_SCATTERING_ALPHA 16
 
-/** Some surface emits. */
+/** At least one surface emits. */
 #define LUXFER_LIGHTS_SURFACE 1
 
-/** Some surface emits by a texture. */
+/** At least one surface emits by a texture. */
 #define LUXFER_LIGHTS_TEXTURE 2
 
-/** There is a point light that shines. */
+/** At least one point light has an intensity above 0. */
 #define LUXFER_LIGHTS_POINT 4
 
-/** There is a spot light that shines. */
+/** At least one spot light has an intensity above 0. */
 #define LUXFER_LIGHTS_SPOT 8
 
-/** There is a directional light that shines. */
+/** At least one directional light has an illuminance above 0. */
 #define LUXFER_LIGHTS_DIRECTIONAL 16
 
-/** The environment shines. */
+/** The environment emits. */
 #define LUXFER_LIGHTS_ENVIRONMENT 32
 
-/** What a scene requires of the renderer. Set struct_size before the call. */
+/** Features that a scene requires of the renderer. Set struct_size before the call. */
 typedef struct luxfer_requirements {
     /** sizeof(luxfer_requirements), set by the caller. */
     uint32_t struct_size;
-    /** Ways of scattering that can occur: LUXFER_SCATTERING_ flags. */
+    /** Kinds of scattering that can occur: LUXFER_SCATTERING_ flags. */
     uint32_t scattering;
-    /** Lights that can shine: LUXFER_LIGHTS_ flags. */
+    /** Kinds of lights that emit: LUXFER_LIGHTS_ flags. */
     uint32_t lights;
-    /** Textures that vary what surfaces scatter, emit, or how they are bent. */
+    /** Number of textures that change the scattering, the emission or the normals of surfaces. */
     uint32_t textures;
     /**
-     * How many times light can scatter and still matter: light that was scattered more often is at most the share error,
-     * given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Rendering ends paths there only if
-     * luxfer_render_params.bounce_error asks for it.
+     * Number of bounces that matter: light that is scattered more often is at most the share error, given in the call,
+     * of all light that surfaces scatter. 0 if the albedos give no bound. The renderer ends paths there only if
+     * luxfer_render_params.bounce_error is set.
      */
     uint32_t bounces;
-    /** Index of the material that sends on most of the light it receives; LUXFER_NONE if there are no surfaces. */
+    /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */
     uint32_t brightest_material;
-    /** The most that any surface sends on, per channel, in [0, 1]. */
+    /**
+     * Largest albedo of any surface, per channel, in [0, 1]: the share of the received light that it reflects and
+     * transmits.
+     */
     float albedo[3];
-    /** Triangles without an area, which are left out. */
+    /** Number of triangles with zero area, which are skipped. */
     uint32_t flat_triangles;
 } luxfer_requirements;
 
 /**
- * Tells what a scene requires of the renderer; error, in [0, 1), is the share of light for *requirements' bounces. The
- * first call after a change of the scene makes it ready for tracing. Any thread.
+ * Gets the features that a scene requires of the renderer; error, in [0, 1), is the share of light for the field
+ * bounces. The first call after a change of the scene prepares it for tracing. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
  */
 luxfer_status luxfer_scene_requirements(luxfer_scene *scene,
@@ -1101,9 +1139,9 @@ luxfer_status luxfer_scene_requirements(luxfer_scene *scene,
                                         luxfer_requirements *requirements);
 
 /**
- * Tells in words what rendering a scene leaves out: one sentence per line, as UTF-8 that ends with a zero, cut if it does
- * not fit into capacity bytes. *needed, unless NULL, becomes the capacity for all of it. buffer may be NULL if capacity is
- * 0. Any thread.
+ * Describes in words what the renderer skips in a scene: one sentence per line, as zero-terminated UTF-8, truncated to
+ * capacity bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
+ * capacity is 0. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
 luxfer_status luxfer_scene_requirements_text(luxfer_scene *scene,
@@ -1114,34 +1152,34 @@ luxfer_status luxfer_scene_requirements_text(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene read-back
  *
- * The meshes a scene holds, element by element. Together with the counts of luxfer_scene_get_counts, and with its
- * materials, textures and cameras, a host can copy a whole scene.
+ * Reads the meshes of a scene. With luxfer_scene_get_counts and the functions that read materials, textures and
+ * cameras, a host can copy a whole scene.
  * ==================================================================================================================== */
 
 /** A mesh of a scene. Set struct_size before the call. */
 typedef struct luxfer_mesh_info {
     /** sizeof(luxfer_mesh_info), set by the caller. */
     uint32_t struct_size;
-    /** Index of its material. */
+    /** Index of the mesh's material. */
     uint32_t material;
     /** Number of vertices. */
     size_t vertex_count;
     /** Number of triangles. */
     size_t triangle_count;
-    /** 1 if it has a normal for each vertex, 0 if its faces are flat. */
+    /** 1 if each vertex has a normal, 0 if the faces are flat. */
     uint32_t has_normals;
-    /** Sum of 1 if it has the first set of texture coordinates and 2 if it has the second. */
+    /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second. */
     uint32_t uv_sets;
 } luxfer_mesh_info;
 
 /**
- * Tells what a mesh has. Any thread.
+ * Gets the sizes and attributes of a mesh. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh.
  */
 luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene, uint32_t index, luxfer_mesh_info *info);
 
 /**
- * Copies the name of a mesh into buffer, as luxfer_context_last_error does a message. Any thread.
+ * Copies the name of a mesh into buffer, as luxfer_context_last_error copies a message. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh.
  */
 luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
@@ -1151,10 +1189,11 @@ luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
                                          size_t *needed);
 
 /**
- * Copies a mesh into the caller's packed arrays, of which any may be NULL: positions and normals, three floats for each
- * vertex, and indices, three for each triangle. The capacities are in vertices and triangles. Any thread.
- * LUXFER_NOT_FOUND if there is no such mesh, or it has no normals where they are asked for; LUXFER_INVALID_ARGUMENT if a
- * capacity is too small.
+ * Copies a mesh into packed arrays of the caller: positions and normals with three floats per vertex, and indices with
+ * three per triangle. Any of the arrays may be NULL. The capacities are numbers of vertices and of triangles. Any
+ * thread.
+ * LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none; LUXFER_INVALID_ARGUMENT if
+ * a capacity is too small.
  */
 luxfer_status luxfer_scene_read_mesh(luxfer_scene *scene,
                                      uint32_t index,
@@ -1165,9 +1204,10 @@ luxfer_status luxfer_scene_read_mesh(luxfer_scene *scene,
                                      uint32_t *indices);
 
 /**
- * Copies a set of texture coordinates, 0 or 1, into the caller's packed array of two floats for each vertex; capacity is
- * in vertices. Any thread.
- * LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+ * Copies set uv_set, 0 or 1, of a mesh's texture coordinates into a packed array of the caller, two floats per vertex;
+ * capacity is a number of vertices. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too
+ * small.
  */
 luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
                                          uint32_t index,
@@ -1178,14 +1218,15 @@ luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
 /* ====================================================================================================================
  * Plane geometry
  *
- * Maps between two views of a plane, as 3 x 3 matrices of homogeneous points, row by row. Points are in pixels, x right,
- * y down, the top-left pixel's centre at (0.5, 0.5). These calls return when they are done.
+ * Homographies: maps between two views of a plane, as 3 x 3 matrices of homogeneous points in row-major order. Points
+ * are in pixels, x to the right, y down; the centre of the top-left pixel is (0.5, 0.5). These calls return when their
+ * work is done.
  * ==================================================================================================================== */
 
 /**
- * Finds the map that takes four points to four points: from and to hold x and y of each, homography receives its nine
- * entries, of unit Frobenius norm. Any thread.
- * LUXFER_DEGENERATE if three of the points lie on one line, coincide or are not finite.
+ * Computes the homography that maps four points to four points: from and to hold x and y of each point, homography
+ * receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
+ * LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
  */
 luxfer_status luxfer_homography_from_corners(luxfer_context *context,
                                              const double *from,
@@ -1193,10 +1234,12 @@ luxfer_status luxfer_homography_from_corners(luxfer_context *context,
                                              double *homography);
 
 /**
- * Makes an image of width x height pixels, each in [1, 65536], whose pixel at p is that of the source at to_source(p), nine
- * entries; 0 where that is outside the source. Interpolated where the source is magnified, averaged over the pixel's
- * footprint where it is minified. Takes some milliseconds for each megapixel. The caller releases *warped. Any thread.
- * LUXFER_INVALID_ARGUMENT if an entry is not finite or a size out of range; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]: the pixel at p takes
+ * the value of the source at to_source(p), where to_source holds the nine entries of the matrix. Pixels outside the
+ * source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint where it
+ * is minified. Takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
+ * LUXFER_INVALID_ARGUMENT if an entry is not finite or a size is out of range; LUXFER_OUT_OF_MEMORY beyond the memory
+ * budget.
  */
 luxfer_status luxfer_image_warp(luxfer_image *source,
                                 const double *to_source,
@@ -1207,21 +1250,21 @@ luxfer_status luxfer_image_warp(luxfer_image *source,
 /* ====================================================================================================================
  * Rectification
  *
- * From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
- * seen straight on. Image points are in pixels, x right, y down, the top-left pixel's centre at (0.5, 0.5). Room axes 0 and
- * 2 are horizontal, axis 1 is vertical; camera space is x right, y down, z forward.
+ * Finds vanishing points and the camera from the straight lines of a photo and, if a mask marks a plane, unwarps that
+ * plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel is
+ * (0.5, 0.5). Room axes 0 and 2 are horizontal, axis 1 is vertical; camera space is x to the right, y down, z forward.
  * ==================================================================================================================== */
 
 /** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
 typedef struct luxfer_rectify luxfer_rectify;
 
-/** How lines are found: a LUXFER_LINES_ value. */
+/** Detector of lines: a LUXFER_LINES_ value. */
 typedef int32_t luxfer_lines;
 
-/** How vanishing points are found: a LUXFER_SEARCH_ value. */
+/** Search for vanishing points: a LUXFER_SEARCH_ value. */
 typedef int32_t luxfer_search;
 
-/** How far a vanishing point is from a line, in LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
+/** Distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
 typedef int32_t luxfer_metric;
 
 /** Settings of a rectification. Fill them with luxfer_rectify_params_init. */
@@ -1235,23 +1278,29 @@ typedef struct luxfer_rectify_params {
     /** LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
     luxfer_metric metric;
     /**
-     * Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2]; default
-     * 0.0436, which is 2.5 degrees.
+     * Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2], for
+     * LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
      */
     double hough_band;
-    /** Focal length in pixels, > 0, or 0, the default: unknown. */
+    /** Focal length in pixels, > 0; 0, the default: unknown. */
     double focal;
     /** Principal point in pixels; NaN, the default: the image's centre. */
     double principal[2];
-    /** The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it. */
+    /**
+     * The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the plane.
+     */
     int32_t plane_axes[2];
     /**
-     * Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density decides below.
+     * Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
+     * resolution of the photo does not support this size.
      */
     uint32_t max_side;
     /** Must be 0. */
     uint32_t reserved;
-    /** Largest magnification of the photo, > 0; default 16. What is further away is cut off. */
+    /**
+     * Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are cut
+     * off.
+     */
     double max_magnification;
     /** Seed of the search; default 1. */
     uint64_t seed;
@@ -1263,17 +1312,20 @@ typedef int32_t luxfer_rectify_image;
 /** Where a focal length came from: a LUXFER_FOCAL_ value. */
 typedef int32_t luxfer_focal_source;
 
-/** What the lines of a photo say about its camera, and how the plane was unwarped. Set struct_size before the call. */
+/** The camera found from the lines of a photo, and the unwarping of the plane. Set struct_size before the call. */
 typedef struct luxfer_rectify_report {
     /** sizeof(luxfer_rectify_report), set by the caller. */
     uint32_t struct_size;
     /** Number of line segments found. */
     uint32_t segments;
-    /** Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at infinity. */
+    /**
+     * Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0 at
+     * infinity.
+     */
     double vanishing_points[3][3];
-    /** Standard deviation of their directions in camera space, in radians. */
+    /** Standard deviations of their directions in camera space, in radians. */
     double vanishing_errors[3];
-    /** Number of segments that agree with each; 0 = derived from the other two. */
+    /** Number of segments that agree with each vanishing point; 0: derived from the other two. */
     uint32_t vanishing_support[3];
     /** LUXFER_FOCAL_ value. */
     luxfer_focal_source focal_source;
@@ -1283,66 +1335,66 @@ typedef struct luxfer_rectify_report {
     double principal[2];
     /** Room axes as unit vectors in camera space. */
     double axes[3][3];
-    /** 1 if the plane has been unwarped, else 0, and what follows is 0. */
+    /** 1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0. */
     uint32_t is_unwarped;
     /** Must be 0. */
     uint32_t reserved;
-    /** The map from unwarped pixels to photo pixels, row by row. */
+    /** Homography from unwarped pixels to photo pixels, row by row. */
     double to_photo[9];
-    /** Corners of the unwarped rectangle in the photo, x and y. */
+    /** Corners of the unwarped rectangle in the photo, x and y in pixels. */
     double corners[4][2];
     /** Expected error of each corner, in unwarped pixels. */
     double corner_errors[4];
-    /** Size of an unwarped pixel as a share of the camera's distance from the plane. */
+    /** Size of an unwarped pixel, divided by the camera's distance from the plane. */
     double pixel_size;
-    /** Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed. */
+    /** Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed. */
     double aspect_confidence;
     /**
-     * How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance from its centre:
-     * below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent, and not undone. NaN where the
-     * photo has too few lines to tell.
+     * Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
+     * below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of straight edges,
+     * and not corrected. NaN if the photo has too few lines.
      */
     double distortion;
-    /** Its standard deviation; NaN where it is. */
+    /** Standard deviation of distortion; NaN if distortion is NaN. */
     double distortion_error;
     /**
-     * For each axis how far the angle between the two others is from a right one, in radians, by the lines of these two alone:
-     * walls that meet at other angles, pixels that are not square and a principal point elsewhere show here. The axes are made
-     * orthogonal all the same. NaN where an axis has no lines.
+     * For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
+     * estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point show
+     * here; axes is orthogonal in any case. NaN if one of the two axes has no lines.
      */
     double squareness[3];
-    /** Standard deviation of each; NaN where it is. */
+    /** Standard deviations of squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
 } luxfer_rectify_report;
 
-/** Regions of like gradient direction, with sub-pixel end points. */
+/** Segments from regions of similar gradient direction, with sub-pixel end points. */
 #define LUXFER_LINES_REGIONS 0
 
-/** The paper's: gradient-restricted Hough transform of Canny edges. */
+/** The paper's method: gradient-restricted Hough transform of Canny edges. */
 #define LUXFER_LINES_HOUGH 1
 
-/** Three orthogonal directions and the focal length at once, then each refined freely. */
+/** Searches three orthogonal directions and the focal length together, then refines each direction freely. */
 #define LUXFER_SEARCH_MANHATTAN 0
 
-/** The paper's: one group of lines after the other. */
+/** The paper's method: one group of lines after the other. */
 #define LUXFER_SEARCH_SUCCESSIVE 1
 
-/** The paper's measure on the segment that was detected, finite for vanishing points at infinity. */
+/** The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity. */
 #define LUXFER_METRIC_SEGMENT 0
 
-/** As printed in the paper (Eq. 2), on the whole visible line. */
+/** The measure as printed in the paper (Eq. 2), evaluated on the whole visible line. */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
-/** The caller gave it. */
+/** Set by the caller. */
 #define LUXFER_FOCAL_GIVEN 0
 
-/** From vanishing points of orthogonal directions. */
+/** Estimated from vanishing points of orthogonal directions. */
 #define LUXFER_FOCAL_FROM_VANISHING_POINTS 1
 
-/** A guess, 0.85 of the image's width. */
+/** Assumed: 0.85 times the width of the photo. */
 #define LUXFER_FOCAL_ASSUMED 2
 
-/** The plane seen straight on, linear RGB. */
+/** The plane in frontal view, linear RGB. */
 #define LUXFER_RECTIFY_UNWARPED 0
 
 /** 1 where the photo shows the plane, else 0; 1 channel. */
@@ -1361,17 +1413,19 @@ luxfer_status luxfer_rectify_create(luxfer_context *context, luxfer_rectify **re
 luxfer_status luxfer_rectify_set_photo(luxfer_rectify *rectify, luxfer_image *photo);
 
 /**
- * Sets the mask of the plane to unwarp, 1 on it and 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then only
- * lines and vanishing points are found. Any thread.
+ * Sets the mask of the plane to unwarp: 1 on it, 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then the
+ * job finds only lines and vanishing points. Any thread.
  */
 luxfer_status luxfer_rectify_set_mask(luxfer_rectify *rectify,
                                       luxfer_image *mask);
 
 /**
- * Starts a job that finds lines, vanishing points and the camera, unless the same photo's are known from before, and
- * unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if there
- * are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * Starts a job that finds lines, vanishing points and the camera, unless they are known for this photo from an earlier
+ * job, and unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any
+ * thread.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
+ * there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
+ * range.
  */
 luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
                                    const luxfer_rectify_params *params,
@@ -1386,9 +1440,9 @@ luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
                                        luxfer_image **image);
 
 /**
- * Unwarps another image of the photo's size, such as the confidence of the lights, as the plane was; outside the photo it
- * becomes 0. Returns when it is done, which takes some milliseconds for each megapixel. The caller releases *warped. Any
- * thread.
+ * Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
+ * pixels outside the photo become 0. Returns when its work is done, after a few milliseconds per megapixel. The caller
+ * releases *warped. Any thread.
  * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
  */
 luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
@@ -1396,7 +1450,7 @@ luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
                                   luxfer_image **warped);
 
 /**
- * Tells what was found and how sure it is. Any thread.
+ * Gets the results and their errors. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
@@ -1404,15 +1458,16 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_rectify_retain(luxfer_rectify *rectify);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
 
 /* ====================================================================================================================
  * Features
  *
- * What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
- * normal x, y, z. Depth comes from the caller, or from a network that the caller has as an ONNX file, or is laid out as a
- * room from the lines that luxfer_rectify has found and strokes on one of its planes, or is a neutral guess.
+ * Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
+ * position x, y, z and normal x, y, z. The depth is a depth map of the caller, or that of a network in an ONNX file of
+ * the caller, or that of a box-shaped room fitted to the lines of a luxfer_rectify and to strokes on one of its
+ * planes, or a neutral guess.
  * ==================================================================================================================== */
 
 /** The features of a photo. See luxfer_features_create. */
@@ -1426,33 +1481,37 @@ typedef struct luxfer_features_params {
     float near_plane;
     /** Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10. */
     float far_plane;
-    /** Half-width of the window the normals are fitted in, in pixels, in [0, 64]; default 0: from the photo's size. */
+    /**
+     * Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the photo's
+     * size.
+     */
     uint32_t normal_radius;
 } luxfer_features_params;
 
-/** What a depth map measures: a LUXFER_DEPTH_ value. */
+/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
 typedef int32_t luxfer_depth_kind;
 
-/**
- * What the colours of a photo become before a network sees them: a LUXFER_NORMALISATION_ value. The file does not say it.
- */
+/** Normalisation of the photo's colours for a network, which its file does not state: a LUXFER_NORMALISATION_ value. */
 typedef int32_t luxfer_normalisation;
 
 /** An image of the features: a LUXFER_FEATURES_ value. */
 typedef int32_t luxfer_features_image;
 
-/** Where the depth came from: a LUXFER_DEPTH_FROM_ value. */
+/** Source of the depth: a LUXFER_DEPTH_FROM_ value. */
 typedef int32_t luxfer_depth_source;
 
-/** How good the features are. Set struct_size before the call. */
+/** Quality of the features. Set struct_size before the call. */
 typedef struct luxfer_features_report {
     /** sizeof(luxfer_features_report), set by the caller. */
     uint32_t struct_size;
     /** LUXFER_DEPTH_FROM_ value. */
     luxfer_depth_source depth_source;
-    /** Mean trust in the depth, in [0, 1]. */
+    /** Mean confidence of the depth, in [0, 1]. */
     double depth_confidence;
-    /** Pixels of the photo that were NaN, infinite or negative and have been replaced from their neighbours. */
+    /**
+     * Number of pixels of the photo that were NaN, infinite or negative and were replaced by values of their
+     * neighbours.
+     */
     uint64_t replaced_pixels;
 } luxfer_features_report;
 
@@ -1462,37 +1521,40 @@ typedef struct luxfer_features_report {
 /** Distance along the ray of each pixel. */
 #define LUXFER_DEPTH_ALONG_RAY 1
 
-/** The ten channels; luxfer_image_read takes them apart. */
+/** The ten channels; luxfer_image_read reads some of them. */
 #define LUXFER_FEATURES_CHANNELS 0
 
-/** Trust in the depth of each pixel, in [0, 1]; 1 channel. */
+/** Confidence of the depth of each pixel, in [0, 1]; 1 channel. */
 #define LUXFER_FEATURES_DEPTH_CONFIDENCE 1
 
 /**
- * The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as the depth map of a
- * further run, or of luxfer_transfer, without running the network again.
+ * The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the depth map of
+ * later jobs, or of a luxfer_transfer, to avoid running the network again.
  */
 #define LUXFER_FEATURES_NETWORK_DEPTH 2
 
-/** By the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else LUXFER_NORMALISATION_HALF. */
+/**
+ * Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
+ * LUXFER_NORMALISATION_HALF.
+ */
 #define LUXFER_NORMALISATION_BY_SIZE 0
 
-/** sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small. */
+/** (sRGB - (0.485, 0.456, 0.406)) / (0.229, 0.224, 0.225), for MiDaS 2.1, large and small. */
 #define LUXFER_NORMALISATION_IMAGENET 1
 
-/** sRGB less 0.5, over 0.5: DPT. */
+/** (sRGB - 0.5) / 0.5, for DPT. */
 #define LUXFER_NORMALISATION_HALF 2
 
-/** sRGB in [0, 1]. */
+/** No normalisation: sRGB in [0, 1]. */
 #define LUXFER_NORMALISATION_NONE 3
 
 /** The caller's depth map. */
 #define LUXFER_DEPTH_FROM_CALLER 0
 
-/** A room laid out from the lines of the photo, and strokes. */
+/** A box-shaped room fitted to the lines of the photo and to strokes. */
 #define LUXFER_DEPTH_FROM_LAYOUT 1
 
-/** A guess that knows nothing of the photo. */
+/** A neutral guess that does not depend on the photo. */
 #define LUXFER_DEPTH_FROM_NOTHING 2
 
 /** The caller's network. */
@@ -1507,43 +1569,43 @@ luxfer_status luxfer_features_params_init(luxfer_features_params *params,
 /** Creates the stage. The caller releases *features. Any thread. */
 luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **features);
 
-/** Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread. */
-luxfer_status luxfer_features_set_photo(luxfer_features *features,
-                                        luxfer_image *photo);
+/** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
+luxfer_status luxfer_features_set_photo(luxfer_features *features, luxfer_image *photo);
 
 /**
- * Sets a depth map of the photo's size, 1 channel, in any unit; what is not positive and finite is a hole. kind is a
- * LUXFER_DEPTH_ value. depth may be NULL: none. Any thread.
+ * Sets a depth map of the photo's size, 1 channel, in any unit; values that are not positive and finite are holes.
+ * kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread.
  */
 luxfer_status luxfer_features_set_depth(luxfer_features *features,
                                         luxfer_image *depth,
                                         luxfer_depth_kind kind);
 
 /**
- * Sets a network that estimates depth where there is no depth map: an ONNX file; path is UTF-8. Its one input is a photo, a float
- * tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of relative inverse depth, as those of MiDaS
- * and DPT are. The map is normalised by its extremes: the nearest pixel is on near_plane, the farthest on far_plane.
- * normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: none. The file is read now and not needed afterwards.
- * Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs what the library does not
- * do, or if the library was built without the Cargo feature onnx.
+ * Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
+ * input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of
+ * relative inverse depth, as of MiDaS and DPT. The map is normalised by its extremes: the nearest pixel lies on
+ * near_plane, the farthest on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
+ * The call reads the file, which is not needed afterwards. Any thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
+ * that the library does not support, or if the library was built without the Cargo feature onnx.
  */
 luxfer_status luxfer_features_set_network(luxfer_features *features,
                                           const char *path,
                                           luxfer_normalisation normalisation);
 
 /**
- * Takes the lines and the camera that a luxfer_rectify has found in the same photo, as they are now. rectify may be NULL:
- * none. Any thread.
- * LUXFER_NOT_READY if it has found none yet.
+ * Sets the lines and the camera from the latest result of a luxfer_rectify of this photo. rectify may be NULL: no
+ * lines. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_features_set_view(luxfer_features *features,
                                        luxfer_rectify *rectify);
 
 /**
- * Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the ceiling that
- * carries the lights, and 0 elsewhere. They are heard where the room is laid out from lines (luxfer_features_set_view): of its
- * boxes those are preferred that have all positive strokes on one face, whichever it is, and no other there. Any thread.
+ * Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the
+ * ceiling that carries the lights, and 0 off this plane. Strokes affect only a room that is fitted to lines
+ * (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one face and all others off this
+ * face. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set.
  */
 luxfer_status luxfer_features_add_stroke(luxfer_features *features,
@@ -1553,7 +1615,7 @@ luxfer_status luxfer_features_add_stroke(luxfer_features *features,
                                          int32_t positive);
 
 /**
- * Adds the strokes of a drawing of the photo's size that concern the plane, as luxfer_segment_add_strokes_image does with
+ * Adds the strokes for the plane from a drawing of the photo's size, as luxfer_segment_add_strokes_image does with
  * LUXFER_PHASE_PLANE. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_INVALID_ARGUMENT if the size differs.
  */
@@ -1561,20 +1623,19 @@ luxfer_status luxfer_features_add_strokes_image(luxfer_features *features,
                                                 luxfer_image *drawing);
 
 /**
- * Adds the strokes of a text in UTF-8 that concern the plane, as luxfer_segment_add_strokes_text does with LUXFER_PHASE_PLANE. Any
- * thread.
+ * Adds the strokes for the plane from a text in UTF-8, as luxfer_segment_add_strokes_text does with
+ * LUXFER_PHASE_PLANE. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_FORMAT, naming the line, if the text is malformed.
  */
-luxfer_status luxfer_features_add_strokes_text(luxfer_features *features,
-                                               const char *description);
+luxfer_status luxfer_features_add_strokes_text(luxfer_features *features, const char *description);
 
 /** Removes all strokes. Any thread. */
 luxfer_status luxfer_features_clear_strokes(luxfer_features *features);
 
 /**
  * Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
- * sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
  */
 luxfer_status luxfer_features_start(luxfer_features *features,
                                     const luxfer_features_params *params,
@@ -1582,14 +1643,14 @@ luxfer_status luxfer_features_start(luxfer_features *features,
 
 /**
  * Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH where no network was run.
+ * LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a network.
  */
 luxfer_status luxfer_features_get_image(luxfer_features *features,
                                         luxfer_features_image which,
                                         luxfer_image **image);
 
 /**
- * Tells how good the features are. Any thread.
+ * Gets the quality of the features. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_features_get_report(luxfer_features *features,
@@ -1598,14 +1659,14 @@ luxfer_status luxfer_features_get_report(luxfer_features *features,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_features_retain(luxfer_features *features);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_features_release(luxfer_features *features);
 
 /* ====================================================================================================================
  * Segmentation
  *
- * From a few strokes on a photo to a mask with a confidence for each pixel. The transfer needs two: the plane that carries
- * the lights, then the lights within it. Strokes may be added after a result, and the stage started again.
+ * Computes a mask, with a confidence for each pixel, from a few strokes on a photo. The lighting transfer needs two
+ * masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start again.
  * ==================================================================================================================== */
 
 /** A segmentation by strokes. See luxfer_segment_create. */
@@ -1618,53 +1679,54 @@ typedef struct luxfer_segment_params {
     /** Samples drawn from the strokes of each class, in [1, 1000000]; default 1000. */
     uint32_t samples_per_class;
     /**
-     * Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features colour, colour
-     * and position, colour and normal, or all, whichever does best on strokes held out; of any other number all. For lights
-     * 7, colour only, is best: they share the plane's geometry.
+     * Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of luxfer_features,
+     * the best of colour, colour and position, colour and normal, or all, as measured on held-out strokes; for another
+     * number of channels, all of them. For lights use 7, colour only, since lights and plane have one geometry.
      */
     uint32_t channels;
     /**
-     * Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the edges of
-     * the photo: the guided filter, with the first three channels of the features as its guide. 0, the default: none.
+     * Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the
+     * edges of the photo: a guided filter with the first three channels of the features as guide. 0, the default: no
+     * refinement.
      */
     uint32_t refine_radius;
-    /** Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3. */
+    /** Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3. */
     double ridge;
     /** Seed of the samples; default 1. */
     uint64_t seed;
     /**
-     * Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours are taken for one
-     * surface by the refinement, in [1e-3, 1e6]; default 8.
+     * Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
+     * neighbours as one surface, in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
 } luxfer_segment_params;
 
-/** What strokes are about: a LUXFER_PHASE_ value. */
+/** The mask that strokes are for: a LUXFER_PHASE_ value. */
 typedef int32_t luxfer_phase;
 
 /** An image of a segmentation: a LUXFER_SEGMENT_ value. */
 typedef int32_t luxfer_segment_image;
 
-/** How good a segmentation is. Set struct_size before the call. */
+/** Quality of a segmentation. Set struct_size before the call. */
 typedef struct luxfer_segment_report {
     /** sizeof(luxfer_segment_report), set by the caller. */
     uint32_t struct_size;
-    /** The channels of the features that were used, bit i for channel i. */
+    /** Channels of the features that were used, bit i for channel i. */
     uint32_t channels;
-    /** Expected share of wrong pixels, in [0, 1], from strokes held out of the training. */
+    /** Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training. */
     double error;
-    /** Samples used of the negative class. */
+    /** Number of samples of the negative class. */
     uint64_t negative_samples;
-    /** Samples used of the positive class. */
+    /** Number of samples of the positive class. */
     uint64_t positive_samples;
-    /** Pixels that strokes of both classes cover; the later stroke counts. */
+    /** Number of pixels that strokes of both classes cover; the later stroke counts. */
     uint64_t contradictory_pixels;
 } luxfer_segment_report;
 
-/** The plane that carries the lights; its positive strokes lie on the plane, those of lights count as well. */
+/** The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too. */
 #define LUXFER_PHASE_PLANE 0
 
-/** The lights in the plane; its positive strokes lie on lights, the others on the plane beside them. */
+/** The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them. */
 #define LUXFER_PHASE_LIGHTS 1
 
 /** 1 where the confidence is above one half, else 0; 1 channel. */
@@ -1674,7 +1736,7 @@ typedef struct luxfer_segment_report {
 #define LUXFER_SEGMENT_CONFIDENCE 1
 
 /**
- * How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke helps; 1 channel.
+ * Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
  */
 #define LUXFER_SEGMENT_UNSEEN 2
 
@@ -1688,23 +1750,23 @@ luxfer_status luxfer_segment_params_init(luxfer_segment_params *params,
 luxfer_status luxfer_segment_create(luxfer_context *context, luxfer_segment **segment);
 
 /**
- * Sets what is known of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes set for another
- * size are dropped. Any thread.
+ * Sets the features of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes for another
+ * size are removed. Any thread.
  */
 luxfer_status luxfer_segment_set_features(luxfer_segment *segment,
                                           luxfer_image *features);
 
 /**
- * Sets where to look, 1, and where not, 0, such as the mask of the plane when lights are sought; 1 channel, the size of
- * the features. within may be NULL: everywhere. Any thread.
+ * Restricts the segmentation to the pixels where within is 1, such as the mask of the plane when you segment lights; 0
+ * elsewhere; 1 channel, the size of the features. within may be NULL: no restriction. Any thread.
  */
 luxfer_status luxfer_segment_set_within(luxfer_segment *segment,
                                         luxfer_image *within);
 
 /**
- * Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the top-left pixel's
- * centre is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for what is sought and 0 for what is not.
- * One point makes a dot. Any thread.
+ * Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the centre of the
+ * top-left pixel is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for the class that is sought,
+ * 0 for the other. One point makes a dot. Any thread.
  * LUXFER_INVALID_OPERATION before the features are set.
  */
 luxfer_status luxfer_segment_add_stroke(luxfer_segment *segment,
@@ -1714,9 +1776,9 @@ luxfer_status luxfer_segment_add_stroke(luxfer_segment *segment,
                                         int32_t positive);
 
 /**
- * Adds the strokes of a drawing of the features' size, those that concern phase (a LUXFER_PHASE_ value): green (0, 255, 0)
- * plane, red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
- * pixels are unpainted. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
+ * Adds the strokes for phase, a LUXFER_PHASE_ value, from a drawing of the features' size: green (0, 255, 0) is plane,
+ * red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
+ * pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
  * LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
  */
 luxfer_status luxfer_segment_add_strokes_image(luxfer_segment *segment,
@@ -1724,9 +1786,9 @@ luxfer_status luxfer_segment_add_strokes_image(luxfer_segment *segment,
                                                luxfer_phase phase);
 
 /**
- * Adds the strokes that a text in UTF-8 describes, those that concern phase (a LUXFER_PHASE_ value). Each line is a class,
- * a radius and the points' x and y in pixels, as "light 3 310.5 30 320 31"; classes are plane, not-plane, light and
- * not-light; from # on a line is a comment. Any thread.
+ * Adds the strokes for phase, a LUXFER_PHASE_ value, from a text in UTF-8. Each line has a class, a radius, and x and
+ * y of the points in pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light;
+ * # starts a comment. Any thread.
  * LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
  */
 luxfer_status luxfer_segment_add_strokes_text(luxfer_segment *segment,
@@ -1738,9 +1800,9 @@ luxfer_status luxfer_segment_clear_strokes(luxfer_segment *segment);
 
 /**
  * Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE if
- * there are no strokes of one class, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out
- * of range.
+ * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
+ * if one class has no strokes, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out of
+ * range.
  */
 luxfer_status luxfer_segment_start(luxfer_segment *segment,
                                    const luxfer_segment_params *params,
@@ -1755,7 +1817,7 @@ luxfer_status luxfer_segment_get_image(luxfer_segment *segment,
                                        luxfer_image **image);
 
 /**
- * Tells how good the segmentation is. Any thread.
+ * Gets the quality of the segmentation. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_segment_get_report(luxfer_segment *segment, luxfer_segment_report *report);
@@ -1763,17 +1825,17 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment, luxfer_segment_
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_segment_retain(luxfer_segment *segment);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_segment_release(luxfer_segment *segment);
 
 /* ====================================================================================================================
  * Emission
  *
- * From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
- * its luminaires.
+ * Synthesises an emissive texture of any size that continues the light pattern of an unwarped photo, and lists its
+ * luminaires.
  * ==================================================================================================================== */
 
-/** An emissive texture in the making. See luxfer_emission_create. */
+/** A synthesis of an emissive texture. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
 
 /** Settings of the emission. Fill them with luxfer_emission_params_init. */
@@ -1786,45 +1848,47 @@ typedef struct luxfer_emission_params {
     uint32_t height;
     /** Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights. */
     uint32_t block;
-    /** Unwarped pixels per texel, in [1e-3, 1e3]; default 1. */
+    /** Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1. */
     double scale;
     /** Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256. */
     uint32_t working_side;
-    /** Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting. */
+    /** Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting. */
     float metadata_weight;
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
     /**
-     * Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
-     * repetition is held to exactly, at 1 none is, and patches go anywhere.
+     * Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
+     * continued exactly; at 1 no repetition is, and patches may lie anywhere.
      */
     float least_regularity;
-    /** 1, the default, shows every lamp as one piece; with 0 seams may cut lamps. */
+    /** 1, the default: every lamp stays in one piece; 0: seams may cut lamps. */
     uint32_t whole_lamps;
     /**
-     * Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0. Lights without
-     * a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
+     * Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
+     * default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is tileable, where
+     * it shifts the lamps.
      */
     double offset[2];
     /**
-     * Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
-     * as dark as the clipped channels allow. With 0 nothing is taken for clipped.
+     * Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the colour
+     * of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped.
      */
     float clip_level;
-    /** With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo. */
+    /** 1: every lamp has its mean colour everywhere; 0, the default: as in the photo. */
     uint32_t even_lamps;
     /**
-     * With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
-     * than half a period over the whole, to fit. Needs whole_lamps. Default 0.
+     * 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side, and
+     * a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps. Default 0.
      */
     uint32_t tileable;
     /**
-     * With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
-     * two in its middle, so that the border cuts as few lamps as it can. Default 0.
+     * 1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle between
+     * two lamps, so that the border cuts as few lamps as possible. Default 0.
      */
     uint32_t centred;
     /**
-     * Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536]; default 192.
+     * Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536]; default
+     * 192.
      */
     uint32_t candidates;
     /** Must be 0. */
@@ -1834,70 +1898,73 @@ typedef struct luxfer_emission_params {
 /** An image of the emission: a LUXFER_EMISSION_ value. */
 typedef int32_t luxfer_emission_image;
 
-/** How good the texture is. Set struct_size before the call. */
+/** Quality of the texture. Set struct_size before the call. */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the caller. */
     uint32_t struct_size;
     /** Number of luminaires; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
     /**
-     * The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
-     * distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is no texture yet.
+     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
+     * whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as exemplar_lamps
+     * allows. NaN for a plan, which has no texture yet.
      */
     double error;
     /**
-     * How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
+     * Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
      */
     double regularity;
     /**
-     * Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
-     * part of what there is, and without a whole lamp the texture shows the cut ones.
+     * Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
+     * large part of the lamps. Without a whole lamp the texture shows the cut ones.
      */
     uint32_t exemplar_lamps;
     /**
-     * By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same difference between
-     * parts of the texture as large as the exemplar, and the whole. An error of up to twice this says nothing against the texture.
-     * 0 where the texture shows nothing else than the exemplar does, of blended exemplars, and of a plan.
+     * Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined for
+     * error, between the whole texture and parts of it that are as large as the exemplar. If error is at most twice
+     * this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
+     * exemplars, and for a plan.
      */
     float sampling_error;
 } luxfer_emission_report;
 
-/** One lamp of the texture. Set struct_size before the call. */
+/** A lamp of the texture. Set struct_size before the call. */
 typedef struct luxfer_luminaire {
     /** sizeof(luxfer_luminaire), set by the caller. */
     uint32_t struct_size;
-    /** Number of corners of its outline. */
+    /** Number of corners of the outline. */
     uint32_t corners;
     /** Centre in texels, x and y. */
     double centre[2];
-    /** Lengths of the principal axes in texels, the long one first. */
+    /** Lengths of the principal axes in texels, the longer first. */
     double size[2];
     /** Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]. */
     double orientation;
-    /** Area in texels, of those at the edge what is light. */
+    /** Area in texels; texels at the edge count with the share that the lamp covers. */
     double area;
-    /** Share of the light of the whole texture, in [0, 1]. */
+    /** Share of the luminous flux of the whole texture, in [0, 1]. */
     double flux_share;
     /** Mean linear colour, relative to the photo's white. */
     float colour[3];
     /**
-     * Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the border cuts it.
+     * Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are sorted by
+     * the number of their lamps, the largest first. 0 if the border cuts the lamp.
      */
     uint32_t kind;
 } luxfer_luminaire;
 
-/** The texture: linear RGB relative to the photo's white, 0 where there is no lamp. */
+/** The texture: linear RGB relative to the photo's white; 0 outside lamps. */
 #define LUXFER_EMISSION_TEXTURE 0
 
 /** 1 on lamps, else 0; 1 channel. */
 #define LUXFER_EMISSION_MASK 1
 
 /**
- * What synthesis started from, at working size: confidence, signed x and y distance to the nearest light; 3 channels.
+ * Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3 channels.
  */
 #define LUXFER_EMISSION_EXEMPLAR_METADATA 2
 
-/** The same of its result. */
+/** Metadata of the result, with these channels. */
 #define LUXFER_EMISSION_METADATA 3
 
 /**
@@ -1910,9 +1977,9 @@ luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
 luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **emission);
 
 /**
- * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
- * channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by luxfer_emission_add_style. Any
- * thread.
+ * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
+ * (1 channel, in [0, 1]) and the mask where both are valid (1 channel, 1 or 0). luxfer_emission_add_style adds more
+ * exemplars. Any thread.
  */
 luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *unwarped,
@@ -1920,18 +1987,19 @@ luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *valid);
 
 /**
- * Sets the photo from which full detail is recovered, and the map from unwarped to photo pixels, 9 doubles row by row
- * (luxfer_rectify_report.to_photo). photo may be NULL: the unwarped image is the finest there is. Any thread.
+ * Sets the photo from which full detail is recovered, and the homography from unwarped to photo pixels, 9 doubles row
+ * by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the unwarped image only. Any
+ * thread.
  */
 luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         luxfer_image *photo,
                                         const double *to_photo);
 
 /**
- * Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for
- * the defaults. The caller releases *job. Any thread.
+ * Starts a job that makes the whole texture in memory; for very large textures use luxfer_emission_start_plan. params
+ * may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
- * there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
  */
 luxfer_status luxfer_emission_start(luxfer_emission *emission,
                                     const luxfer_emission_params *params,
@@ -1946,15 +2014,16 @@ luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_image **image);
 
 /**
- * Tells how good the texture is, or what a plan consists of. Any thread.
+ * Gets the quality of the texture, or the contents of a plan. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          luxfer_emission_report *report);
 
 /**
- * Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
- * ends; lights that run through their exemplar are as the texture shows them. Any thread.
+ * Describes a luminaire of the texture. A plan has no texels yet, so its luminaires are described as the exemplar
+ * shows them, cut at the edges of the texture; only lights that cross their whole exemplar are described as in the
+ * texture. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -1962,12 +2031,13 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
                                             luxfer_luminaire *luminaire);
 
 /**
- * Tells a corner of a luminaire's outline, in texels. Any thread.
+ * Gets a corner of a luminaire's outline, in texels. Any thread.
  *
- * The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is: within a quarter
- * of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one. Of lamps up to two texels wide,
- * of a mask that is all or nothing and of lights of a plan that follow its patches it follows the sides of texels.
- * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
+ * The outline is where the lamp would cover half of a texel. If the confidence of the lights has values between 0 and
+ * 1, it is accurate to a quarter of a texel (or of an unwarped pixel, if that is larger), at corners of the lamp to
+ * 0.71. It follows the sides of texels for lamps up to two texels wide, for masks of only 0 and 1, and for lights of a
+ * plan that follow its patches. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such
+ * luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
                                          uint32_t index,
@@ -1978,25 +2048,26 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_emission_retain(luxfer_emission *emission);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_emission_release(luxfer_emission *emission);
 
 /* ====================================================================================================================
  * Styles and tiles
  *
- * Several exemplars in one texture, and textures that are too large to be made as a whole: luxfer_emission_start_plan decides
- * where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds a place for each
- * lamp and the outlines of the patches, but no texel.
+ * Textures from several exemplars, and textures that are too large to make as a whole: luxfer_emission_start_plan
+ * decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of the texture. A plan holds
+ * the exemplars, the place of each lamp and the outlines of the patches, but no texels.
  * ==================================================================================================================== */
 
 /**
- * Adds an exemplar, whose lights take the place of the first one's as its weights say. unwarped, light and valid are as for
- * luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo as for luxfer_emission_set_photo. scale is its unwarped
- * pixels per texel, in [1e-3, 1e3]. weights has 1 channel and values in [0, 1], and is stretched over the texture; where several
- * exemplars are added their weights are images of one size and add up to 1 at most. What they leave is the first exemplar's.
+ * Adds an exemplar whose lights replace those of the first exemplar according to weights. unwarped, light and valid
+ * are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
+ * luxfer_emission_set_photo. scale is the number of its unwarped pixels per texel, in [1e-3, 1e3]. weights has 1
+ * channel with values in [0, 1] and is stretched over the texture. The weights of several added exemplars are images
+ * of one size whose sum is at most 1; the first exemplar has the rest of the weight.
  *
- * No lamp is a mixture: each is taken from an exemplar with the probability of its weight there, so that light per area blends
- * linearly. Lattices keep their own period and phase. Any thread.
+ * Each lamp comes from one exemplar, chosen with the probability of its weight there, so that the light per area
+ * blends linearly. Each lattice keeps its own period and phase. Any thread.
  */
 luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
                                         luxfer_image *unwarped,
@@ -2007,24 +2078,26 @@ luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
                                         double scale,
                                         luxfer_image *weights);
 
-/** Takes all exemplars that were added away; the first stays. Any thread. */
+/** Removes all exemplars added by luxfer_emission_add_style; the first exemplar stays. Any thread. */
 luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
 
 /**
- * Starts a job that plans the texture, in the place of luxfer_emission_start, whose results go. params and what the call and
- * the job return are the same. luxfer_emission_get_report and luxfer_emission_get_luminaire tell the lamps of the plan.
- * The caller releases *job. Any thread.
+ * Starts a job that plans the texture instead of making it as luxfer_emission_start does, and removes the results of
+ * that function. params, and the statuses of the call and the job, are as for luxfer_emission_start.
+ * luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan. The caller releases
+ * *job. Any thread.
  */
 luxfer_status luxfer_emission_start_plan(luxfer_emission *emission,
                                          const luxfer_emission_params *params,
                                          luxfer_job **job);
 
 /**
- * Renders the part of a planned texture that begins x texels right of and y below its corner: 4 channels, linear RGB, and 1 on
- * lamps, else 0. The bits are those of the texture and mask that luxfer_emission_start makes, whatever the tiles and their
- * order. Takes up to a second for each megapixel. The caller releases *tile. Any thread, several at once.
- * LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT for a part that is empty or
- * reaches beyond the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * Renders the rectangle of width x height texels of a planned texture whose top-left texel is (x, y): 4 channels,
+ * linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the bit to the texture and mask of
+ * luxfer_emission_start, for any size and order of the tiles. Takes up to a second per megapixel. The caller releases
+ * *tile. Any thread; several threads may render tiles at the same time.
+ * LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
+ * is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
                                           uint32_t x,
@@ -2036,8 +2109,8 @@ luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
 /* ====================================================================================================================
  * Rendering
  *
- * A path tracer of a scene's light, in cd/m². It gets better pass by pass: while its job runs, and after a cancel, the
- * image so far can be read with its own error estimate.
+ * A path tracer that renders a scene in cd/m². The image improves pass by pass: while the job runs, and after a
+ * cancel, the current image can be read with an estimate of its error.
  * ==================================================================================================================== */
 
 /** A rendering of a scene. See luxfer_render_create. */
@@ -2051,37 +2124,40 @@ typedef struct luxfer_render_params {
     uint32_t width;
     /** Height of the image in pixels, in [1, 65536]; default 720. */
     uint32_t height;
-    /** Paths per pixel, in [1, 1048576]; default 64. With a target this is the most on the average over the image. */
+    /** Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the image. */
     uint32_t samples;
     /**
-     * Stop when the error of the report falls to this, >= 0, and give paths to where they lower it most; default 0: never.
+     * Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they reduce the
+     * error most. Default 0: no target.
      */
     float target_error;
-    /** Stop after this many milliseconds; default 0: never. */
+    /** Stop after this number of milliseconds; default 0: no limit. */
     uint32_t time_budget_ms;
     /** Seed of the paths; default 1. */
     uint64_t seed;
     /**
-     * Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width of the 95 %
-     * interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean, whichever is more.
-     * 0.1 means within 10 % of its value, 19 times out of 20. A part gets at most 64 times samples, though it may miss the
-     * target. Default 0: never.
+     * Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the root
+     * mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by that
+     * luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19 times
+     * out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target. Default
+     * 0: no target.
      */
     float pixel_error;
     /**
-     * End every path where what is left is at most this share of all light that surfaces scatter, in [0, 1): the image is
-     * too dark by up to that share. After how many bounces, luxfer_scene_requirements tells. Default 0: never; paths end by
-     * chance alone, and the image is right on the average.
+     * Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light that
+     * surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number of
+     * bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased.
      */
     float bounce_error;
     /**
-     * Strength of the filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no preview, as
-     * final images are made. The other images are the same with and without it.
+     * Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default
+     * 0: no preview, as for final images. It does not change the other images.
      */
     float preview;
     /**
-     * Stop when the relative_error of the report falls to this, >= 0, and give paths to where they lower it most: as noise is
-     * seen, in the shade as in the light. Default 0: never. With several targets all are reached.
+     * Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where they
+     * reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no target. With
+     * several targets, rendering stops when all are reached.
      */
     float relative_error;
 } luxfer_render_params;
@@ -2089,28 +2165,28 @@ typedef struct luxfer_render_params {
 /** An image of a rendering: a LUXFER_RENDER_ value. */
 typedef int32_t luxfer_render_image;
 
-/** How good a rendering is. Set struct_size before the call. */
+/** Quality of a rendering. Set struct_size before the call. */
 typedef struct luxfer_render_report {
     /** sizeof(luxfer_render_report), set by the caller. */
     uint32_t struct_size;
-    /** Paths per pixel so far, on the average. */
+    /** Mean number of paths per pixel so far. */
     uint32_t samples;
     /**
-     * Root mean square over the pixels of the standard error, relative to the image's mean; infinite while a pixel has less
-     * than two paths.
+     * Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a pixel has
+     * fewer than two paths.
      */
     double error;
-    /** Paths that were left out because their radiance was no finite number. */
+    /** Number of paths that were discarded because their radiance was not finite. */
     uint64_t discarded;
     /**
-     * How far the mean of such previews is from the truth: root mean square over squares of 8 x 8 pixels, relative to the
-     * image's mean, estimated. 0 without a preview.
+     * Estimated bias of the preview: the difference between its expected value and the true image, as root mean square
+     * over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
      */
     double preview_bias;
     /**
-     * Root mean square over the pixels of the standard error, relative to the pixel itself (the mean of its channels, but at
-     * least a hundredth of the image's mean); infinite while a pixel has less than two paths. Of few paths it states rather
-     * too much, of 8 about a quarter.
+     * Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its channels,
+     * but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths. With few paths
+     * it overestimates: with 8 by about a quarter.
      */
     double relative_error;
 } luxfer_render_report;
@@ -2119,8 +2195,8 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_BEAUTY 0
 
 /**
- * Variance of that mean; 3 channels. Pixels in blocks of eight share what their paths find, so that the error of a mean over
- * pixels is up to the root of eight times what their variances add up to.
+ * Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their errors are
+ * correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
  */
 #define LUXFER_RENDER_VARIANCE 1
 
@@ -2128,14 +2204,15 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_PATHS 2
 
 /**
- * Half the width of the interval around each pixel of the beauty that holds the true radiance with a probability of 95 %,
- * in cd/m²; 3 channels; infinite where a pixel has less than two paths.
+ * Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite where a
+ * pixel has fewer than two paths.
  */
 #define LUXFER_RENDER_INTERVAL 3
 
 /**
- * The beauty with its noise filtered out, guided by surfaces: what it does not see, such as soft shadows, it blurs. How
- * far, the report tells as preview_bias. Only if luxfer_render_params.preview is not 0.
+ * The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces do not
+ * show, such as soft shadows; preview_bias of the report estimates the error. Only if luxfer_render_params.preview is
+ * not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
 
@@ -2148,13 +2225,16 @@ luxfer_status luxfer_render_params_init(luxfer_render_params *params,
 /** Creates the stage. The caller releases *render. Any thread. */
 luxfer_status luxfer_render_create(luxfer_context *context, luxfer_render **render);
 
-/** Sets the scene; each start renders it as it is then. Any thread. */
+/** Sets the scene; each job renders the scene as it is when the job starts. Any thread. */
 luxfer_status luxfer_render_set_scene(luxfer_render *render, luxfer_scene *scene);
 
 /** Renders from a camera of the scene; the default is camera 0. Any thread. */
 luxfer_status luxfer_render_set_camera_index(luxfer_render *render, uint32_t camera);
 
-/** Renders from a camera of its own. camera may be NULL for the defaults of luxfer_camera_params. Any thread. */
+/**
+ * Renders from the given camera instead of one of the scene. camera may be NULL for the defaults of
+ * luxfer_camera_params. Any thread.
+ */
 luxfer_status luxfer_render_set_camera(luxfer_render *render, const luxfer_camera_params *camera);
 
 /**
@@ -2167,16 +2247,17 @@ luxfer_status luxfer_render_start(luxfer_render *render,
                                   luxfer_job **job);
 
 /**
- * Gets an image of the rendering, as far as it is; which is a LUXFER_RENDER_ value. The caller releases *image. Any
- * thread.
- * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview that was not asked for.
+ * Gets an image of the rendering in its current state; which is a LUXFER_RENDER_ value. The caller releases *image.
+ * Any thread.
+ * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
+ * 0.
  */
 luxfer_status luxfer_render_get_image(luxfer_render *render,
                                       luxfer_render_image which,
                                       luxfer_image **image);
 
 /**
- * Tells how good the rendering is so far. Any thread.
+ * Gets the current quality of the rendering. Any thread.
  * LUXFER_NOT_READY before the first pass of a job.
  */
 luxfer_status luxfer_render_get_report(luxfer_render *render, luxfer_render_report *report);
@@ -2184,109 +2265,116 @@ luxfer_status luxfer_render_get_report(luxfer_render *render, luxfer_render_repo
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_render_retain(luxfer_render *render);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_render_release(luxfer_render *render);
 
 /* ====================================================================================================================
  * Outputs of a rendering
  *
- * Images beside the main one, made of the same paths: light that came by certain ways, chosen by light path expressions,
- * and what the camera sees of surfaces. They are asked for before luxfer_render_start, and read as layers, while the job
- * runs as well as after it: first those of the expressions in the order they were added, then those of surfaces in the
- * order of their flags. The main image is the same bits with and without them.
+ * Additional images from the same paths as the main image: light selected by light path expressions, and properties of
+ * the visible surfaces (AOVs). Request them before luxfer_render_start, and read them as layers while the job runs or
+ * afterwards: first the layers of the expressions in the order in which they were added, then the AOVs in the order of
+ * their flags. The main image is equal to the bit with and without them.
  *
- * An expression is a regular expression over the events of a path, light first with L and E at its ends, as in
- * "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (S is all that is not diffuse), or camera first with C, as in Open Shading
- * Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Types are R T V, modes D G S s (a clear pane is both S and s), lights L O B;
- * . [..] [^..] * + ? {n,m} | ( ) are what they are in regular expressions. Labels in quotes are names of meshes or of
- * their materials; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
- * light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's built-in names are
- * known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or with _direct or
- * _indirect.
+ * An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye (E),
+ * as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at the
+ * camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Event types are R T V, scattering modes D G
+ * S s (a clear pane is both S and s), lights L O B; . [..] [^..] * + ? {n,m} | ( ) have their usual meaning in regular
+ * expressions. A label in quotes is the name of a mesh or of its material; Name#0, Name#1, ... are the patches of its
+ * emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... are the scene's punctual lights in
+ * their order, environment is the scene's environment. Arnold's built-in names work too: direct, indirect, emission,
+ * background, and diffuse, specular, transmission, each alone or with _direct or _indirect.
  * ==================================================================================================================== */
 
-/** Distance along the viewing direction, in metres; infinite where nothing is. Layer Depth, channel Z. */
+/** Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel Z. */
 #define LUXFER_AOV_DEPTH 1
 
-/** Distance along the ray, in metres; infinite where nothing is. Layer Distance, channel Z. */
+/** Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z. */
 #define LUXFER_AOV_DISTANCE 2
 
-/** Place in the world, in metres. Layer Position, channels X Y Z. */
+/** Position in world space, in metres. Layer Position, channels X Y Z. */
 #define LUXFER_AOV_POSITION 4
 
-/** Shading normal in the world, towards the viewer; 0 where nothing is. Layer Normal, channels X Y Z. */
+/** Shading normal in world space, towards the camera; 0 where there is no surface. Layer Normal, channels X Y Z. */
 #define LUXFER_AOV_NORMAL 8
 
-/** Normal of the triangle itself, likewise. Layer GeometricNormal, channels X Y Z. */
+/**
+ * Normal of the triangle in world space, towards the camera; 0 where there is no surface. Layer GeometricNormal,
+ * channels X Y Z.
+ */
 #define LUXFER_AOV_GEOMETRIC_NORMAL 16
 
-/** Colour at normal incidence. Layer Albedo, channels R G B. */
+/** Albedo at normal incidence. Layer Albedo, channels R G B. */
 #define LUXFER_AOV_ALBEDO 32
 
-/** Index of the mesh plus 1, 0 where nothing is; of what most samples met. Layer IndexOB, channel X. */
+/**
+ * Index of the mesh plus 1, or 0 where there is no surface; the mesh that most samples of the pixel hit. Layer
+ * IndexOB, channel X.
+ */
 #define LUXFER_AOV_OBJECT 64
 
-/** Index of the material plus 1, likewise. Layer IndexMA, channel X. */
+/**
+ * Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit. Layer
+ * IndexMA, channel X.
+ */
 #define LUXFER_AOV_MATERIAL 128
 
-/** Share of the pixel that is covered by surfaces. Layer Alpha, channel A. */
+/** Share of the pixel that surfaces cover. Layer Alpha, channel A. */
 #define LUXFER_AOV_ALPHA 256
 
 /** Luminance of the main image, in cd/m². Layer Luminance, channel Y. */
 #define LUXFER_AOV_LUMINANCE 512
 
-/**
- * How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_AS_ value.
- */
+/** Letters that match emissive surfaces and the environment in camera-first expressions: a LUXFER_EMITTER_AS_ value. */
 typedef int32_t luxfer_emitter_as;
 
-/** Surfaces are both L and O, the environment is both L and B: C<RD>L is all direct light. The default. */
+/** Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default. */
 #define LUXFER_EMITTER_AS_BOTH 0
 
-/** Every light is L only. */
+/** Every light matches L only. */
 #define LUXFER_EMITTER_AS_LIGHT 1
 
-/** As in Open Shading Language: surfaces are O, the environment is B. */
+/** As in Open Shading Language: surfaces match O, the environment matches B. */
 #define LUXFER_EMITTER_AS_OBJECT 2
 
 /**
- * Adds a layer of the light that an expression describes. name is what the layer is called: 1 to 64 bytes in UTF-8
- * without dots, quotes or control characters, and not the name of another layer. Any thread.
- * LUXFER_INVALID_ARGUMENT if the name is not such a name, or the expression is none: the message tells the column. A label
- * that nothing in the scene bears ends the job with LUXFER_NOT_FOUND, an expression that no path can match ends it with
- * LUXFER_INVALID_ARGUMENT. LUXFER_INVALID_OPERATION while a job runs.
+ * Adds a layer with the light that an expression selects. name is the name of the layer: 1 to 64 bytes in UTF-8,
+ * without dots, quotes or control characters, and different from the names of the other layers. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the name is not valid, or if the expression is malformed: the message gives the column.
+ * LUXFER_INVALID_OPERATION while a job runs. The job ends with LUXFER_NOT_FOUND if no object in the scene has a label
+ * of the expression, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.
  */
 luxfer_status luxfer_render_add_expression(luxfer_render *render,
                                            const char *name,
                                            const char *expression);
 
 /**
- * Forgets all expressions. Any thread.
+ * Removes all expressions. Any thread.
  * LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_clear_expressions(luxfer_render *render);
 
 /**
- * Says which letters emissive surfaces and the environment answer to; a LUXFER_EMITTER_AS_ value. Any thread.
+ * Sets the letters that match emissive surfaces and the environment; a LUXFER_EMITTER_AS_ value. Any thread.
  * LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_set_emitter_as(luxfer_render *render, luxfer_emitter_as emitter_as);
 
 /**
- * Says which layers of surfaces are made: LUXFER_AOV_ flags together, or 0, the default. Any thread.
+ * Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for none. Any thread.
  * LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);
 
 /**
- * Tells how many layers the rendering has. Any thread.
+ * Gets the number of layers of the rendering. Any thread.
  * LUXFER_NOT_READY before the first pass of a job.
  */
 luxfer_status luxfer_render_get_layer_count(luxfer_render *render, uint32_t *count);
 
 /**
- * Copies a layer's name into capacity bytes with a zero at its end, cut if need be; *needed receives the capacity for all
- * of it, unless NULL. Any thread.
+ * Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
+ * receives the capacity that the whole name needs. Any thread.
  * LUXFER_NOT_FOUND if there is no such layer.
  */
 luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
@@ -2297,13 +2385,13 @@ luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
 
 /**
  * Finds a layer by its name. Any thread.
- * LUXFER_NOT_FOUND if there is none of that name.
+ * LUXFER_NOT_FOUND if no layer has that name.
  */
 luxfer_status luxfer_render_find_layer(luxfer_render *render, const char *name, uint32_t *index);
 
 /**
- * Gets a layer as far as it is: 3 channels of light in cd/m², or those of a surface's output. The caller releases *image.
- * Any thread.
+ * Gets a layer in its current state: 3 channels of light in cd/m², or the channels of an AOV. The caller releases
+ * *image. Any thread.
  * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
  */
 luxfer_status luxfer_render_get_layer(luxfer_render *render,
@@ -2311,10 +2399,10 @@ luxfer_status luxfer_render_get_layer(luxfer_render *render,
                                       luxfer_image **image);
 
 /**
- * Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if its
- * coverage was asked for, and layer.channel of each layer, as Blender and Nuke read them; Depth.Z also as plain Z. The
- * header tells the expression of each layer of light as luxfer.lpe.NAME. path is UTF-8; an existing file is replaced only
- * by a complete one. Any thread.
+ * Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if
+ * LUXFER_AOV_ALPHA is set, and layer.channel for each layer, as Blender and Nuke read them; Depth.Z also as plain Z.
+ * The header holds the expression of each layer of light in the attribute luxfer.lpe.NAME. path is UTF-8; an existing
+ * file is replaced only once the new one is complete. Any thread.
  * LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_render_write_exr(luxfer_render *render,
@@ -2323,33 +2411,35 @@ luxfer_status luxfer_render_write_exr(luxfer_render *render,
 /* ====================================================================================================================
  * Renderings in parts
  *
- * A rendering on many machines: each renders parts, rectangles of the image and ranges of its paths, into files, and one
- * merges the files. The image is that of one machine which renders all of it in a single part, but for the rounding of sums in
- * double precision, whatever the parts and their order. A part that was lost is rendered again, to the same bits.
+ * Renders an image on several machines: each machine renders parts, rectangles of the image and ranges of its paths,
+ * into files, and one machine merges the files. The result equals the image that one machine renders as a single part,
+ * for any parts in any order, except for the rounding of sums in double precision. A lost part can be rendered again
+ * and is equal to the bit.
  *
- * Parts have a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. The scene,
- * the camera, the layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
+ * Parts have a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. All
+ * parts and the merge must use the same scene, camera, layers and luxfer_render_params; the merge checks this.
  *
- * The files are OpenEXR: R, G, B show the part in its place in the image, and integer channels keep its sums.
+ * The files are OpenEXR: R, G, B show the part at its place in the image, and integer channels store its sums.
  * ==================================================================================================================== */
 
 /**
- * A part of a rendering. Fill it with luxfer_render_part_init, which makes it the whole, or with luxfer_render_split.
+ * A part of a rendering. Fill it with luxfer_render_part_init, which sets it to the whole rendering, or with
+ * luxfer_render_split.
  */
 typedef struct luxfer_render_part {
     /** sizeof(luxfer_render_part), set by luxfer_render_part_init. */
     uint32_t struct_size;
-    /** Column of its first pixel; default 0. */
+    /** Column of the first pixel; default 0. */
     uint32_t x;
-    /** Row of its first pixel, from the top; default 0. */
+    /** Row of the first pixel, from the top; default 0. */
     uint32_t y;
-    /** Width in pixels; default 0: as far as the image goes. */
+    /** Width in pixels; default 0: up to the right edge of the image. */
     uint32_t width;
-    /** Height in pixels; default 0: as far as the image goes. */
+    /** Height in pixels; default 0: up to the bottom edge of the image. */
     uint32_t height;
-    /** Number of its first path in each pixel; default 0. */
+    /** Index of the first path of each pixel; default 0. */
     uint32_t first_sample;
-    /** Paths per pixel; default 0: all that follow, of luxfer_render_params.samples. */
+    /** Paths per pixel; default 0: all paths from first_sample up to luxfer_render_params.samples. */
     uint32_t samples;
 } luxfer_render_part;
 
@@ -2360,10 +2450,12 @@ luxfer_status luxfer_render_part_init(luxfer_render_part *part,
                                       size_t size);
 
 /**
- * Tells what part number index is if a rendering with these params is split into columns x rows rectangles and ranges of
- * its paths, all of about the same size; columns * rows * ranges are all of it. Rectangles go on row by row, and all of one
- * range come before the next. params may be NULL for the defaults; set part->struct_size before the call. Any thread.
- * LUXFER_INVALID_ARGUMENT if there is no such part, or parts without a pixel or a path would have to be made.
+ * Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of about
+ * equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all rectangles
+ * of one range come before the next range. params may be NULL for the defaults; set part->struct_size before the call.
+ * Any thread.
+ * LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
+ * would be empty.
  */
 luxfer_status luxfer_render_split(luxfer_render *render,
                                   const luxfer_render_params *params,
@@ -2374,12 +2466,12 @@ luxfer_status luxfer_render_split(luxfer_render *render,
                                   luxfer_render_part *part);
 
 /**
- * Starts a job that renders a part, NULL for the whole, and writes it into a file; path is UTF-8, and an existing file is
- * replaced only by a complete one. Then the images of the rendering are those of the part alone. params may be NULL for the
- * defaults. The caller releases *job. Any thread.
+ * Starts a job that renders a part, or the whole if part is NULL, and writes it into a file; path is UTF-8, and an
+ * existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this part
+ * alone. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
- * camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range or would not fix the paths, or the part
- * is none of the image's; LUXFER_IO if the file cannot be written.
+ * camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if a setting leaves the number of
+ * paths open, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        const luxfer_render_params *params,
@@ -2388,25 +2480,26 @@ luxfer_status luxfer_render_start_part(luxfer_render *render,
                                        luxfer_job **job);
 
 /**
- * Adds a file of luxfer_render_start_part to those to be merged; path is UTF-8. It is read when they are merged, its header
- * also now. Any thread.
- * LUXFER_IO if it cannot be read; LUXFER_FORMAT if it is no part of a rendering; LUXFER_INVALID_OPERATION while a job runs.
+ * Adds a file of luxfer_render_start_part to the files to merge; path is UTF-8. The call reads only the header of the
+ * file; the merge reads the rest. Any thread.
+ * LUXFER_IO if it cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION while a
+ * job runs.
  */
 luxfer_status luxfer_render_add_part(luxfer_render *render,
                                      const char *path);
 
 /**
- * Forgets all files to be merged. Any thread.
+ * Removes all files to merge. Any thread.
  * LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_clear_parts(luxfer_render *render);
 
 /**
- * Starts a job that merges the files that were added, in any order; then the rendering has its images and layers as after
+ * Starts a job that merges the files, added in any order; afterwards the rendering has its images and layers as after
  * luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
- * camera. The job may end with LUXFER_INVALID_ARGUMENT if a file is of another rendering, or of another scene, if parts
- * overlap, or if some are missing: the message tells which; LUXFER_IO or LUXFER_FORMAT if a file cannot be read.
+ * camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene, if
+ * parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be read.
  */
 luxfer_status luxfer_render_start_merge(luxfer_render *render,
                                         const luxfer_render_params *params,
@@ -2415,8 +2508,8 @@ luxfer_status luxfer_render_start_merge(luxfer_render *render,
 /* ====================================================================================================================
  * Illuminance
  *
- * Illuminance in lux on a calculation grid, or over a mesh by its texture coordinates, with the standard error of every
- * point, and mean, extremes and their error for reports.
+ * Computes the illuminance in lux on a calculation grid, or on a mesh by its texture coordinates, with the standard
+ * error of every point, and with mean and extremes for reports.
  * ==================================================================================================================== */
 
 /** A calculation of illuminance. See luxfer_illuminance_create. */
@@ -2437,19 +2530,22 @@ typedef struct luxfer_illuminance_params {
 } luxfer_illuminance_params;
 
 /**
- * A calculation grid. Fill it with luxfer_illuminance_grid_init, then set what differs: the defaults are a square metre
- * at the origin that faces up.
+ * A calculation grid. Fill it with luxfer_illuminance_grid_init; the default is a square metre at the origin that
+ * faces up.
  */
 typedef struct luxfer_illuminance_grid {
     /** sizeof(luxfer_illuminance_grid), set by luxfer_illuminance_grid_init. */
     uint32_t struct_size;
-    /** A corner, in metres; default (0, 0, 0). */
+    /** Corner of the grid, in metres; default (0, 0, 0). */
     float origin[3];
-    /** The edge along which columns count, in metres; default (1, 0, 0). Points are the centres of the cells. */
+    /**
+     * Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the centres
+     * of the cells.
+     */
     float across[3];
-    /** The edge along which rows count, in metres; default (0, 0, 1). */
+    /** Edge of the grid along which the rows are counted, in metres; default (0, 0, 1). */
     float down[3];
-    /** The side from which light counts, of any length but 0; default (0, 1, 0). */
+    /** Normal of the side that receives the light; any length but 0; default (0, 1, 0). */
     float normal[3];
     /** Must be 0. */
     uint32_t reserved;
@@ -2458,11 +2554,11 @@ typedef struct luxfer_illuminance_grid {
 /** An image of the calculation: a LUXFER_ILLUMINANCE_ value. */
 typedef int32_t luxfer_illuminance_image;
 
-/** The illuminance on the whole, in lux. Set struct_size before the call. */
+/** Summary of the illuminance, in lux. Set struct_size before the call. */
 typedef struct luxfer_illuminance_report {
     /** sizeof(luxfer_illuminance_report), set by the caller. */
     uint32_t struct_size;
-    /** Points that there are: of a mesh, the texels with a surface. */
+    /** Number of points; on a mesh, the texels that the surface covers. */
     uint32_t points;
     /** Smallest illuminance; least / mean is the uniformity U0. */
     double least;
@@ -2474,7 +2570,7 @@ typedef struct luxfer_illuminance_report {
     double mean_error;
 } luxfer_illuminance_report;
 
-/** Illuminance in lux; 1 channel, NaN where a mesh has no point. */
+/** Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover. */
 #define LUXFER_ILLUMINANCE_LUX 0
 
 /** Standard error of each value, in lux; 1 channel. */
@@ -2493,12 +2589,12 @@ luxfer_status luxfer_illuminance_grid_init(luxfer_illuminance_grid *grid,
 /** Creates the stage. The caller releases *illuminance. Any thread. */
 luxfer_status luxfer_illuminance_create(luxfer_context *context, luxfer_illuminance **illuminance);
 
-/** Sets the scene; each start calculates with it as it is then. Any thread. */
+/** Sets the scene; each job uses the scene as it is when the job starts. Any thread. */
 luxfer_status luxfer_illuminance_set_scene(luxfer_illuminance *illuminance, luxfer_scene *scene);
 
 /**
- * Starts a job that calculates a grid. grid and params may be NULL for their defaults. The caller releases *job. Any
- * thread.
+ * Starts a job that computes the illuminance on a grid. grid and params may be NULL for their defaults. The caller
+ * releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
  * if the scene is not valid, the grid has no normal, or a setting is out of range.
  */
@@ -2508,11 +2604,12 @@ luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
                                             luxfer_job **job);
 
 /**
- * Starts a job that maps a mesh by its first set of texture coordinates: columns along u, rows along v. back is 0 for the
- * side that its triangles' winding faces, 1 for the other. params may be NULL for the defaults. The caller releases *job.
- * Any thread.
+ * Starts a job that computes the illuminance on a mesh by its first set of texture coordinates: columns along u, rows
+ * along v. back is 0 for the front side of the triangles (by their winding), 1 for the back side. params may be NULL
+ * for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
- * if the scene is not valid, has no such mesh, the mesh has no texture coordinates, or a setting is out of range.
+ * if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or if a setting is out of
+ * range.
  */
 luxfer_status luxfer_illuminance_start_mesh(luxfer_illuminance *illuminance,
                                             uint32_t mesh,
@@ -2529,7 +2626,7 @@ luxfer_status luxfer_illuminance_get_image(luxfer_illuminance *illuminance,
                                            luxfer_image **image);
 
 /**
- * Tells the illuminance on the whole. Any thread.
+ * Gets the summary of the illuminance. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
@@ -2538,23 +2635,23 @@ luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_illuminance_retain(luxfer_illuminance *illuminance);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_illuminance_release(luxfer_illuminance *illuminance);
 
 /* ====================================================================================================================
  * Relighting
  *
- * Solves for the colour and intensity of an emission, so that a surface of the scene gets the colour it has in the photo:
- * what to multiply the emission with, per channel, with a confidence interval.
+ * Solves for the colour and intensity of an emission so that a surface of the scene has the same colour as in the
+ * photo. The solution is a factor for the emission, per channel, with a confidence interval.
  * ==================================================================================================================== */
 
 /** A relighting of a scene. See luxfer_relight_create. */
 typedef struct luxfer_relight luxfer_relight;
 
-/** What should match the photo: a LUXFER_QUANTITY_ value. */
+/** Quantity that should match the photo: a LUXFER_QUANTITY_ value. */
 typedef int32_t luxfer_quantity;
 
-/** What of the target counts: a LUXFER_FIT_ value. */
+/** How the target surface is compared: a LUXFER_FIT_ value. */
 typedef int32_t luxfer_fit;
 
 /** Settings of a relighting. Fill them with luxfer_relight_params_init. */
@@ -2563,14 +2660,14 @@ typedef struct luxfer_relight_params {
     uint32_t struct_size;
     /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
     luxfer_quantity quantity;
-    /** Most paths to trace, in [1024, 2^30]; default 2^20. */
+    /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
-     * Stop when the half-width of the widest 95 % interval is below this share of its answer, in [0, 1]; default 0.01; 0 =
-     * never.
+     * Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in [0, 1];
+     * default 0.01; 0: no target.
      */
     float target_error;
-    /** Stop after this many milliseconds; default 0: never. */
+    /** Stop after this number of milliseconds; default 0: no limit. */
     uint32_t time_budget_ms;
     /** LUXFER_FIT_ value; default LUXFER_FIT_MEAN. */
     luxfer_fit fit;
@@ -2578,74 +2675,76 @@ typedef struct luxfer_relight_params {
     uint64_t seed;
 } luxfer_relight_params;
 
-/** On which side of its value light should be: a LUXFER_SENSE_ value. */
+/** Whether light should equal its target value, or stay above or below it: a LUXFER_SENSE_ value. */
 typedef int32_t luxfer_sense;
 
-/** How far the answer goes to meet the target in one colour channel: a LUXFER_REACH_ value. */
+/** Whether the target is met in a colour channel, and if not, the reason: a LUXFER_REACH_ value. */
 typedef int32_t luxfer_reach;
 
-/** The solution and how sure it is. Set struct_size before the call. */
+/** The solution and its confidence. Set struct_size before the call. */
 typedef struct luxfer_relight_report {
     /** sizeof(luxfer_relight_report), set by the caller. */
     uint32_t struct_size;
-    /** Paths traced. */
+    /** Number of traced paths. */
     uint32_t paths;
-    /** What to multiply the emission with, per channel, >= 0. */
+    /** Factor for the emission, per channel, >= 0. */
     double scale[3];
     /** Half-widths of the 95 % confidence intervals of scale. */
     double half_width[3];
-    /** Mean radiance of the target under the emission at scale 1, in cd/m². */
+    /** Mean radiance of the target from the emission at scale 1, in cd/m². */
     double response[3];
-    /** Mean radiance of the target under all other light, in cd/m². */
+    /** Mean radiance of the target from all other light, in cd/m². */
     double background[3];
     /** LUXFER_REACH_ value of each channel. */
     luxfer_reach reach[3];
     /** 0. */
     uint32_t reserved;
-    /** The widest relative half-width among the channels that met their target. */
+    /** The largest relative half-width among the channels that meet their target. */
     double error;
     /**
-     * How far the target's colour may be off: 95 % of errors are below this CIEDE2000 difference, seen at the exposure
-     * that shows the target as a middle grey.
+     * Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this value, at
+     * the exposure that shows the target as middle grey.
      */
     double delta_e;
 } luxfer_relight_report;
 
-/** The light the target surface sends back, its albedo included: what a photo shows of it. */
+/** Light that the target surface reflects, its albedo included: the radiance that a photo shows. */
 #define LUXFER_QUANTITY_OUTGOING 0
 
-/** The light that arrives at it, as if it were white. */
+/** Light that arrives at the target surface, as if the surface were white. */
 #define LUXFER_QUANTITY_INCIDENT 1
 
-/** Its mean. */
+/** The mean over the target surface. */
 #define LUXFER_FIT_MEAN 0
 
 /**
- * Every point of it, by least squares: what gradient descent on texels comes to. Bright points count more, so the answer is
- * dimmer than that of the mean, by 1 / (1 + CV²) without other light, where CV is the spread of the response over the target
- * relative to its mean.
+ * Every point of the target surface, by least squares, as gradient descent on texels does. Bright points count more,
+ * so the emission is dimmer than with LUXFER_FIT_MEAN: by the factor 1 / (1 + CV²) without other light, where CV is
+ * the coefficient of variation of the response over the target.
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
-/** At it. */
+/** The light should equal the value. */
 #define LUXFER_SENSE_EXACTLY 0
 
-/** At it or above: what a standard asks of a desk, or what a clipped channel of a photo says. */
+/**
+ * The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a photo shows.
+ */
 #define LUXFER_SENSE_AT_LEAST 1
 
-/** At it or below: a limit against glare. */
+/** The light should be at most the value, as a limit against glare. */
 #define LUXFER_SENSE_AT_MOST 2
 
 /** The target is met. */
 #define LUXFER_REACH_MET 0
 
-/** Other lights alone exceed the target: the emission is off in this channel. */
+/** The other lights alone exceed the target: the emission is 0 in this channel. */
 #define LUXFER_REACH_TOO_BRIGHT 1
 
-/** No light of this channel reaches the target: the emission keeps the mean scale of the other channels. */
+/** No light of this channel reaches the target: the emission uses the mean scale of the other channels. */
 #define LUXFER_REACH_DARK 2
 
-/** All lamps at their largest power do not suffice, or one goal asks for what another forbids. */
+/** All lamps at their largest power are too weak, or two goals contradict each other. */
 #define LUXFER_REACH_TOO_DIM 3
 
 /**
@@ -2658,8 +2757,9 @@ luxfer_status luxfer_relight_params_init(luxfer_relight_params *params,
 luxfer_status luxfer_relight_create(luxfer_context *context, luxfer_relight **relight);
 
 /**
- * Sets the scene, the emitting material to solve for, and the mesh whose mean colour is to match: both as
- * luxfer_scene_place_emission has told them. The emission has the strength that the solution will multiply. Any thread.
+ * Sets the scene, the emitting material to solve for, and the mesh whose mean colour should match;
+ * luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has in
+ * the scene. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material or mesh.
  */
 luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
@@ -2668,18 +2768,16 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
                                        uint32_t mesh);
 
 /**
- * Sets the mean radiance the mesh should have, in cd/m² per channel, each finite and >= 0; for LUXFER_QUANTITY_INCIDENT
- * that of a white surface in the same light, illuminance / pi. Any thread.
+ * Sets the mean radiance that the mesh should have, in cd/m² per channel, each finite and >= 0; for
+ * LUXFER_QUANTITY_INCIDENT the radiance of a white surface in the same light, illuminance / pi. Any thread.
  */
-luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
-                                        float red,
-                                        float green,
-                                        float blue);
+luxfer_status luxfer_relight_set_target(luxfer_relight *relight, float red, float green, float blue);
 
 /**
- * Makes the target a limit, in each channel for itself: LUXFER_SENSE_ values. What a photo clips is "at least". A limited
- * channel keeps the mean scale of those that are to be at their target, as far as that is on its side, and goes to its
- * limit if not. Any thread. LUXFER_INVALID_ARGUMENT if a value is none of them.
+ * Makes the target a limit, separately in each channel: LUXFER_SENSE_ values. A channel that the photo clips should be
+ * LUXFER_SENSE_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
+ * respects the limit, else the scale that reaches the limit. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_SENSE_ value.
  */
 luxfer_status luxfer_relight_set_sense(luxfer_relight *relight,
                                        luxfer_sense red,
@@ -2689,15 +2787,15 @@ luxfer_status luxfer_relight_set_sense(luxfer_relight *relight,
 /**
  * Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
- * LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or
- * a setting is out of range.
+ * LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
+ * valid or a setting is out of range.
  */
 luxfer_status luxfer_relight_start(luxfer_relight *relight,
                                    const luxfer_relight_params *params,
                                    luxfer_job **job);
 
 /**
- * Tells the solution and how sure it is. Any thread.
+ * Gets the solution and its confidence. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_relight_get_report(luxfer_relight *relight, luxfer_relight_report *report);
@@ -2705,23 +2803,23 @@ luxfer_status luxfer_relight_get_report(luxfer_relight *relight, luxfer_relight_
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_relight_retain(luxfer_relight *relight);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_relight_release(luxfer_relight *relight);
 
 /* ====================================================================================================================
  * Lamps
  *
- * Powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and calculation grids
- * that should have a given light. One set of paths per goal measures its response to every lamp, thousands of them at
- * once.
+ * Solves for the powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and
+ * calculation grids that should receive a given light. One set of paths per goal measures its response to all lamps at
+ * once, even to thousands.
  * ==================================================================================================================== */
 
-/** A calculation of lamps. See luxfer_lamps_create. */
+/** A solver for the powers of lamps. See luxfer_lamps_create. */
 typedef struct luxfer_lamps luxfer_lamps;
 
 /**
- * Which lamps share their power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission's texture, or, where it
- * has none, a connected piece of its meshes.
+ * Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission texture, or a
+ * connected piece of the meshes if the emission has no texture.
  */
 typedef int32_t luxfer_group;
 
@@ -2731,23 +2829,36 @@ typedef struct luxfer_lamps_params {
     uint32_t struct_size;
     /** LUXFER_GROUP_ value; default LUXFER_GROUP_EACH. */
     luxfer_group group;
-    /** Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01. */
+    /**
+     * Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a new
+     * row; default 0.01.
+     */
     float row_tolerance;
-    /** 1: each channel of a group is solved for itself, for goals of colour only; 0: its power alone; default 0. */
+    /**
+     * 1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default: solve
+     * for the power only.
+     */
     uint32_t free_colour;
-    /** Largest multiplier of a group, >= 0; default infinity. */
+    /** Largest factor for the emission of a group, >= 0; default infinity. */
     double most;
-    /** How much lamps that differ weigh against missing the goals, in [1e-9, 1e3]; default 1e-6. */
+    /**
+     * Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
+     * powers equal; default 1e-6.
+     */
     double evenness;
     /**
-     * A goal is met when it is missed by no more than this share of itself, in [1e-6, 1], or its noise; default 0.01.
+     * A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise; default
+     * 0.01.
      */
     double tolerance;
-    /** Most paths to trace for a goal, in [1024, 2^30]; default 2^20. */
+    /** Maximum number of paths for each goal, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
-    /** Stop when a goal's response to all lamps together is known to this share, in [0, 1]; default 0.01; 0 = never. */
+    /**
+     * Stop tracing a goal when the relative error of its response to all lamps together is below this value, in [0,
+     * 1]; default 0.01; 0: no target.
+     */
     float target_error;
-    /** Stop after this many milliseconds; default 0: never. */
+    /** Stop after this number of milliseconds; default 0: no limit. */
     uint32_t time_budget_ms;
     /** Must be 0. */
     uint32_t reserved;
@@ -2755,23 +2866,24 @@ typedef struct luxfer_lamps_params {
     uint64_t seed;
 } luxfer_lamps_params;
 
-/** All lamps. */
+/** All lamps form one group. */
 #define LUXFER_GROUP_ALL 0
 
-/** Every lamp for itself. */
+/** Each lamp is a group of its own. */
 #define LUXFER_GROUP_EACH 1
 
-/** Those whose centres agree in their first coordinate: u of a texture, x of meshes. */
+/** Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes. */
 #define LUXFER_GROUP_FIRST 2
 
-/** Those whose centres agree in their second coordinate: v of a texture, y of meshes. */
+/** Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes. */
 #define LUXFER_GROUP_SECOND 3
 
-/** Those whose centres agree in their third coordinate: z of meshes. */
+/** Lamps whose centres agree in their third coordinate form a group: z of meshes. */
 #define LUXFER_GROUP_THIRD 4
 
 /**
- * Those of a type: of about the same area; of lights without a surface points, spots, and luminaires by their distribution.
+ * Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
+ * luminaires of one distribution.
  */
 #define LUXFER_GROUP_TYPE 5
 
@@ -2785,9 +2897,9 @@ luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
 luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
 
 /**
- * Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply, or
- * LUXFER_NONE: then the lamps are the scene's lights without a surface, by their index, as luxfer_scene_add_luminaire hangs
- * them. Forgets the goals. Any thread.
+ * Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
+ * they have in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
+ * luxfer_scene_add_light and luxfer_scene_add_luminaire add them. Removes all goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material.
  */
 luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
@@ -2795,11 +2907,12 @@ luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
                                      uint32_t material);
 
 /**
- * Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
- * error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
- * light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
- * range.
+ * Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
+ * with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
+ * Any thread.
+ * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. The job may end with
+ * LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
+ * emission has no lamp, or a setting is out of range.
  */
 luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
                                  const luxfer_lamps_params *params,
@@ -2808,19 +2921,19 @@ luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_lamps_retain(luxfer_lamps *lamps);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
 
 /* ====================================================================================================================
  * Goals of lamps
  *
- * What lamps are for: surfaces and calculation grids that should have a given light, just that or as a limit, and the steps that
- * their drivers have.
+ * Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit, and
+ * the dimming levels of the lamps' drivers.
  * ==================================================================================================================== */
 
 /**
- * Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
- * LUXFER_QUANTITY_ value; weight, >= 0, is what missing it weighs beside the other goals. Any thread.
+ * Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
+ * LUXFER_QUANTITY_ value; weight, >= 0, is relative to the other goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
  */
 luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
@@ -2832,9 +2945,9 @@ luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
                                     double weight);
 
 /**
- * Adds a goal: the mean illuminance in lux that a calculation grid should have, of whatever colour; weight as above. grid may
- * be NULL for its default. Any thread.
- * LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ * Adds a goal: the mean illuminance in lux that a calculation grid should have, for light of any colour; weight, >= 0,
+ * is relative to the other goals. grid may be NULL for its default. Any thread.
+ * LUXFER_INVALID_ARGUMENT if lux is negative or not finite, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
  */
 luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     const luxfer_illuminance_grid *grid,
@@ -2842,8 +2955,9 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     double weight);
 
 /**
- * Makes a goal a limit, in each channel for itself: LUXFER_SENSE_ values; those of a goal in lux must be the same. Goals are
- * counted from 0 as they were added, and ask for just their value until then. Any thread.
+ * Makes a goal a limit, separately in each channel: LUXFER_SENSE_ values. The three values of a goal in lux must be
+ * equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_SENSE_EXACTLY. Any
+ * thread.
  * LUXFER_NOT_FOUND if there is no such goal.
  */
 luxfer_status luxfer_lamps_set_sense(luxfer_lamps *lamps,
@@ -2853,25 +2967,25 @@ luxfer_status luxfer_lamps_set_sense(luxfer_lamps *lamps,
                                      luxfer_sense blue);
 
 /**
- * Sets the multipliers that the lamps' drivers can be dimmed to, each finite and >= 0, in any order; count is at most 4096, 0
- * for drivers that have no steps. The groups then get the levels that together are best for the goals, and half-widths
- * stay those of powers without steps. Any thread.
- * LUXFER_INVALID_ARGUMENT if a level is not finite or negative, or there are too many.
+ * Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
+ * count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group one of the levels,
+ * so that together they are best for the goals; the half-widths remain those of powers without steps. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
                                       const double *levels,
                                       uint32_t count);
 
-/** Forgets the goals. Any thread. */
+/** Removes all goals. Any thread. */
 luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
 
 /* ====================================================================================================================
  * Results of lamps
  *
- * The powers found, what each goal gets, and what each lamp means to it.
+ * The powers found, the light that each goal receives, and the contribution of each lamp to each goal.
  * ==================================================================================================================== */
 
-/** The result on the whole. Set struct_size before the call. */
+/** Summary of the result. Set struct_size before the call. */
 typedef struct luxfer_lamps_report {
     /** sizeof(luxfer_lamps_report), set by the caller. */
     uint32_t struct_size;
@@ -2881,9 +2995,9 @@ typedef struct luxfer_lamps_report {
     uint32_t groups;
     /** Number of goals. */
     uint32_t goals;
-    /** Paths traced for each goal. */
+    /** Number of paths traced for each goal. */
     uint32_t paths;
-    /** 1 if all goals are met; 0 if not: luxfer_lamps_get_reason tells why. */
+    /** 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason. */
     uint32_t met;
 } luxfer_lamps_report;
 
@@ -2891,64 +3005,64 @@ typedef struct luxfer_lamps_report {
 typedef struct luxfer_lamp {
     /** sizeof(luxfer_lamp), set by the caller. */
     uint32_t struct_size;
-    /** The group it is in. */
+    /** Index of its group. */
     uint32_t group;
-    /** Its centre: texture coordinates and 0, or metres. */
+    /** Centre: texture coordinates and 0, or, without a texture, the position in metres. */
     double centre[3];
-    /** What to multiply its emission with, per channel, >= 0. */
+    /** Factor for its emission, per channel, >= 0. */
     double scale[3];
     /** Half-widths of the 95 % confidence intervals of scale. */
     double half_width[3];
 } luxfer_lamp;
 
-/** What a goal gets. Set struct_size before the call. */
+/** The light that a goal receives. Set struct_size before the call. */
 typedef struct luxfer_lamps_goal {
     /** sizeof(luxfer_lamps_goal), set by the caller. */
     uint32_t struct_size;
     /** LUXFER_REACH_ value of each channel. */
     luxfer_reach reach[3];
-    /** Mean radiance asked for, in cd/m²; illuminance / pi for a grid. */
+    /** Mean radiance of the goal, in cd/m²; illuminance / pi for a grid. */
     double target[3];
-    /** Mean radiance under the powers found. */
+    /** Mean radiance with the powers found, in cd/m². */
     double achieved[3];
     /** Half-widths of the 95 % confidence intervals of achieved. */
     double half_width[3];
-    /** Mean radiance under all other light. */
+    /** Mean radiance from all other light, in cd/m². */
     double background[3];
 } luxfer_lamps_goal;
 
-/** What one lamp means to one goal. Set struct_size before the call. */
+/** The light that one goal receives from one lamp. Set struct_size before the call. */
 typedef struct luxfer_lamps_response {
     /** sizeof(luxfer_lamps_response), set by the caller. */
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
-    /** Mean radiance of the goal under the lamp as it is, in cd/m² per channel. */
+    /** Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel. */
     double mean[3];
     /** Half-widths of the 95 % confidence intervals of mean. */
     double half_width[3];
 } luxfer_lamps_response;
 
 /**
- * Tells the result on the whole. Any thread.
+ * Gets the summary of the result. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_lamps_get_report(luxfer_lamps *lamps, luxfer_lamps_report *report);
 
 /**
- * Tells the power of a lamp. Any thread.
+ * Gets the power of a lamp. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
  */
 luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps, uint32_t index, luxfer_lamp *lamp);
 
 /**
- * Tells what a goal gets. Any thread.
+ * Gets the light that a goal receives. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
  */
 luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps, uint32_t index, luxfer_lamps_goal *goal);
 
 /**
- * Tells what a lamp means to a goal, for hosts that mix the light themselves. Any thread.
+ * Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
  */
 luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
@@ -2957,8 +3071,8 @@ luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
                                         luxfer_lamps_response *response);
 
 /**
- * Copies the reason why the goals are not all met, zero-terminated, into buffer of capacity bytes, cut if it is longer;
- * empty if they are. *needed, unless NULL, receives the capacity for all of it. Any thread.
+ * Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes; the text
+ * is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text needs. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
@@ -2967,7 +3081,7 @@ luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
                                       size_t *needed);
 
 /**
- * Gets the emission's texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
+ * Gets the emission texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
  * thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
  */
@@ -2977,8 +3091,9 @@ luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
 /* ====================================================================================================================
  * Importance
  *
- * What each point of an emission's surface means to a target: traced once, after which the light of any texture there,
- * however it is scaled, turned and shifted, is told at once, with a confidence interval.
+ * A map of the light that each point of an emitting surface would send to a target. It is traced once; then it gives
+ * the light of any emissive texture on that surface, at any scale, rotation and offset, within milliseconds and with a
+ * confidence interval.
  * ==================================================================================================================== */
 
 /** A map of importance. See luxfer_importance_create. */
@@ -2994,11 +3109,14 @@ typedef struct luxfer_importance_params {
     uint32_t height;
     /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
     luxfer_quantity quantity;
-    /** Most paths to trace, in [1024, 2^30]; default 2^20. */
+    /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
-    /** Stop when the response to an even emission is known to this share, in [0, 1]; default 0.01; 0 = never. */
+    /**
+     * Stop when the relative error of the response to a uniform emission is below this value, in [0, 1]; default 0.01;
+     * 0: no target.
+     */
     float target_error;
-    /** Stop after this many milliseconds; default 0: never. */
+    /** Stop after this number of milliseconds; default 0: no limit. */
     uint32_t time_budget_ms;
     /** Must be 0. */
     uint32_t reserved;
@@ -3006,17 +3124,20 @@ typedef struct luxfer_importance_params {
     uint64_t seed;
 } luxfer_importance_params;
 
-/** What a texture means to the target. Set struct_size before the call. */
+/** The light that the target receives from a texture. Set struct_size before the call. */
 typedef struct luxfer_importance_report {
     /** sizeof(luxfer_importance_report), set by the caller. */
     uint32_t struct_size;
-    /** Paths behind the map. */
+    /** Number of paths of the map. */
     uint32_t paths;
-    /** Mean radiance of the target under the texture, in cd/m² per channel as the texture's values are. */
+    /** Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture. */
     double response[3];
     /** Half-widths of the 95 % confidence intervals of response. */
     double half_width[3];
-    /** What cells of twice the side change, noise included; the cells themselves are off by about a third of it. */
+    /**
+     * Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
+     * cells is about a third of it.
+     */
     double band_error[3];
 } luxfer_importance_report;
 
@@ -3030,8 +3151,8 @@ luxfer_status luxfer_importance_params_init(luxfer_importance_params *params,
 luxfer_status luxfer_importance_create(luxfer_context *context, luxfer_importance **importance);
 
 /**
- * Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is the
- * target; what of it emits in the scene as it is is left out. Any thread.
+ * Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is
+ * the target. The current emission of the material does not count. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material or mesh.
  */
 luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
@@ -3040,26 +3161,27 @@ luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
                                           uint32_t mesh);
 
 /**
- * Starts a job that traces the map; a placement that was found is forgotten. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
- * the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
+ * Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
+ * releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
  */
 luxfer_status luxfer_importance_start(luxfer_importance *importance,
                                       const luxfer_importance_params *params,
                                       luxfer_job **job);
 
 /**
- * Gets the map: what the target's mean radiance would be, per channel, if a cell emitted 1 cd/m² and nothing else did. The
- * caller releases *image. Any thread.
+ * Gets the map: for each cell, the mean radiance of the target, per channel, if only this cell emitted, with 1 cd/m².
+ * The caller releases *image. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
                                           luxfer_image **image);
 
 /**
- * Tells what a texture (linear, in cd/m²; it repeats) means to the target. placement leads from the surface's texture
- * coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for where they are the same. Takes some
- * milliseconds. Any thread.
+ * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps the
+ * surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the identity.
+ * Takes a few milliseconds. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
  */
 luxfer_status luxfer_importance_respond(luxfer_importance *importance,
@@ -3068,8 +3190,8 @@ luxfer_status luxfer_importance_respond(luxfer_importance *importance,
                                         luxfer_importance_report *report);
 
 /**
- * Solves for what to multiply a texture with, so that the target has a mean radiance, in cd/m² per channel, each finite and
- * >= 0, as luxfer_relight does it by tracing; texture and placement as above. Any thread.
+ * Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each finite
+ * and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
  */
 luxfer_status luxfer_importance_solve(luxfer_importance *importance,
@@ -3083,88 +3205,94 @@ luxfer_status luxfer_importance_solve(luxfer_importance *importance,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_importance_retain(luxfer_importance *importance);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_importance_release(luxfer_importance *importance);
 
 /* ====================================================================================================================
  * Placement
  *
- * Where a texture should lie on a surface, so that its target gets most light, least, or just as much as it should: found by
- * gradient on the map of luxfer_importance, without tracing a path.
+ * Finds the position of a texture on a surface that gives a target the most light, the least light, or a given
+ * radiance, by gradient descent on the map of luxfer_importance, without tracing more paths.
  * ==================================================================================================================== */
 
-/** What a placement should do: a LUXFER_AIM_ value. */
+/** Objective of a placement: a LUXFER_AIM_ value. */
 typedef int32_t luxfer_aim;
 
 /**
- * What may be, and what is best. A texture is scaled and then turned about the centre of the surface's texture coordinates,
- * and shifted. Fill it with luxfer_placement_params_init.
+ * Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated about their
+ * centre (0.5, 0.5), and then shifted. Fill it with luxfer_placement_params_init.
  */
 typedef struct luxfer_placement_params {
     /** sizeof(luxfer_placement_params), set by luxfer_placement_params_init. */
     uint32_t struct_size;
     /** LUXFER_AIM_ value; default LUXFER_AIM_MOST. */
     luxfer_aim aim;
-    /** The radiance to aim at, in cd/m² per channel, each finite and >= 0; default 0. */
+    /** Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0. */
     float radiance[3];
-    /** Places the search starts from, in [1, 4096]; default 64. */
+    /** Number of placements at which the search starts, in [1, 4096]; default 64. */
     uint32_t starts;
-    /** Smallest offset along u and v of the texture, which has period 1, in [-16, 16]; default -0.5. */
+    /** Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5. */
     double least_offset[2];
-    /** Largest; default 0.5. Where smallest and largest are the same, here and below, nothing changes. */
+    /**
+     * Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value is
+     * fixed.
+     */
     double most_offset[2];
-    /** How often the texture repeats along the surface's u and v, at least, in [1/64, 64]; default 1. */
+    /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
     double least_scale[2];
-    /** At most; default 1. */
+    /** Largest number of repetitions, in [1/64, 64]; default 1. */
     double most_scale[2];
     /** Smallest rotation in radians, in [-2 pi, 2 pi]; default 0. */
     double least_rotation;
-    /** Largest; default 0. */
+    /** Largest rotation in radians, in [-2 pi, 2 pi]; default 0. */
     double most_rotation;
-    /** Seed of the places; default 1. */
+    /** Seed of the starting placements; default 1. */
     uint64_t seed;
 } luxfer_placement_params;
 
-/** The best placement, and what it means to the target. Set struct_size before the call. */
+/** The best placement, and the light that the target then receives. Set struct_size before the call. */
 typedef struct luxfer_placement {
     /** sizeof(luxfer_placement), set by the caller. */
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
-    /** From the surface's texture coordinates to those of the texture, as luxfer_importance_respond takes it. */
+    /** The map from the surface's texture coordinates to those of the texture, as for luxfer_importance_respond. */
     double placement[9];
-    /** Its offset along u and v. */
+    /** Offset along u and v. */
     double offset[2];
-    /** Its scale along u and v. */
+    /** Scale along u and v. */
     double scale[2];
-    /** Its rotation in radians. */
+    /** Rotation in radians. */
     double rotation;
-    /** Mean radiance of the target under the texture alone, in cd/m² per channel. */
+    /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
     double response[3];
     /** Half-widths of the 95 % confidence intervals of response. */
     double half_width[3];
-    /** What cells of twice the side change, noise included; the cells themselves are off by about a third of it. */
+    /**
+     * Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
+     * cells is about a third of it.
+     */
     double band_error[3];
 } luxfer_placement;
 
-/** As much luminance for the target as possible. */
+/** The largest luminance of the target. */
 #define LUXFER_AIM_MOST 0
 
-/** As little. */
+/** The smallest luminance of the target. */
 #define LUXFER_AIM_LEAST 1
 
-/** The mean radiance of the target that is given, all other light included. */
+/** The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included. */
 #define LUXFER_AIM_RADIANCE 2
 
 /**
- * Fills *params with the defaults: any offset, at the scale and rotation there are; size is sizeof *params.
+ * Fills *params with the defaults: any offset, with fixed scale 1 and rotation 0; size is sizeof *params.
  * LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
 luxfer_status luxfer_placement_params_init(luxfer_placement_params *params, size_t size);
 
 /**
- * Starts a job that finds the placement of a texture (linear, in cd/m²; it repeats) that is best for the target. params may
- * be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that finds the best placement of a texture (linear, in cd/m²; it repeats) for the target. params may be
+ * NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
  * LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
@@ -3175,7 +3303,8 @@ luxfer_status luxfer_importance_start_placement(luxfer_importance *importance,
 
 /**
  * Gets the placement that was found. Any thread.
- * LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and again when another map is traced.
+ * LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
+ * started.
  */
 luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
                                               luxfer_placement *placement);
@@ -3183,29 +3312,33 @@ luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
 /* ====================================================================================================================
  * Photometry
  *
- * What lighting design calls a light: its correlated colour temperature, and the glare of a view. These calls return when
- * they are done.
+ * Photometric quantities of lighting design: the correlated colour temperature of a light, and the glare of a view.
+ * These calls return when their work is done.
  * ==================================================================================================================== */
 
 /** The glare of a view. Set struct_size before the call. */
 typedef struct luxfer_glare_report {
     /** sizeof(luxfer_glare_report), set by the caller. */
     uint32_t struct_size;
-    /** Sources of glare. */
+    /** Number of glare sources. */
     uint32_t sources;
-    /** Unified glare rating (CIE 117): below 10 means none, 19 is what offices may have; -infinity without sources. */
+    /**
+     * Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity without
+     * sources.
+     */
     double ugr;
     /** Luminance of the background in cd/m². */
     double background;
-    /** Luminance from which on a pixel counted as glare, in cd/m². */
+    /** Luminance in cd/m² above which a pixel counted as a glare source. */
     double threshold;
-    /** Solid angle of all sources in steradian. */
+    /** Solid angle of all sources in steradians. */
     double solid_angle;
 } luxfer_glare_report;
 
 /**
- * Names a linear colour by the blackbody nearest to it: *kelvin receives the correlated colour temperature, in [1000, 20000],
- * *duv the distance from it in the CIE 1960 diagram, positive where it is greenish. Any thread.
+ * Gets the correlated colour temperature of a linear colour: *kelvin receives the temperature of the nearest
+ * blackbody, in [1000, 20000], *duv the distance from the blackbody in the CIE 1960 diagram, positive for greenish
+ * colours. Any thread.
  * LUXFER_DEGENERATE if the colour is black or not finite.
  */
 luxfer_status luxfer_colour_temperature(luxfer_context *context,
@@ -3216,8 +3349,9 @@ luxfer_status luxfer_colour_temperature(luxfer_context *context,
                                         double *duv);
 
 /**
- * Fills rgb, three numbers, with the linear colour of luminance 1 of a temperature in [1000, 20000] kelvin, at a distance
- * duv, in [-0.05, 0.05], from the blackbody; a channel is negative where the colour is out of gamut. Any thread.
+ * Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
+ * 20000], duv, the distance from the blackbody, in [-0.05, 0.05]. A channel is negative if the colour is out of gamut.
+ * Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_colour_of_temperature(luxfer_context *context,
@@ -3226,9 +3360,10 @@ luxfer_status luxfer_colour_of_temperature(luxfer_context *context,
                                            double *rgb);
 
 /**
- * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB): what a level view sees whose vertical
- * angle is fov_y, in radians. Sources are the connected patches from a luminance of threshold on; 0 = five times the mean.
- * The wider the image, the truer its background. Any thread.
+ * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with the
+ * vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
+ * threshold; 0: five times the mean luminance. A wider angle of view gives a better estimate of the background
+ * luminance. Any thread.
  * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
  */
 luxfer_status luxfer_image_glare(luxfer_image *image,
@@ -3239,13 +3374,13 @@ luxfer_status luxfer_image_glare(luxfer_image *image,
 /* ====================================================================================================================
  * False colour
  *
- * A luminance or illuminance image as colours whose order the eye sees, with a scale bar.
+ * Shows a luminance or illuminance image in false colours of rising brightness, with a scale bar.
  * ==================================================================================================================== */
 
-/** How values are spread over the colours: a LUXFER_SCALE_ value. */
+/** The scale from values to colours: a LUXFER_SCALE_ value. */
 typedef int32_t luxfer_scale;
 
-/** What the values of an image are: a LUXFER_UNIT_ value. */
+/** The quantity of an image's values: a LUXFER_UNIT_ value. */
 typedef int32_t luxfer_unit;
 
 /** Settings of a false colour image. Fill them with luxfer_false_colour_params_init. */
@@ -3256,20 +3391,21 @@ typedef struct luxfer_false_colour_params {
     luxfer_scale scale;
     /** LUXFER_UNIT_ value, written above the bar; default LUXFER_UNIT_LUMINANCE. */
     luxfer_unit unit;
-    /** 1: draw the scale bar beside the image, which then is wider; 0: none; default 1. */
+    /** 1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar. */
     uint32_t bar;
     /**
-     * Value of the darkest colour, >= 0; on a logarithmic scale 0 stands for a thousandth of the largest; default 0.
+     * Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the lightest
+     * colour; default 0.
      */
     double least;
-    /** Value of the lightest colour, more than least; 0 stands for the largest value of the image; default 0. */
+    /** Value of the lightest colour, greater than least; 0, the default, means the largest value of the image. */
     double most;
 } luxfer_false_colour_params;
 
-/** Evenly. */
+/** Linear: equal differences of the value have equal width. */
 #define LUXFER_SCALE_LINEAR 0
 
-/** Decades are equally wide. */
+/** Logarithmic: decades have equal width. */
 #define LUXFER_SCALE_LOGARITHMIC 1
 
 /** Luminance in cd/m². */
@@ -3285,11 +3421,11 @@ luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_params *params
                                               size_t size);
 
 /**
- * Shows an image (1 channel, or linear RGB, of which the luminance counts) in false colour: linear RGB, grey where a value is
- * NaN. params may be NULL for the defaults. Takes some milliseconds for each megapixel. The caller releases *shown. Any
- * thread.
- * LUXFER_INVALID_ARGUMENT if the range is none, or the image has no light to take it from; LUXFER_OUT_OF_MEMORY beyond the
- * memory budget.
+ * Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: linear RGB, grey where a
+ * value is NaN. params may be NULL for the defaults. Takes a few milliseconds per megapixel. The caller releases
+ * *shown. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is black;
+ * LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_image_false_colour(luxfer_image *image,
                                         const luxfer_false_colour_params *params,
@@ -3298,23 +3434,28 @@ luxfer_status luxfer_image_false_colour(luxfer_image *image,
 /* ====================================================================================================================
  * Lighting design
  *
- * What luminaires can make of a light that was found: the drives of their LEDs, the blackbody that comes nearest; what it takes
- * in power; and what a standard asks for. These calls return when they are done.
+ * Realises a solved light with real luminaires: the drive levels of LED primaries, the nearest blackbody light, the
+ * electric power, and the requirements of a standard. These calls return when their work is done.
  * ==================================================================================================================== */
 
-/** A light mixed from primaries. Set struct_size before the call. */
+/** A colour mixed from primaries. Set struct_size before the call. */
 typedef struct luxfer_mixture {
     /** sizeof(luxfer_mixture), set by the caller. */
     uint32_t struct_size;
-    /** 1 if it is the colour asked for; 0 if that is out of reach, and this the nearest. */
+    /**
+     * 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
+     * mixture.
+     */
     uint32_t reached;
-    /** The linear colour it is. */
+    /** Linear colour of the mixture. */
     double colour[3];
-    /** CIEDE2000 difference from the colour asked for, seen at the exposure that shows that as a middle grey. */
+    /**
+     * CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
+     */
     double delta_e;
 } luxfer_mixture;
 
-/** The blackbody light that suits a target. Set struct_size before the call. */
+/** The blackbody light that fits a target best. Set struct_size before the call. */
 typedef struct luxfer_temperature_fit {
     /** sizeof(luxfer_temperature_fit), set by the caller. */
     uint32_t struct_size;
@@ -3322,41 +3463,42 @@ typedef struct luxfer_temperature_fit {
     uint32_t reserved;
     /** Correlated colour temperature, in [1000, 20000] kelvin. */
     double kelvin;
-    /** Luminance of the emission, >= 0, where responses are those to 1 cd/m² of white. */
+    /** Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m². */
     double luminance;
-    /** Mean radiance of the target under it and all other light, in cd/m². */
+    /** Mean radiance of the target from this light and all other light, in cd/m². */
     double achieved[3];
-    /** CIEDE2000 difference of that from the target, seen at the exposure that shows the target as a middle grey. */
+    /** CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle grey. */
     double delta_e;
 } luxfer_temperature_fit;
 
 /**
- * What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts.
- * Set struct_size before the call.
+ * Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the standard itself
+ * is binding. Set struct_size before the call.
  */
 typedef struct luxfer_preset {
     /** sizeof(luxfer_preset), set by the caller. */
     uint32_t struct_size;
     /** Year of the edition of the standard. */
     uint32_t edition;
-    /** Least mean illuminance of the task area, in lux. */
+    /** Minimum mean illuminance of the task area, in lux. */
     double illuminance;
-    /** Largest unified glare rating. */
+    /** Maximum unified glare rating. */
     double glare;
-    /** Least uniformity U0 of the task area. */
+    /** Minimum uniformity U0 of the task area. */
     double uniformity;
-    /** Least colour rendering index. */
+    /** Minimum colour rendering index. */
     double rendering;
-    /** Least mean illuminance of the walls, in lux; 0 where none is asked for. */
+    /** Minimum mean illuminance of the walls, in lux; 0 if there is no requirement. */
     double walls;
-    /** Least mean illuminance of the ceiling, in lux; 0 where none is asked for. */
+    /** Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement. */
     double ceiling;
 } luxfer_preset;
 
 /**
- * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire: primaries holds the linear RGB
- * of each at a drive of 1, negative where it is out of gamut; count is in [1, 64]. drives receives count numbers in
- * [0, most]; most may be infinite. Of several mixtures it is the one of least squared drives. Any thread.
+ * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
+ * linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
+ * drives receives count drive levels in [0, most]; most may be infinite. If several mixtures give the colour, the one
+ * with the smallest sum of squared drive levels is returned. Any thread.
  * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
@@ -3368,9 +3510,9 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    luxfer_mixture *mixture);
 
 /**
- * Finds the temperature and strength of blackbody light that bring a target nearest to a mean radiance. response, background
- * and target hold three channels each: what luxfer_relight_get_report or luxfer_importance_respond tell for a white
- * emission, what other lights bring, and what is wanted. Any thread.
+ * Finds the temperature and luminance of the blackbody light that brings a target nearest to a mean radiance. Each
+ * array holds three channels: response is the response to a white emission, from luxfer_relight_get_report or
+ * luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. Any thread.
  * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,
@@ -3380,8 +3522,8 @@ luxfer_status luxfer_fit_temperature(luxfer_context *context,
                                      luxfer_temperature_fit *fit);
 
 /**
- * Tells the electric power per floor area, in W/m², that a luminous flux takes: flux in lumens, >= 0, efficacy of the
- * luminaires in lumens per watt and area in m², both > 0. Any thread.
+ * Computes the electric power per floor area, in W/m²: flux is the luminous flux in lumens, >= 0, efficacy that of the
+ * luminaires in lumens per watt, area in m², both > 0. Any thread.
  * LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_power_density(luxfer_context *context,
@@ -3390,18 +3532,18 @@ luxfer_status luxfer_power_density(luxfer_context *context,
                                    double area,
                                    double *density);
 
-/** Tells the number of presets. Any thread. */
+/** Gets the number of presets. Any thread. */
 luxfer_status luxfer_preset_count(luxfer_context *context, uint32_t *count);
 
 /**
- * Tells what a preset asks for. Any thread.
+ * Gets the requirements of a preset. Any thread.
  * LUXFER_NOT_FOUND if there is no such preset.
  */
 luxfer_status luxfer_preset_get(luxfer_context *context, uint32_t index, luxfer_preset *preset);
 
 /**
- * Copies the name of a preset, such as "office: filing, copying", zero-terminated, into buffer of capacity bytes, cut if it is
- * longer. *needed, unless NULL, receives the capacity for all of it. Any thread.
+ * Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
+ * capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
  * LUXFER_NOT_FOUND if there is no such preset.
  */
 luxfer_status luxfer_preset_name(luxfer_context *context,
@@ -3413,55 +3555,59 @@ luxfer_status luxfer_preset_name(luxfer_context *context,
 /* ====================================================================================================================
  * Pattern
  *
- * How the lights of a transfer lie on the surface: how large, how turned, from where on, and where not.
+ * Size, rotation and offset of the light pattern of a transfer on the surface, and the areas without lamps.
  * ==================================================================================================================== */
 
-/** What sets the size of the pattern on the surface: a LUXFER_PATTERN_ value. */
+/** The length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value. */
 typedef int32_t luxfer_pattern_scale;
 
 /**
- * How the pattern lies on the surface, whose axes u and v and corner are those of luxfer_surface. Fill it with
- * luxfer_pattern_params_init.
+ * Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of luxfer_surface.
+ * Fill it with luxfer_pattern_params_init.
  */
 typedef struct luxfer_pattern_params {
     /** sizeof(luxfer_pattern_params), set by luxfer_pattern_params_init. */
     uint32_t struct_size;
     /** LUXFER_PATTERN_ value; default LUXFER_PATTERN_DISTANCE. */
     luxfer_pattern_scale scale;
-    /** What the lamp or the spacing measures, in metres, in [1e-6, 1e6]; default 1. The other scales do not read it. */
+    /**
+     * Length of the lamp or the spacing, in metres, in [1e-6, 1e6]; default 1. Only LUXFER_PATTERN_LAMP and
+     * LUXFER_PATTERN_SPACING use it.
+     */
     double length;
     /**
-     * Metres per texel, in [0, 1e6]; 0, the default, is as fine as the unwarped photo, where max_texels of
-     * luxfer_transfer_params allows it.
+     * Size of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, as far as max_texels of
+     * luxfer_transfer_params allows.
      */
     double texel_size;
-    /** Turn of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
+    /** Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
     double rotation;
     /**
-     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice go anywhere,
-     * and are not shifted.
+     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices only: lamps
+     * without a lattice have no fixed places and are not shifted.
      */
     double offset[2];
     /**
-     * Distance in metres that lamps keep from the edge of the surface and from the zones of luxfer_transfer_set_zones, in
-     * [-1, 1e6]; those that do not are left
-     * out. Below 0 the edge of the surface cuts lamps; default -1.
+     * Minimum distance in metres of lamps from the edge of the surface and from the zones of
+     * luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
+     * default -1, keeps the lamps at the edge of the surface, which cuts them.
      */
     double margin;
 } luxfer_pattern_params;
 
-/** The distance of the photo's camera from the lit plane: plane_distance of luxfer_transfer_params. */
+/** The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params. */
 #define LUXFER_PATTERN_DISTANCE 0
 
-/** The length of a lamp: the longer side of the photo's, of which the median counts. */
+/** The length of a lamp: the median of the longer sides of the photo's lamps. */
 #define LUXFER_PATTERN_LAMP 1
 
 /**
- * The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to the nearest other.
+ * The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to its nearest
+ * neighbour.
  */
 #define LUXFER_PATTERN_SPACING 2
 
-/** The width of the surface: it becomes as many lamps wide as the photo's plane. */
+/** The width of the surface: it shows as many lamps across as the plane in the photo. */
 #define LUXFER_PATTERN_ACROSS 3
 
 /**
@@ -3473,83 +3619,84 @@ luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *params,
 /* ====================================================================================================================
  * Transfer
  *
- * The lighting transfer from end to end: from a photo, a few strokes and a scene to that scene lit as in the photo. It
- * runs the stages in order. Every result can be read as soon as its stage has ended, replaced by the caller's own, and the
- * run taken up again from any stage.
+ * The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs the
+ * stages in order. You can read every result as soon as its stage has ended, replace it by your own, and continue from
+ * any stage.
  * ==================================================================================================================== */
 
 /** A lighting transfer. See luxfer_transfer_create. */
 typedef struct luxfer_transfer luxfer_transfer;
 
-/** What part of the photo gives the colour to match: a LUXFER_TARGET_ value. */
+/** The part of the photo that gives the colour to match: a LUXFER_TARGET_ value. */
 typedef int32_t luxfer_target;
 
 /**
- * Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs pointed to are read during the call.
+ * Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs behind the pointers are read during
+ * the call.
  */
 typedef struct luxfer_transfer_params {
     /** sizeof(luxfer_transfer_params), set by luxfer_transfer_params_init. */
     uint32_t struct_size;
-    /** Longest side of the emissive texture in texels, in [1, 16384]; default 2048. */
+    /** Maximum side of the emissive texture in texels, in [1, 16384]; default 2048. */
     uint32_t max_texels;
     /**
-     * Distance of the photo's camera from the lit plane in metres, in [0.01, 1e4]; default 1.2. It sets the scale of the
-     * pattern.
+     * Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It sets
+     * the scale of the pattern.
      */
     double plane_distance;
-    /** Luminance that the photo's white stands for, in cd/m², in [1e-6, 1e9]; default 100. */
+    /** Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100. */
     float white_luminance;
     /** LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE. */
     luxfer_target target;
-    /** Settings of the stages VIEW and UNWARP; NULL, the default, for their defaults. */
+    /** Settings of the stages VIEW and UNWARP; NULL, the default: their defaults. */
     const luxfer_rectify_params *rectify;
-    /** Settings of the stage FEATURES; NULL, the default, for their defaults. */
+    /** Settings of the stage FEATURES; NULL, the default: their defaults. */
     const luxfer_features_params *features;
-    /** Settings of the stage PLANE; NULL, the default, for their defaults. */
+    /** Settings of the stage PLANE; NULL, the default: their defaults. */
     const luxfer_segment_params *plane;
-    /** Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only. */
+    /** Settings of the stage LIGHTS; NULL, the default: the defaults with channels = 7, colour only. */
     const luxfer_segment_params *lights;
     /**
-     * Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; NULL, the default, for their
-     * defaults.
+     * Settings of the stage EMISSION; NULL, the default: their defaults. The transfer sets width, height, scale and
+     * offset itself.
      */
     const luxfer_emission_params *emission;
-    /** Settings of the stage RELIGHT; NULL, the default, for their defaults. */
+    /** Settings of the stage RELIGHT; NULL, the default: their defaults. */
     const luxfer_relight_params *relight;
-    /** Settings of the stage RENDER; NULL, the default, for their defaults. */
+    /** Settings of the stage RENDER; NULL, the default: their defaults. */
     const luxfer_render_params *render;
-    /** How the lights lie on the surface; NULL, the default, for the defaults. */
+    /** Layout of the lights on the surface; NULL, the default: the defaults. */
     const luxfer_pattern_params *pattern;
 } luxfer_transfer_params;
 
-/** A stage of the transfer: a LUXFER_STAGE_ value, in the order they run. */
+/** A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run. */
 typedef int32_t luxfer_stage;
 
-/** Lines, vanishing points and the photo's camera. */
+/** Finds lines, vanishing points and the photo's camera. */
 #define LUXFER_STAGE_VIEW 0
 
-/** Ten channels for each pixel. */
+/** Computes the ten channels of the features. */
 #define LUXFER_STAGE_FEATURES 1
 
-/** The mask of the plane that carries the lights. */
+/** Segments the plane that carries the lights. */
 #define LUXFER_STAGE_PLANE 2
 
-/** The mask of the lights in it. */
+/** Segments the lights on the plane. */
 #define LUXFER_STAGE_LIGHTS 3
 
-/** The plane seen straight on. */
+/** Unwarps the plane to a frontal view. */
 #define LUXFER_STAGE_UNWARP 4
 
-/** The emissive texture, laid onto the scene's surface. */
+/** Synthesises the emissive texture and maps it onto the scene's surface. */
 #define LUXFER_STAGE_EMISSION 5
 
-/** Its colour and intensity. */
+/** Solves for the colour and intensity of the emission. */
 #define LUXFER_STAGE_RELIGHT 6
 
-/** The picture. */
+/** Renders the picture. */
 #define LUXFER_STAGE_RENDER 7
 
-/** The plane that carries the lights, without them and their halo. */
+/** The plane that carries the lights, without the lights and their halo. */
 #define LUXFER_TARGET_SURFACE 0
 
 /** The whole photo. */
@@ -3564,52 +3711,52 @@ luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *params,
 /** Creates a transfer. The caller releases *transfer. Any thread. */
 luxfer_status luxfer_transfer_create(luxfer_context *context, luxfer_transfer **transfer);
 
-/** Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread. */
-luxfer_status luxfer_transfer_set_photo(luxfer_transfer *transfer,
-                                        luxfer_image *photo);
+/** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
+luxfer_status luxfer_transfer_set_photo(luxfer_transfer *transfer, luxfer_image *photo);
 
-/** Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: none. Any thread. */
+/** Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: no depth map. Any thread. */
 luxfer_status luxfer_transfer_set_depth(luxfer_transfer *transfer,
                                         luxfer_image *depth,
                                         luxfer_depth_kind kind);
 
 /**
- * Sets the scene to light, and the name (UTF-8) of the object or material of its surface that receives the lights. The
- * scene itself is never changed; each start takes it as it is then. Of all the triangles of that name the plane is taken that
- * faces most of the room: its parts, as between the beams of a ceiling, share one pattern that goes on from part to part. What
- * lies in other planes is left as it is; another transfer lights it, with a pattern of its own. Any thread.
+ * Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
+ * transfer never changes the scene; each job uses the scene as it is when the job starts. Among the triangles of that
+ * name it takes the plane that faces most of the room. The parts of this plane, for example between the beams of a
+ * ceiling, share one pattern that continues from part to part. Triangles in other planes stay unchanged; light them by
+ * another transfer with its own pattern. Any thread.
  */
 luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
                                         luxfer_scene *scene,
                                         const char *surface);
 
 /**
- * Sets the triangles of the scene, mesh and triangle of each, that receive the lights instead of those of a name; of these too
- * the plane is taken that faces most of the room. They replace those set before, and luxfer_transfer_set_scene takes them away;
- * triangles may be NULL if count is 0: none, the name counts again. Any thread.
- * A run ends with LUXFER_INVALID_ARGUMENT if the scene does not have them.
+ * Sets the triangles of the scene that receive the lights, mesh index and triangle index of each, instead of the named
+ * surface. Among them, too, the transfer takes the plane that faces most of the room. They replace earlier triangles,
+ * and luxfer_transfer_set_scene removes them. triangles may be NULL if count is 0: the name counts again. Any thread.
+ * A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
  */
 luxfer_status luxfer_transfer_set_triangles(luxfer_transfer *transfer,
                                             const uint32_t *triangles,
                                             size_t count);
 
 /**
- * Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the surface
- * as it is instead of making one from the photo. texture may be NULL, the default: one is made. Any thread.
+ * Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the
+ * surface instead of making one from the photo. texture may be NULL, the default: make one. Any thread.
  */
 luxfer_status luxfer_transfer_set_texture(luxfer_transfer *transfer,
                                           luxfer_image *texture);
 
 /**
- * Sets the camera of the picture. camera may be NULL, the default: the scene's first, or one chosen in a corner
- * of the room if it has none. Any thread.
+ * Sets the camera of the picture. camera may be NULL, the default: the first camera of the scene, or a camera in a
+ * corner of the room if the scene has none. Any thread.
  */
 luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
                                          const luxfer_camera_params *camera);
 
 /**
- * Adds a stroke on the photo that concerns phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
- * lights are examples of the plane as well. Any thread.
+ * Adds a stroke on the photo for phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
+ * lights count as strokes on the plane too. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set.
  */
 luxfer_status luxfer_transfer_add_stroke(luxfer_transfer *transfer,
@@ -3633,9 +3780,9 @@ luxfer_status luxfer_transfer_add_strokes_image(luxfer_transfer *transfer,
 luxfer_status luxfer_transfer_add_strokes_text(luxfer_transfer *transfer, const char *description);
 
 /**
- * Sets rectangles of the surface that lamps keep away from, as behind ducts and sprinklers: u0, v0, u1 and v1 of each in
- * metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace those set
- * before; zones may be NULL if count is 0. Any thread.
+ * Sets rectangles of the surface without lamps, for example behind ducts and sprinklers: u0, v0, u1 and v1 of each in
+ * metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace earlier
+ * rectangles; zones may be NULL if count is 0. Any thread.
  */
 luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
                                         const double *zones,
@@ -3645,43 +3792,43 @@ luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
 luxfer_status luxfer_transfer_clear_strokes(luxfer_transfer *transfer);
 
 /**
- * Puts the lines and the camera that a luxfer_rectify has found, and the plane if it has unwarped one, in the place of the
- * results of the stages VIEW and UNWARP. Any thread.
- * LUXFER_NOT_READY if it has found none yet.
+ * Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
+ * plane, the result of the stage UNWARP by that plane. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,
                                           luxfer_rectify *rectify);
 
 /**
- * Puts the result of a luxfer_features in the place of that of the stage FEATURES. Any thread.
- * LUXFER_NOT_READY if it has none yet.
+ * Replaces the result of the stage FEATURES by that of a luxfer_features. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_transfer_use_features(luxfer_transfer *transfer, luxfer_features *features);
 
 /**
- * Puts the result of a luxfer_segment in the place of that of the stage PLANE or LIGHTS, as phase, a LUXFER_PHASE_ value,
- * says. Any thread.
- * LUXFER_NOT_READY if it has none yet.
+ * Replaces the result of the stage PLANE or LIGHTS by that of a luxfer_segment; phase, a LUXFER_PHASE_ value, chooses
+ * the stage. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_transfer_use_segment(luxfer_transfer *transfer,
                                           luxfer_phase phase,
                                           luxfer_segment *segment);
 
 /**
- * Puts a mask of the photo's size, such as one drawn by hand, in the place of the result of the stage PLANE or LIGHTS, as
- * phase, a LUXFER_PHASE_ value, says; 1 channel, taken as a confidence in [0, 1]. Any thread.
+ * Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example one drawn by hand;
+ * phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, used as a confidence in [0, 1]. Any thread.
  */
 luxfer_status luxfer_transfer_use_mask(luxfer_transfer *transfer,
                                        luxfer_phase phase,
                                        luxfer_image *mask);
 
 /**
- * Starts a job that runs the stages first to last, LUXFER_STAGE_ values, both included; those before must have results.
- * params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if a job runs already, or an input or the result of an earlier stage is missing;
- * LUXFER_INVALID_ARGUMENT for a setting of one of the stages that is out of range. The job may end as the jobs of its
- * stages may, the message naming the stage, and ends at once if the scene has no such surface; the results of the stages
- * before stay.
+ * Starts a job that runs the stages from first to last, LUXFER_STAGE_ values, both included; the stages before first
+ * must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if a job runs already, or if an input or the result of an earlier stage is missing;
+ * LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
+ * jobs; the message names the stage. It ends at once if the scene does not have the surface. The results of finished
+ * stages stay.
  */
 luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     luxfer_stage first,
@@ -3692,13 +3839,14 @@ luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_transfer_retain(luxfer_transfer *transfer);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_transfer_release(luxfer_transfer *transfer);
 
 /* ====================================================================================================================
  * Transfer results
  *
- * What a transfer has made so far. Results appear when their stage has ended; the picture grows while it is rendered.
+ * The results of a transfer. A result is available once its stage has ended; the rendering is available in its current
+ * state while it runs.
  * ==================================================================================================================== */
 
 /** An image of the transfer: a LUXFER_TRANSFER_ value. */
@@ -3707,20 +3855,20 @@ typedef int32_t luxfer_transfer_image;
 /** A scene of the transfer: a LUXFER_SCENE_ value. */
 typedef int32_t luxfer_transfer_scene;
 
-/**
- * What each stage took and how good its result is. Set struct_size before the call. Errors of stages without a result are
- * NaN.
- */
+/** Time and error of each stage. Set struct_size before the call. The error of a stage without a result is NaN. */
 typedef struct luxfer_transfer_report {
     /** sizeof(luxfer_transfer_report), set by the caller. */
     uint32_t struct_size;
-    /** Number of fixtures; see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has ended. */
+    /**
+     * Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has
+     * ended.
+     */
     uint32_t fixtures;
-    /** Seconds each stage took when it last ran, by LUXFER_STAGE_ value. */
+    /** Duration of each stage's last run in seconds, by LUXFER_STAGE_ value. */
     double seconds[8];
     /** Largest standard deviation of a vanishing point's direction, in radians. */
     double view_error;
-    /** Mean trust in the depth of the features, in [0, 1]. */
+    /** Mean confidence of the features' depth, in [0, 1]. */
     double depth_confidence;
     /** Expected share of wrong pixels in the mask of the plane. */
     double plane_error;
@@ -3728,17 +3876,18 @@ typedef struct luxfer_transfer_report {
     double lights_error;
     /** Largest expected error of a corner of the unwarped image, in unwarped pixels. */
     double unwarp_error;
-    /** Relative difference between texture and photo in the share of lit area. */
+    /** Relative difference between texture and photo in the share of the lit area. */
     double emission_error;
-    /** Widest relative half-width of the solution's 95 % intervals. */
+    /** Largest relative half-width of the solution's 95 % confidence intervals. */
     double relight_error;
     /**
-     * As the error of luxfer_render_report: root mean square of the picture's standard errors, relative to its mean.
+     * As the field error of luxfer_render_report: root mean square of the rendering's standard errors, divided by its
+     * mean.
      */
     double render_error;
     /** Size of a texel of the emission in metres. */
     double texel_size;
-    /** Mean colour the surface is to have, relative to the photo's white. */
+    /** Mean colour that the surface should have, relative to the photo's white. */
     float target[3];
     /** 0. */
     uint32_t reserved;
@@ -3750,15 +3899,15 @@ typedef struct luxfer_fixture {
     uint32_t struct_size;
     /** Centre in metres. */
     float position[3];
-    /** Unit direction the lamp shines in. */
+    /** Unit vector of the direction in which the lamp shines. */
     float normal[3];
-    /** Unit direction of its long axis. */
+    /** Unit vector of the long axis. */
     float axis[3];
     /** Mean luminance per channel in cd/m². */
     float radiance[3];
-    /** Number of its kind, as of luxfer_luminaire. */
+    /** Number of the lamp's kind, as in luxfer_luminaire. */
     uint32_t kind;
-    /** Lengths along and across the axis in metres. */
+    /** Length along the long axis and across it, in metres. */
     double size[2];
     /** Area in m². */
     double area;
@@ -3797,29 +3946,30 @@ typedef struct luxfer_fixture {
 /** 1 on lamps of the texture, else 0; 1 channel. */
 #define LUXFER_TRANSFER_EMISSION_MASK 8
 
-/** The scene in its new light, linear RGB in cd/m²; while it is being rendered, as far as it is. */
+/** The scene in its new light, linear RGB in cd/m²; in its current state while the rendering runs. */
 #define LUXFER_TRANSFER_RENDER 9
 
 /** Variance of the rendering; 3 channels. */
 #define LUXFER_TRANSFER_RENDER_VARIANCE 10
 
 /**
- * The picture with its noise filtered out, if the settings of the stage RENDER have a preview; see LUXFER_RENDER_PREVIEW.
+ * The rendering after a noise filter, if the settings of the stage RENDER have a preview; see LUXFER_RENDER_PREVIEW.
  */
 #define LUXFER_TRANSFER_RENDER_PREVIEW 11
 
-/** With the emission at the photo's own strength, before it is solved for. */
+/** The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor. */
 #define LUXFER_SCENE_UNSOLVED 0
 
-/** With the solved emission: the result. */
+/** The scene with the solved emission: the result. */
 #define LUXFER_SCENE_LIT 1
 
-/** As LUXFER_SCENE_LIT, the light's colour taken away and its luminance kept. */
+/** As LUXFER_SCENE_LIT, with white light of equal luminance. */
 #define LUXFER_SCENE_WHITE 2
 
 /**
  * Gets an image; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview that was not asked for.
+ * LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview if
+ * luxfer_render_params.preview was 0.
  */
 luxfer_status luxfer_transfer_get_image(luxfer_transfer *transfer,
                                         luxfer_transfer_image which,
@@ -3828,26 +3978,27 @@ luxfer_status luxfer_transfer_get_image(luxfer_transfer *transfer,
 /**
  * Gets a scene; which is a LUXFER_SCENE_ value. The caller releases *scene, which is independent of the transfer. Any
  * thread.
- * LUXFER_NOT_READY before the stage EMISSION, for LUXFER_SCENE_UNSOLVED, or RELIGHT has ended.
+ * LUXFER_NOT_READY before the stage EMISSION has ended, for LUXFER_SCENE_UNSOLVED, or the stage RELIGHT, for the
+ * others.
  */
 luxfer_status luxfer_transfer_get_scene(luxfer_transfer *transfer,
                                         luxfer_transfer_scene which,
                                         luxfer_scene **scene);
 
 /**
- * Tells what each stage took and how good its result is. Any thread.
+ * Gets time and error of each stage. Any thread.
  * LUXFER_NOT_READY before the first stage has ended.
  */
 luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer, luxfer_transfer_report *report);
 
 /**
- * Tells what the lines of the photo say about its camera, and how the plane is unwarped. Any thread.
+ * Gets the camera that was found from the lines of the photo, and the unwarping of the plane. Any thread.
  * LUXFER_NOT_READY before the stage VIEW has ended.
  */
 luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer, luxfer_rectify_report *view);
 
 /**
- * Tells the solved colour and intensity and how sure they are. Any thread.
+ * Gets the solved colour and intensity and their confidence. Any thread.
  * LUXFER_NOT_READY before the stage RELIGHT has ended.
  */
 luxfer_status luxfer_transfer_get_solution(luxfer_transfer *transfer, luxfer_relight_report *solution);
@@ -3861,11 +4012,11 @@ luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
                                           luxfer_fixture *fixture);
 
 /**
- * Writes the luminaire schedule, every lamp of the lit scene, to a file whose name ends in .csv or .json: position, normal,
- * axis, size, area, luminance, flux and colour temperature, their units in the names of the columns; in .json also the corners of the outline
- * in metres, as "outline_m". Any thread.
- * LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if
- * the file cannot be written.
+ * Writes the luminaire schedule, a list of all lamps of the lit scene, to a .csv or .json file: position, normal,
+ * axis, size, area, luminance, flux and colour temperature; the names of the columns contain the units. In .json,
+ * "outline_m" holds the corners of the outline in metres. path is UTF-8. Any thread.
+ * LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another extension; LUXFER_IO if the
+ * file cannot be written.
  */
 luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
                                             const char *path);
@@ -3873,49 +4024,57 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
 /* ====================================================================================================================
  * Planning
  *
- * Settings for an error or a time, before anything is rendered: state either, and a plan tells with which settings
- * relighting and rendering, or a stylisation, come to it, how long each should take, and what error should be left. What a
- * path costs and how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which
- * takes some tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
+ * Chooses settings for a given error or a given time before anything is rendered: of relighting and rendering, or of a
+ * stylisation. A plan also predicts the time and the error of each. The cost of a path and the noise depend on the
+ * scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a second, besides the
+ * preparation of the scene. It assumes that the load of the machine by other programs does not change.
  *
- * Errors are those of a picture: the root mean square over its pixels, relative to its mean, of noise and of what the
- * solution of the emission makes too bright or too dark; that of a stylisation is told by luxfer_plan_start_stylize.
+ * The error of a picture is the root mean square error over its pixels, divided by its mean; it includes the noise and
+ * the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the error of
+ * a stylisation.
  * ==================================================================================================================== */
 
 /** A plan. See luxfer_plan_create. */
 typedef struct luxfer_plan luxfer_plan;
 
-/** What a plan is made for: one of its fields must be set. Fill it with luxfer_plan_params_init. */
+/** Goal of a plan: set exactly one of time_budget_ms and target_error. Fill it with luxfer_plan_params_init. */
 typedef struct luxfer_plan_params {
     /** sizeof(luxfer_plan_params), set by luxfer_plan_params_init. */
     uint32_t struct_size;
-    /** Milliseconds for all that is planned; default 0: the error counts. */
+    /** Time for all planned work in milliseconds; default 0: the goal is target_error. */
     uint32_t time_budget_ms;
     /**
-     * Error of the picture, root mean square over its pixels relative to its mean, in [1e-5, 1]; default 0: the time counts.
+     * Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the goal is
+     * time_budget_ms.
      */
     float target_error;
     /** Must be 0. */
     uint32_t reserved;
 } luxfer_plan_params;
 
-/** What a plan expects. Set struct_size before the call. */
+/** Times and errors that a plan predicts. Set struct_size before the call. */
 typedef struct luxfer_plan_report {
     /** sizeof(luxfer_plan_report), set by the caller. */
     uint32_t struct_size;
-    /** 1 if the plan relights, as that of a transfer; 0 if it is of a rendering or a stylisation. */
+    /** 1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation. */
     uint32_t relights;
-    /** Seconds for all that is planned. */
+    /** Seconds for all planned work. */
     double seconds;
     /** Error of the picture. */
     double error;
-    /** Seconds for relighting, which makes the scene ready first; 0 in other plans than that of a transfer. */
+    /** Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer. */
     double relight_seconds;
-    /** The error that luxfer_relight_report should state, half the width of its interval; 0 in other plans. */
+    /**
+     * Predicted field error of luxfer_relight_report, half the width of its interval; 0 unless the plan is of a
+     * transfer.
+     */
     double relight_error;
-    /** Seconds for rendering; in a plan of a transfer it makes the scene ready first; 0 in a plan of a stylisation. */
+    /**
+     * Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
+     * stylisation.
+     */
     double render_seconds;
-    /** The error that luxfer_render_report should state; 0 in a plan of a stylisation. */
+    /** Predicted field error of luxfer_render_report; 0 in a plan of a stylisation. */
     double render_error;
 } luxfer_plan_report;
 
@@ -3929,10 +4088,12 @@ luxfer_status luxfer_plan_params_init(luxfer_plan_params *params,
 luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
 
 /**
- * Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture and
- * all that is no matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
- * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
- * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such camera.
+ * Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
+ * and the other settings that do not affect quality; NULL for the defaults. params gives the goal. The caller releases
+ * *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera.
  */
 luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
                                        luxfer_render *render,
@@ -3941,12 +4102,13 @@ luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
                                        luxfer_job **job);
 
 /**
- * Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has made.
- * settings are those the transfer will be started with, of which luxfer_plan_get_relight_params and _get_render_params
- * replace what is a matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
- * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+ * Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
+ * made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
+ * its relight and render by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, which change the
+ * settings that affect quality. params gives the goal. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
  * LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
- * LUXFER_UNREACHABLE if no light of the lamps comes back to their surface.
+ * LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
  */
 luxfer_status luxfer_plan_start_transfer(luxfer_plan *plan,
                                          luxfer_transfer *transfer,
@@ -3955,37 +4117,41 @@ luxfer_status luxfer_plan_start_transfer(luxfer_plan *plan,
                                          luxfer_job **job);
 
 /**
- * Tells what the plan expects. Any thread.
+ * Gets the predictions of the plan. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_plan_get_report(luxfer_plan *plan, luxfer_plan_report *report);
 
 /**
- * Gets the settings to render with: those given, with what the plan has chosen. With an error as goal rendering stops when it
- * is reached; with a time the number of paths is chosen, and time_budget_ms is a quarter more than they should take, so
- * that the picture is the same every time unless the machine is slower than it was. Set params->struct_size before. Any
- * thread. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
+ * Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
+ * rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths and sets
+ * time_budget_ms to a quarter more than they should take, so that every run gives an equal picture unless the machine
+ * becomes slower. Set params->struct_size before the call. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
  */
 luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
                                             luxfer_render_params *params);
 
 /**
- * Gets the settings to relight with, likewise. Set params->struct_size before. Any thread.
- * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in other plans than that of a transfer.
+ * Gets the settings to relight with: the given settings with the choices of the plan. Set params->struct_size before
+ * the call. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
  */
-luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan, luxfer_relight_params *params);
+luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
+                                             luxfer_relight_params *params);
 
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_plan_retain(luxfer_plan *plan);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_plan_release(luxfer_plan *plan);
 
 /* ====================================================================================================================
  * Guides
  *
- * What the light does in a scene, as images for a stylisation: rendered once for the exemplar, once for the target. Guides
- * from another renderer need none of this: see luxfer_stylize_add_guide.
+ * Renders the guide images of a stylisation, which show different kinds of light in a scene: once for the exemplar
+ * scene and once for the target scene. Guides from another renderer do not need this object: see
+ * luxfer_stylize_add_guide.
  * ==================================================================================================================== */
 
 /** The guides of a scene. See luxfer_guides_create. */
@@ -4003,7 +4169,10 @@ typedef struct luxfer_guides_params {
     uint32_t samples;
     /** Index of the scene's camera; default 0. */
     uint32_t camera;
-    /** 1: smooth the light along surfaces, so that noise is not matched; default 1. */
+    /**
+     * 1, the default: smooth the light along surfaces, so that the stylisation does not match noise; 0: keep the
+     * noise.
+     */
     uint32_t smooth;
     /** Seed of the paths; default 1. */
     uint64_t seed;
@@ -4012,31 +4181,31 @@ typedef struct luxfer_guides_params {
 /** An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m². */
 typedef int32_t luxfer_guides_image;
 
-/** All light. */
+/** All light, reflected any number of times. */
 #define LUXFER_GUIDES_FULL 0
 
-/** Light reflected once, by something matt (LDE). */
+/** Light reflected once, by a diffuse surface (LDE). */
 #define LUXFER_GUIDES_DIRECT 1
 
-/** Light reflected once, by something glossy (LSE). */
+/** Light reflected once, by a glossy surface (LSE). */
 #define LUXFER_GUIDES_SPECULAR 2
 
-/** Light whose last two reflections were matt (L.*DDE): where colours bleed. */
+/** Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding. */
 #define LUXFER_GUIDES_INDIRECT 3
 
-/** Light reflected once or twice, by matt things (LD{1,2}E): what is in the shadow. */
+/** Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows. */
 #define LUXFER_GUIDES_TWO_BOUNCES 4
 
-/** Normals as the camera has them: x right, y up, z towards it; 3 channels. */
+/** Normals in camera space: x right, y up, z towards the camera; 3 channels. */
 #define LUXFER_GUIDES_NORMALS 5
 
 /** Edges of shapes, in [0, 1]; 1 channel. */
 #define LUXFER_GUIDES_EDGES 6
 
-/** A colour for each material, made from its name; 3 channels. */
+/** A colour code for each material, derived from its name; 3 channels. */
 #define LUXFER_GUIDES_MATERIALS 7
 
-/** Light that glossy things throw onto matt ones (LS+DE). */
+/** Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE). */
 #define LUXFER_GUIDES_CAUSTICS 8
 
 /**
@@ -4048,7 +4217,7 @@ luxfer_status luxfer_guides_params_init(luxfer_guides_params *params,
 /** Creates the stage. The caller releases *guides. Any thread. */
 luxfer_status luxfer_guides_create(luxfer_context *context, luxfer_guides **guides);
 
-/** Sets the scene; each start renders it as it is then. Any thread. */
+/** Sets the scene; each job renders the scene as it is when the job starts. Any thread. */
 luxfer_status luxfer_guides_set_scene(luxfer_guides *guides, luxfer_scene *scene);
 
 /**
@@ -4069,9 +4238,9 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
                                       luxfer_image **image);
 
 /**
- * Makes the motion between two frames of one scene seen by a camera that moves, for luxfer_stylize_set_motion: where each
- * pixel of this frame was in the frame before, relative to where it is, x and y in pixels, NaN where it was not to be seen. The
- * caller releases *motion. Any thread.
+ * Computes the motion between two frames of one scene under a moving camera, for luxfer_stylize_set_motion: for each
+ * pixel of this frame, the offset to its position in the frame before, x and y in pixels; NaN where it was not
+ * visible. The caller releases *motion. Any thread.
  * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_motion(luxfer_guides *guides,
@@ -4081,27 +4250,27 @@ luxfer_status luxfer_guides_motion(luxfer_guides *guides,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_guides_retain(luxfer_guides *guides);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_guides_release(luxfer_guides *guides);
 
 /* ====================================================================================================================
  * Settings of a stylisation
  *
- * Presets, and every knob. The defaults are chosen on the curves of quality against time that benches/stylit.rs draws.
+ * Presets and settings. The defaults were chosen on the curves of quality against time that benches/stylit.rs draws.
  * ==================================================================================================================== */
 
-/** How matches between exemplar and target are made: a LUXFER_STYLIZE_MODE_ value. */
+/** How exemplar patches are assigned to the target: a LUXFER_STYLIZE_MODE_ value. */
 typedef int32_t luxfer_stylize_mode;
 
-/** How nearest patches are searched for: a LUXFER_STYLIZE_SEARCH_ value. */
+/** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
 typedef int32_t luxfer_stylize_search;
 
-/** How patches that overlap make a pixel: a LUXFER_STYLIZE_VOTE_ value. */
+/** How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value. */
 typedef int32_t luxfer_stylize_vote;
 
 /**
- * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the defaults given
- * here are those of LUXFER_STYLIZE_FULL.
+ * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
+ * stated here are those of LUXFER_STYLIZE_FULL.
  */
 typedef struct luxfer_stylize_params {
     /** sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init. */
@@ -4112,122 +4281,141 @@ typedef struct luxfer_stylize_params {
     luxfer_stylize_search search;
     /** Width of a patch in pixels, odd, in [1, 33]; default 5. */
     uint32_t patch;
-    /** Weight of all guides together against the artwork's colours together, in [0, 1e6]; default 2. */
+    /** Weight of all guides together, relative to the artwork's colours together, in [0, 1e6]; default 2. */
     float guide_weight;
-    /** Most resolution levels, each half of the next, in [1, 16]; default 6. */
+    /** Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. */
     uint32_t levels;
-    /** Rounds of matching and painting on the level before the finest, in [1, 100]; default 6. */
+    /** Rounds of matching and painting on the second finest level, in [1, 100]; default 6. */
     uint32_t iterations;
-    /** Rounds on the finest level, in [1, 100]; default 1. */
+    /** Rounds of matching and painting on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
     /**
-     * Rounds after those, without the budget, in which each place takes its nearest match, in [0, 100]; default 3; 0 is the
-     * paper's. Modes without a budget do as many more of their own.
+     * Additional rounds on the finest level without the error budget, in which each target patch takes its nearest
+     * match, in [0, 100]; default 3; the paper has 0. In other modes than LUXFER_STYLIZE_MODE_BUDGET these are
+     * additional rounds of that mode.
      */
     uint32_t polish;
-    /** Sweeps of a search, in [1, 100]; default 1. */
+    /** PatchMatch sweeps of a search, in [1, 100]; default 1. */
     uint32_t sweeps;
     /**
-     * Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.9.
+     * Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
+     * default 0.9.
      */
     float coverage;
-    /** Most passes of matching under the budget in a round, in [1, 1000]; default 6. */
+    /** Maximum number of matching passes under the error budget in a round, in [1, 1000]; default 6. */
     uint32_t passes;
     /**
-     * Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0 is the
-     * paper's.
+     * Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100]; default 2;
+     * the paper has 0.
      */
     uint32_t settle;
-    /** What a seam between neighbours costs in those sweeps, as a share of the mean error, in [0, 100]; default 0.2. */
+    /**
+     * Cost of a seam between neighbouring patches in those sweeps, as a share of the mean error, in [0, 100]; default
+     * 0.2.
+     */
     float seam;
     /** LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED. */
     luxfer_stylize_vote vote;
     /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST. */
     luxfer_stylize_vote final_vote;
-    /** 1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0. */
+    /**
+     * 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
+     * default: full resolution.
+     */
     uint32_t preview;
-    /** 1: keep what luxfer_stylize_update needs, about as much memory as all guides take; default 0. */
+    /**
+     * 1: keep the data that luxfer_stylize_update needs, about as much memory as all guides; 0, the default: free it.
+     */
     uint32_t keep_for_update;
     /**
-     * Share of the paint of the frame before that is kept where it fits, in [0, 1]; default 1. Below 1 it boils, as
-     * hand-painted frames do, if each frame has its own seed. Without luxfer_stylize_set_motion it has no effect.
+     * Share of the previous frame's paint that is kept where it fits, in [0, 1]; default 1. Below 1 the paint changes
+     * from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It needs
+     * luxfer_stylize_set_motion; without it, it has no effect.
      */
     float coherence;
-    /** How far the exemplar's light is changed to the brightness and contrast of the target's, in [0, 1]; default 0. */
+    /**
+     * How far the light guides of the exemplar are adapted to the brightness and contrast of the target's, in [0, 1];
+     * default 0.
+     */
     float match_appearance;
     /** Seed of the search; default 1. */
     uint64_t seed;
     /**
-     * How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the paper's. More
-     * follows the guides more closely, in smaller pieces.
+     * Factor of guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. A larger factor
+     * follows the guides more closely, with smaller connected pieces of the artwork.
      */
     float coarse_guides;
-    /** Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the paper's. */
+    /** Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6. */
     uint32_t coarse_iterations;
     /**
-     * Weight of usage in LUXFER_STYLIZE_MODE_OCCURRENCE, lambda, in [0, 10]; default 0.1, which Fiser et al. found best by
-     * hand (Fig. 10n). What a match to a patch that is used as often as all on average costs beside its distance, both in the
-     * unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is LUXFER_STYLIZE_MODE_NEAREST.
+     * Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
+     * al. found best by hand (Fig. 10n). It is the cost, in addition to the distance, of a match to a patch of average
+     * usage. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
+     * LUXFER_STYLIZE_MODE_NEAREST.
      */
     float occurrence;
     /** Must be 0. */
     uint32_t reserved;
 } luxfer_stylize_params;
 
-/** How good and how fast: a LUXFER_STYLIZE_ preset. */
+/** Presets between quality and speed: a LUXFER_STYLIZE_ preset. */
 typedef int32_t luxfer_stylize_preset;
 
 /** Full quality, the default. */
 #define LUXFER_STYLIZE_FULL 0
 
-/** Nearly as good in half the time. */
+/** Nearly the quality of LUXFER_STYLIZE_FULL in half the time. */
 #define LUXFER_STYLIZE_FAST 1
 
-/** Half resolution, guides compressed: for watching while painting. */
+/** Half resolution with compressed guides, for feedback while painting. */
 #define LUXFER_STYLIZE_PREVIEW 2
 
 /** The settings of the paper, for comparison. */
 #define LUXFER_STYLIZE_PAPER 3
 
-/** Exemplar patches look for their places under an error budget (Fiser et al. 2016), the default. */
+/** Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the default. */
 #define LUXFER_STYLIZE_MODE_BUDGET 0
 
 /** Every exemplar patch is used equally often (Jamriska et al. 2015). */
 #define LUXFER_STYLIZE_MODE_UNIFORM 1
 
-/** Each place takes its nearest exemplar patch (Wexler et al. 2007). */
+/** Each target patch takes its nearest exemplar patch (Wexler et al. 2007). */
 #define LUXFER_STYLIZE_MODE_NEAREST 2
 
-/** One pass in scan order (Hertzmann et al. 2001); on one thread. */
+/** One pass in scan order (Hertzmann et al. 2001); runs on one thread. */
 #define LUXFER_STYLIZE_MODE_GREEDY 3
 
 /**
- * Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere (Sloan et al. 2001).
+ * Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan et
+ * al. 2001).
  */
 #define LUXFER_STYLIZE_MODE_LIT_SPHERE 4
 
 /**
- * Each place takes its nearest exemplar patch, and one that is used often counts as farther (Kaspar et al. 2015): see
- * occurrence. On one thread, and by LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
+ * Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar et al.
+ * 2015): see the field occurrence. Runs on one thread, and with LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
  */
 #define LUXFER_STYLIZE_MODE_OCCURRENCE 5
 
 /** PatchMatch, the default. */
 #define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
 
-/** A k-d tree over the means of patches: not PatchMatch. */
+/** A k-d tree over the means of patches instead of PatchMatch. */
 #define LUXFER_STYLIZE_SEARCH_TABLE 1
 
-/** Their mean. */
+/** The mean of the overlapping patches. */
 #define LUXFER_STYLIZE_VOTE_PLAIN 0
 
-/** Their mean, closer matches counting more. */
+/** The mean of the overlapping patches, weighted so that closer matches count more. */
 #define LUXFER_STYLIZE_VOTE_WEIGHTED 1
 
-/** The one nearest to their mean, so that no colour is made that is not in the artwork. */
+/** The colour of the patch that is nearest to the mean, so that every colour occurs in the artwork. */
 #define LUXFER_STYLIZE_VOTE_NEAREST 2
 
-/** The one that most of them put there, so that pieces of the artwork stay whole up to their seams. */
+/**
+ * The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay whole up to
+ * their seams.
+ */
 #define LUXFER_STYLIZE_VOTE_MOST 3
 
 /**
@@ -4246,38 +4434,37 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
 /* ====================================================================================================================
  * Stylisation
  *
- * Paints a target scene as an artist has painted an exemplar scene (StyLit). Give the artwork, pairs of images that show
- * what the light does in the exemplar and in the target (the guides), and start; or give a half-painted picture and have
- * the rest painted. While its job runs, and after a cancel, the picture of the finest level done can be read.
+ * Paints a target scene in the style in which an artist has painted an exemplar scene (StyLit). Set the artwork, add
+ * the guides (pairs of images that show the light in the exemplar and in the target) and start. Or set a half-painted
+ * picture and let the library paint the rest. While the job runs, and after a cancel, the picture of the finest
+ * finished level can be read.
  *
- * Some of its methods are covered by patents in some countries, so a build of the library may leave it out: its
- * functions are there all the same, and luxfer_stylize_create then returns LUXFER_UNSUPPORTED.
+ * Patents cover some of the methods in some countries, so a build of the library may leave stylisation out. Its
+ * functions still exist in such a build, but luxfer_stylize_create returns LUXFER_UNSUPPORTED.
  * ==================================================================================================================== */
 
-/** Flag of luxfer_stylize_add_guides: normals too. */
+/** Flag of luxfer_stylize_add_guides: add the normals. */
 #define LUXFER_GUIDES_WITH_NORMALS 1
 
-/** Flag: edges too, for shapes finer than the strokes. */
+/** Flag: add the edges, for shapes finer than the strokes. */
 #define LUXFER_GUIDES_WITH_EDGES 2
 
-/** Flag: the colour code of materials too, so that things of one material are painted from things of the same. */
+/** Flag: add the colour code of materials, so that objects of a material are painted from objects of that material. */
 #define LUXFER_GUIDES_WITH_MATERIALS 4
 
-/** Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto others. */
+/** Flag: add the caustics, at the common exposure, for scenes in which glossy objects reflect light onto others. */
 #define LUXFER_GUIDES_WITH_CAUSTICS 8
 
 /** A stylisation. See luxfer_stylize_create. */
 typedef struct luxfer_stylize luxfer_stylize;
 
-/** What the numbers of a guide mean: a LUXFER_GUIDE_ value. */
+/** Meaning of the values of a guide: a LUXFER_GUIDE_ value. */
 typedef int32_t luxfer_guide_range;
 
-/** Linear light >= 0, such as renderings; compared as it would look on a screen. */
+/** Linear light >= 0, such as renderings; it is compared as it would look on a screen. */
 #define LUXFER_GUIDE_LIGHT 0
 
-/**
- * Numbers without a curve, such as normals, object codes and edges; the range of both images together becomes [0, 1].
- */
+/** Data, such as normals, object codes and edges; the common range of both images is scaled to [0, 1]. */
 #define LUXFER_GUIDE_DATA 1
 
 /**
@@ -4287,18 +4474,18 @@ typedef int32_t luxfer_guide_range;
 luxfer_status luxfer_stylize_create(luxfer_context *context, luxfer_stylize **stylize);
 
 /**
- * Sets the artwork: the exemplar scene as the artist has painted it, linear colour, 1, 3 or 4 channels, aligned with the
- * sources of the guides and of their size. Any thread.
+ * Sets the artwork: the exemplar scene as painted by the artist, in linear colour, 1, 3 or 4 channels, of the size of
+ * the guides' sources and aligned with them. Any thread.
  */
 luxfer_status luxfer_stylize_set_artwork(luxfer_stylize *stylize,
                                          luxfer_image *artwork);
 
 /**
- * Adds a guide, or replaces the one of the same name: source shows the exemplar and target what is to be painted, with as
- * many channels (60 at most in all guides). target may be NULL: the same image as source, for a picture that is
- * half painted (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides'; range is a
- * LUXFER_GUIDE_ value. All sources have one size, and all targets. Samples that are no numbers count as 0 in the target; the
- * exemplar's pixels that have any are not used. Any thread.
+ * Adds a guide, or replaces the guide of that name. source shows the exemplar and target the scene to paint; both have
+ * the same number of channels, at most 60 in all guides together. target may be NULL to use source for both, for a
+ * half-painted picture (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a
+ * LUXFER_GUIDE_ value. All sources must have one size, and all targets one size. Values that are not finite count as 0
+ * in the target; pixels of the exemplar with such values are not used. Any thread.
  * LUXFER_INVALID_ARGUMENT if the channels differ, are too many, or a value is out of range.
  */
 luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
@@ -4309,10 +4496,10 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
                                        luxfer_guide_range range);
 
 /**
- * Adds the guides of two scenes, both rendered: the five of light at a common exposure, named after LUXFER_GUIDES_FULL to
- * LUXFER_GUIDES_TWO_BOUNCES "full", "direct", "specular", "indirect" and "two bounces", each with weight 1; and for each of
- * the LUXFER_GUIDES_WITH_ flags in extras the one it names ("caustics", "normals", "edges", "materials"), with weight
- * extra_weight. Any thread.
+ * Adds the rendered guides of two scenes. It adds the five light guides LUXFER_GUIDES_FULL to
+ * LUXFER_GUIDES_TWO_BOUNCES at a common exposure, under the names "full", "direct", "specular", "indirect" and "two
+ * bounces", each with weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics",
+ * "normals", "edges" or "materials" with weight extra_weight. Any thread.
  * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
  */
 luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
@@ -4325,46 +4512,48 @@ luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
 luxfer_status luxfer_stylize_clear_guides(luxfer_stylize *stylize);
 
 /**
- * Sets where the artwork may be copied from: above 0.5; 1 channel, the artwork's size. mask may be NULL: everywhere. Any
- * thread.
+ * Sets the pixels of the artwork that may be copied: those where mask is above 0.5; 1 channel, the artwork's size.
+ * mask may be NULL: all pixels. Any thread.
  */
 luxfer_status luxfer_stylize_set_source_mask(luxfer_stylize *stylize,
                                              luxfer_image *mask);
 
 /**
- * Sets which pixels of the target to paint: above 0.5; 1 channel, the size of the guides' targets. The others are those of
- * known (linear, as many channels as the artwork), to which what is painted is joined, or black if known is NULL. mask
- * may be NULL: everything is painted. Any thread.
+ * Sets the pixels of the target to paint: those where mask is above 0.5; 1 channel, the size of the guides' targets.
+ * The other pixels are taken from known (linear, with the number of channels of the artwork), and the new paint is
+ * fitted to them; if known is NULL they are black. mask may be NULL: all pixels are painted. Any thread.
  */
 luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
                                              luxfer_image *mask,
                                              luxfer_image *known);
 
 /**
- * Makes each start go on from the result before, the last frame of a sequence: motion (2 channels, the size of the guides'
- * targets) tells where each pixel was in that frame, relative to where it is now, x and y in pixels, NaN where it was not
- * to be seen. What was painted there moves along and stays where it fits; see luxfer_stylize_params.coherence. motion may
- * be NULL: each start begins anew. Any thread.
+ * Makes each job start from the previous result, for the frames of an animation. motion (2 channels, the size of the
+ * guides' targets) holds for each pixel the offset to its position in the previous frame, x and y in pixels; NaN where
+ * it was not visible. The paint of the previous frame moves along and stays where it fits; see
+ * luxfer_stylize_params.coherence. motion may be NULL: each job starts from nothing. Any thread.
  */
 luxfer_status luxfer_stylize_set_motion(luxfer_stylize *stylize,
                                         luxfer_image *motion);
 
 /**
  * Starts a job that stylises. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a setting is
- * out of range; LUXFER_NOT_READY if motion is set and there is no result before. The job may end with LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels,
- * LUXFER_DEGENERATE if a mask is empty or leaves no exemplar patch.
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a
+ * setting is out of range; LUXFER_NOT_READY if motion is set and there is no previous result. The job may end with
+ * LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels, LUXFER_DEGENERATE if a mask is empty or
+ * leaves no exemplar patch.
  */
 luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
                                    const luxfer_stylize_params *params,
                                    luxfer_job **job);
 
 /**
- * Starts a job that follows a change of the artwork: where the 1-channel image changed is above 0.5, artwork (of the first
- * one's size and channels) has new paint, and what was painted from there is painted anew. Takes a fraction of the time
- * of luxfer_stylize_start. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION unless a job was started with keep_for_update = 1 and has succeeded, or if one runs. The job may
- * end with LUXFER_INVALID_ARGUMENT if sizes differ; after a cancel the next update makes up for what was left.
+ * Starts a job that updates the picture after a change of the artwork. artwork has the size and channels of the first
+ * artwork, and new paint where the 1-channel image changed is above 0.5; the pixels of the picture that were painted
+ * from there are painted again. Takes a fraction of the time of luxfer_stylize_start. The caller releases *job. Any
+ * thread.
+ * LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end with
+ * LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work too.
  */
 luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
                                     luxfer_image *artwork,
@@ -4372,10 +4561,11 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
                                     luxfer_job **job);
 
 /**
- * Has the rest of a half-painted picture painted: the artwork is the picture, painted (1 channel, its size) is above 0.5
- * where it is done, and the guides' sources show its scene, with NULL as target. Same as painted as the source mask, its
- * opposite as the target mask and the artwork as known. Any thread.
- * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted has not its size or not 1 channel.
+ * Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, its size)
+ * is above 0.5 where it is finished; the sources of the guides show its scene, and their targets are NULL. It is a
+ * shorthand for painted as the source mask, its inverse as the target mask, and the artwork as known. Any thread.
+ * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have its size or has
+ * more than 1 channel.
  */
 luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
                                          luxfer_image *painted);
@@ -4383,46 +4573,47 @@ luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_stylize_retain(luxfer_stylize *stylize);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_stylize_release(luxfer_stylize *stylize);
 
 /* ====================================================================================================================
  * Results of a stylisation
  *
- * The picture, where it was copied from, how well it follows the guides, and what the run did level by level.
+ * The picture, the source of each pixel in the artwork, the error of the guides, and statistics of the run level by
+ * level.
  * ==================================================================================================================== */
 
 /** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
 typedef int32_t luxfer_stylize_image;
 
-/** How good a stylisation is. Set struct_size before the call. */
+/** Quality of a stylisation. Set struct_size before the call. */
 typedef struct luxfer_stylize_report {
     /** sizeof(luxfer_stylize_report), set by the caller. */
     uint32_t struct_size;
-    /** 1 if the run ended, 0 if only `levels` levels are done: then the fields from `used` on are 0. */
+    /** 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0. */
     uint32_t finished;
-    /** Number of levels done; see luxfer_stylize_get_level. */
+    /** Number of finished levels; see luxfer_stylize_get_level. */
     uint32_t levels;
-    /** How often the sides of the picture are half those of the target. */
+    /** Number of times that the sides of the target were halved to get the size of the picture. */
     uint32_t halvings;
-    /** Width of patches that was used. */
+    /** Width of the patches, in pixels. */
     uint32_t patch;
-    /** Most uses of one exemplar patch. */
+    /** Largest number of uses of an exemplar patch. */
     uint32_t most_used;
     /**
-     * Mean squared difference of the channels in [0, 1] of matched patches (Eq. 3), last round; the artwork's channels
-     * count 1 together, the guides guide_weight.
+     * Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
+     * channels of the artwork have the weight 1 together, the guides guide_weight.
      */
     double energy;
-    /** Share of the exemplar's patches that were used. */
+    /** Share of the exemplar patches that were used, in [0, 1]. */
     double used;
-    /** Entropy of their usage in bits. */
+    /** Entropy of the usage of exemplar patches, in bits. */
     double entropy;
     /** Root mean square of LUXFER_STYLIZE_IMAGE_GUIDE_ERROR. */
     double guide_error;
-    /** Exemplar pixels left out because they are no numbers. */
+    /** Number of exemplar pixels that were not used because a value is not finite. */
     uint64_t broken_source;
-    /** Pixels of the target's guides taken as 0 for it. */
+    /** Number of target pixels with a guide value that is not finite and was taken as 0. */
     uint64_t broken_target;
 } luxfer_stylize_report;
 
@@ -4430,62 +4621,67 @@ typedef struct luxfer_stylize_report {
 typedef struct luxfer_stylize_round {
     /** sizeof(luxfer_stylize_round), set by the caller. */
     uint32_t struct_size;
-    /** Passes of matching under the budget; see luxfer_stylize_get_pass. */
+    /** Number of matching passes under the error budget; see luxfer_stylize_get_pass. */
     uint32_t passes;
-    /** As luxfer_stylize_report.energy, after this round. */
+    /** Energy after this round, as luxfer_stylize_report.energy. */
     double energy;
 } luxfer_stylize_round;
 
-/** One pass of matching under the budget. Set struct_size before the call. */
+/** One matching pass under the error budget. Set struct_size before the call. */
 typedef struct luxfer_stylize_pass {
     /** sizeof(luxfer_stylize_pass), set by the caller. */
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
-    /** Share of the exemplar's patches that fitted well enough, in [0, 1]. */
+    /**
+     * Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
+     * the error curve.
+     */
     double knee;
     /** Share of the target with a match after this pass, in [0, 1]. */
     double coverage;
-    /** Target patches that were given a match in this pass. */
+    /** Number of target patches that received a match in this pass. */
     uint64_t gained;
 } luxfer_stylize_pass;
 
 /**
- * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel its sides
- * are those of the target halved luxfer_stylize_report.halvings times, rounded down.
+ * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it is
+ * smaller: the sides of the target are halved luxfer_stylize_report.halvings times, rounded down.
  */
 #define LUXFER_STYLIZE_IMAGE_PICTURE 0
 
 /**
- * How far the guides at each pixel are from those where its paint was taken, in [0, 1]; 1 channel. High where the exemplar
- * has nothing that fits.
+ * Difference between the guides at each pixel and at the place in the exemplar from which it was painted, in [0, 1]; 1
+ * channel. It is high where nothing in the exemplar fits.
  */
 #define LUXFER_STYLIZE_IMAGE_GUIDE_ERROR 1
 
 /**
- * Where in the artwork the paint of each pixel was taken, x and y in pixels, -1 where nothing was painted; 2 channels.
+ * Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was painted; 2
+ * channels.
  */
 #define LUXFER_STYLIZE_IMAGE_SOURCES 2
 
 /**
- * Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. After an update (luxfer_stylize_update) picture and
- * sources are its; the rest is that of the last full run. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before the first level of a job is done, and, but for the picture, before the last one is.
+ * Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
+ * the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
+ * level is finished.
  */
 luxfer_status luxfer_stylize_get_image(luxfer_stylize *stylize,
                                        luxfer_stylize_image which,
                                        luxfer_image **image);
 
 /**
- * Tells how good the result is so far. Any thread.
- * LUXFER_NOT_READY before the first level of a job is done.
+ * Gets the current quality of the result. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished.
  */
 luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize, luxfer_stylize_report *report);
 
 /**
- * Tells the size of a level, the coarsest being level 0, and the number of its rounds; any of the three may be NULL. Any
- * thread.
- * LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level.
+ * Gets the size of a level and the number of its rounds; level 0 is the coarsest. width, height and rounds may be
+ * NULL. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
  */
 luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
                                        uint32_t level,
@@ -4495,7 +4691,7 @@ luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
 
 /**
  * Describes a round of a level. Any thread.
- * LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level or round.
+ * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
  */
 luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
                                        uint32_t level,
@@ -4504,7 +4700,8 @@ luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
 
 /**
  * Describes a pass of a round. Any thread.
- * LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level, round or pass.
+ * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
+ * pass.
  */
 luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
                                       uint32_t level,
@@ -4515,19 +4712,20 @@ luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
 /* ====================================================================================================================
  * Planning of stylisations
  *
- * How careful a stylisation can be in a time, or has to be for an error. A plan tries settings from quick to careful on the very
- * input at a part of its resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL, less of larger targets.
+ * Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
+ * actual input at reduced resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
+ * target, the smaller the part.
  * ==================================================================================================================== */
 
 /**
- * Starts a job that plans a stylisation, of all of the target, with the artwork, guides and masks that stylize has now.
- * settings give all that is kept, the preset's resolution with it: only numbers of rounds and sweeps are chosen; NULL for the
- * defaults. params says what for; the error is the root of luxfer_stylize_report.energy: how far matched patches differ,
- * root mean square, in colours and guides in [0, 1]. A goal out of reach gives the settings nearest to it. The caller
- * releases *job. Any thread.
+ * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize. The
+ * plan chooses only the numbers of rounds and sweeps; all other values, also the resolution, come from settings, or
+ * the defaults if it is NULL. params gives the goal; the error is the square root of luxfer_stylize_report.energy: the
+ * root mean square difference of matched patches in colours and guides, whose values are in [0, 1]. If the goal cannot
+ * be reached, the plan gives the settings that come nearest. The caller releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
- * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end as that of
- * luxfer_stylize_start.
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end with the statuses
+ * of luxfer_stylize_start's job.
  */
 luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
                                         luxfer_stylize *stylize,
@@ -4536,8 +4734,9 @@ luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
                                         luxfer_job **job);
 
 /**
- * Gets the settings to stylise with: those given, with what the plan has chosen. Set params->struct_size before. Any thread.
- * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of something else.
+ * Gets the settings to stylise with: the given settings with the choices of the plan. Set params->struct_size before
+ * the call. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
  */
 luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan,
                                              luxfer_stylize_params *params);
@@ -4545,15 +4744,18 @@ luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan,
 /* ====================================================================================================================
  * Print sheets
  *
- * For artists who paint on paper: the exemplar printed pale between alignment marks, and a photo or scan of the painted sheet
- * brought back onto the exemplar by its marks. These calls return when they are done.
+ * For artists who paint on paper: prints the exemplar in pale colours between alignment marks, and aligns a photo or
+ * scan of the painted sheet with the exemplar by these marks. These calls return when their work is done.
  * ==================================================================================================================== */
 
-/** Settings of a print sheet. Fill them with luxfer_sheet_params_init; the same for printing and for aligning. */
+/** Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and aligning. */
 typedef struct luxfer_sheet_params {
     /** sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init. */
     uint32_t struct_size;
-    /** 1: even out the light of the photo by the white of the marks, so that paper is 1; default 1. */
+    /**
+     * 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper becomes 1; 0: no
+     * correction.
+     */
     uint32_t even_light;
     /** Width of the paper in millimetres, in [60, 2000]; default 297. */
     double paper_width;
@@ -4563,24 +4765,24 @@ typedef struct luxfer_sheet_params {
     double dpi;
     /** Distance of the marks from the edge of the paper in millimetres, in [0, 50]; default 8. */
     double margin;
-    /** Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints it as it is. */
+    /** Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints the picture unchanged. */
     double contrast;
 } luxfer_sheet_params;
 
-/** How well a photo was aligned. Set struct_size before the call. */
+/** Quality of the alignment of a photo. Set struct_size before the call. */
 typedef struct luxfer_sheet_report {
     /** sizeof(luxfer_sheet_report), set by the caller. */
     uint32_t struct_size;
-    /** Marks found, of 10; 6 are enough. */
+    /** Number of marks found, of 10; at least 6 are needed. */
     uint32_t marks;
     /**
-     * Root mean square distance between marks and where the map puts them, in pixels of the photo; more than a pixel or two
-     * means paper that is not flat, or a lens that bends lines.
+     * Root mean square distance between the marks and their positions by to_photo, in pixels of the photo. More than
+     * one or two pixels mean that the paper is not flat or that the lens distorts.
      */
     double residual;
     /** Expected alignment error in pixels of the picture. */
     double error;
-    /** From pixels of the picture to pixels of the photo, 3 x 3, row by row. */
+    /** Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row. */
     double to_photo[9];
 } luxfer_sheet_report;
 
@@ -4591,21 +4793,21 @@ luxfer_status luxfer_sheet_params_init(luxfer_sheet_params *params,
                                        size_t size);
 
 /**
- * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): as large as fits on the paper, pale, with
- * ten marks around it. params may be NULL for the defaults. Save it as PNG and print it at params->dpi without scaling. The
- * caller releases *sheet. Any thread.
- * LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper has no room; LUXFER_OUT_OF_MEMORY beyond the memory
- * budget.
+ * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): in pale colours, as large as the
+ * paper allows, with ten marks around it. Save it as PNG and print it at params->dpi without scaling. params may be
+ * NULL for the defaults. The caller releases *sheet. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper is too small; LUXFER_OUT_OF_MEMORY beyond the
+ * memory budget.
  */
 luxfer_status luxfer_sheet_print(luxfer_image *picture,
                                  const luxfer_sheet_params *params,
                                  luxfer_image **sheet);
 
 /**
- * Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with the same params for a picture of
- * width x height pixels, whichever way up and in perspective, and resamples it onto that picture: the artwork, linear
- * RGB. params may be NULL for the defaults, report may be NULL. Takes up to some seconds. The caller releases *artwork. Any
- * thread.
+ * Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of width
+ * x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
+ * perspective. params may be NULL for the defaults, report may be NULL. Takes up to a few seconds. The caller releases
+ * *artwork. Any thread.
  * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_sheet_align(luxfer_image *photo,
@@ -4618,16 +4820,17 @@ luxfer_status luxfer_sheet_align(luxfer_image *photo,
 /* ====================================================================================================================
  * Demonstration
  *
- * Input that the library makes itself, for examples and tests: the same bits every time, nothing loaded from files.
+ * Scenes and artworks that the library generates itself, for examples and tests: equal to the bit every time, without
+ * files.
  * ==================================================================================================================== */
 
 /** A generated scene: a LUXFER_DEMO_ value. */
 typedef int32_t luxfer_demo;
 
-/** How an artwork is drawn: a LUXFER_ARTWORK_ value. */
+/** The style of a generated artwork: a LUXFER_ARTWORK_ value. */
 typedef int32_t luxfer_artwork;
 
-/** A furnished room without any light; its ceiling is the object "Ceiling". */
+/** A furnished room without lights; its ceiling is the object "Ceiling". */
 #define LUXFER_DEMO_TARGET_ROOM 0
 
 /** An office under a grid of luminaires; camera 0 takes the photo. */
@@ -4636,7 +4839,9 @@ typedef int32_t luxfer_artwork;
 /** A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation. */
 #define LUXFER_DEMO_SPHERE_ON_TABLE 2
 
-/** A vase, a ring and two balls on the same table under the same lamp: a target for a stylisation. */
+/**
+ * A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a stylisation.
+ */
 #define LUXFER_DEMO_STILL_LIFE 3
 
 /** Hatching with a pen and two inks. */
@@ -4655,9 +4860,9 @@ typedef int32_t luxfer_artwork;
 luxfer_status luxfer_demo_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
 
 /**
- * Draws an artwork of a scene in place of an artist, aligned with its guides and of their size: made for
- * LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to some seconds. The caller releases *image. Any
- * thread.
+ * Draws an artwork of a scene in place of an artist, of the size of its guides and aligned with them; designed for
+ * LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to a few seconds. The caller releases
+ * *image. Any thread.
  * LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
  */
 luxfer_status luxfer_demo_artwork(luxfer_guides *guides,
@@ -4667,11 +4872,11 @@ luxfer_status luxfer_demo_artwork(luxfer_guides *guides,
 /* ====================================================================================================================
  * Demonstration photo
  *
- * A photo of the generated office, as a camera would take it, and the strokes a user would paint on it: what a lighting
- * transfer needs, without a file.
+ * A photo of the generated office, as a camera would take it, and strokes on it, as a user would paint them: the input
+ * of a lighting transfer without files.
  * ==================================================================================================================== */
 
-/** A photo in the making. See luxfer_demo_photo_create. */
+/** A generator of the demonstration photo. See luxfer_demo_photo_create. */
 typedef struct luxfer_demo_photo luxfer_demo_photo;
 
 /** Settings of the photo. Fill them with luxfer_demo_photo_params_init. */
@@ -4680,15 +4885,15 @@ typedef struct luxfer_demo_photo_params {
     uint32_t struct_size;
     /** Width in pixels, in [16, 8192]; default 600. */
     uint32_t width;
-    /** Height in pixels, in [16, 8192]; default 400. The camera is made for 3:2. */
+    /** Height in pixels, in [16, 8192]; default 400. The camera is designed for an aspect ratio of 3:2. */
     uint32_t height;
-    /** Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise. */
+    /** Paths per pixel, in [2, 1048576]; default 12, which leaves some noise. */
     uint32_t samples;
-    /** Seed of paths and noise; default 1. */
+    /** Seed of the paths and the noise; default 1. */
     uint64_t seed;
 } luxfer_demo_photo_params;
 
-/** An image of the demonstration: a LUXFER_DEMO_PHOTO_ value. */
+/** An image of the demonstration photo: a LUXFER_DEMO_PHOTO_ value. */
 typedef int32_t luxfer_demo_photo_image;
 
 /** The photo: linear RGB, 1 = display white; its lamps are clipped. */
@@ -4707,7 +4912,7 @@ luxfer_status luxfer_demo_photo_params_init(luxfer_demo_photo_params *params,
 luxfer_status luxfer_demo_photo_create(luxfer_context *context, luxfer_demo_photo **demo);
 
 /**
- * Starts a job that takes the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that renders the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_demo_photo_start(luxfer_demo_photo *demo,
@@ -4725,7 +4930,7 @@ luxfer_status luxfer_demo_photo_get_image(luxfer_demo_photo *demo,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_demo_photo_retain(luxfer_demo_photo *demo);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_demo_photo_release(luxfer_demo_photo *demo);
 #ifdef __cplusplus
 }

@@ -1,13 +1,13 @@
-//! The one error type. Its kind is the status code at the C boundary; its message names the parameter, its value and
-//! what is allowed, and says what to do.
+//! The error type of the library. The kind is the status code at the C boundary; the message names the parameter, its
+//! value and the allowed range, and suggests a remedy.
 
 use std::fmt;
 
-/// What went wrong, with the values of `luxfer_status`: append only, 0-6 as in Embree and Open Image Denoise.
+/// Kinds of errors, with the values of `luxfer_status`: append only; 0-6 as in Embree and Open Image Denoise.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// A cause that has no kind of its own.
+    /// A cause not covered by the other kinds.
     Unknown = 1,
     /// A parameter is null, out of range, or contradicts another.
     InvalidArgument = 2,
@@ -15,15 +15,15 @@ pub enum ErrorKind {
     InvalidOperation = 3,
     /// The memory budget of the context, or the machine, is used up.
     OutOfMemory = 4,
-    /// The file or the request is valid, but uses something this library does not do.
+    /// The file or the request is valid, but uses a feature that this library does not support.
     Unsupported = 5,
     /// The caller cancelled the job.
     Cancelled = 6,
     /// The operating system could not read or write a file.
     Io = 7,
-    /// A file is truncated, corrupt, or not what it claims to be.
+    /// A file is truncated, corrupt, or not in the format it claims.
     Format = 8,
-    /// A result was asked for before the stage that makes it has run.
+    /// A result was requested before the stage that computes it has run.
     NotReady = 9,
     /// A defect in this library: please report it.
     Internal = 10,
@@ -64,7 +64,7 @@ impl Error {
         Self::new(ErrorKind::Cancelled, "the job was cancelled")
     }
 
-    /// The same error with where it happened in front: `texture 3: the file is truncated`.
+    /// Prefixes the message with the place of the error: `texture 3: the file is truncated`.
     pub fn within(self, place: impl fmt::Display) -> Self {
         Self { message: format!("{place}: {}", self.message), ..self }
     }

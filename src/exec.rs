@@ -1,7 +1,7 @@
-//! The library's own thread pool, and loops whose result does not depend on the number of threads.
+//! The library's own thread pool, and parallel loops whose result does not depend on the number of threads.
 //!
-//! rayon's global pool is never used: it cannot be ended, and it belongs to the host. Dropping a rayon pool only signals
-//! its threads, so the handles are kept here and joined.
+//! rayon's global pool is never used: it cannot be shut down, and it belongs to the host. Dropping a rayon pool only
+//! signals its threads, so the handles are kept here and joined.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
@@ -18,7 +18,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// A pool of `num_threads` threads; 0 means one for each core this process may use.
+    /// Creates a pool of `num_threads` threads; 0 means one per core available to this process.
     pub fn new(num_threads: usize) -> Result<Self> {
         let cores = thread::available_parallelism().map_or(1, |n| n.get());
         let count = if num_threads == 0 { cores } else { num_threads };
@@ -35,7 +35,8 @@ impl Pool {
         Ok(Self { threads: Some(threads), handles: handles.into_inner().unwrap_or_else(|e| e.into_inner()) })
     }
 
-    /// Runs `work` so that every parallel loop in it uses this pool. Not to be called from a thread of the pool.
+    /// Runs `work` with this pool as the pool of all parallel loops in it. Must not be called from a thread of the
+    /// pool.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match &self.threads {
             Some(threads) => threads.install(work),
@@ -46,15 +47,15 @@ impl Pool {
 
 /// Starts a thread.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
-    if !reserve::has_room(STARTING) {
+    if !reserve::has_room(THREAD_OVERHEAD) {
         return Err(io::ErrorKind::OutOfMemory.into());
     }
     thread::Builder::new().name(name.into()).stack_size(STACK).spawn(work)
 }
 
-/// Bytes of a thread's stack, and more than there is to a thread beside it.
+/// Bytes of a thread's stack, and an upper bound of the other memory that starting a thread takes.
 const STACK: usize = 4 << 20;
-const STARTING: usize = 256 << 10;
+const THREAD_OVERHEAD: usize = 256 << 10;
 
 impl Drop for Pool {
     fn drop(&mut self) {
@@ -65,7 +66,7 @@ impl Drop for Pool {
     }
 }
 
-/// Calls `work(row, pixels)` for every row of an interleaved image, in parallel, checking for a cancel request at each.
+/// Calls `work(row, pixels)` for every row of an interleaved image, in parallel, checking for cancellation at each.
 pub fn for_rows<T: Send>(
     data: &mut [T],
     row_len: usize,
@@ -85,8 +86,8 @@ pub fn for_rows<T: Send>(
     })
 }
 
-/// Calls `work(first, items)` for every run of `length` items, the last of which may be shorter, in parallel, checking for a
-/// cancel request at each; `first` is the number of the run's first item.
+/// Calls `work(first, items)` for every run of `length` items in parallel, checking for cancellation at each. `first`
+/// is the index of the run's first item; the last run may be shorter.
 pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     data.par_chunks_mut(length.max(1)).enumerate().try_for_each(|(run, items)| {
         job.check()?;
@@ -95,7 +96,7 @@ pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(
     })
 }
 
-/// The same for the rows of three images at once, of `row_len` items each.
+/// Like [`for_rows`], for three images at once with rows of `row_len` items each.
 pub fn for_rows_of_three<T: Send>(
     images: [&mut [T]; 3],
     row_len: usize,
@@ -117,11 +118,11 @@ pub fn for_rows_of_three<T: Send>(
     })
 }
 
-/// Computes `work(i)` for `i` in `0..count` in parallel; results come back in order of `i` whatever the thread count, so
-/// that a reduction over them is the same to the bit.
+/// Computes `work(i)` for `i` in `0..count` in parallel. Results are in order of `i` for any number of threads, so
+/// that a reduction over them is reproducible to the bit.
 pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) -> Result<Vec<T>> {
     let done = AtomicUsize::new(0);
-    let mut places = room(count)?;
+    let mut places = list_with_capacity(count)?;
     places.resize_with(count, || None);
     places.par_iter_mut().enumerate().try_for_each(|(i, place)| {
         job.check()?;
@@ -129,29 +130,29 @@ pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) ->
         job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / count as f64);
         Ok(())
     })?;
-    let mut values = room(count)?;
+    let mut values = list_with_capacity(count)?;
     values.extend(places.into_iter().flatten());
     Ok(values)
 }
 
-/// An empty list with room for so many, or an error.
-fn room<T>(count: usize) -> Result<Vec<T>> {
+/// An empty list with the given capacity, or an error.
+fn list_with_capacity<T>(count: usize) -> Result<Vec<T>> {
     let none = || Error::new(ErrorKind::OutOfMemory, format!("could not allocate {count} results"));
     reserve::list(count).ok_or_else(none)
 }
 
-/// Does two things, at the same time where a thread is free.
+/// Runs two closures, in parallel if a thread is free.
 pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     rayon::join(a, b)
 }
 
-/// Elements sorted without a look at the job: a few milliseconds' worth.
-const SORTED: usize = 1 << 16;
+/// Elements sorted between two checks for cancellation: a few milliseconds of work.
+const SERIAL_SORT: usize = 1 << 16;
 
-/// Sorts in parallel, checking for a cancel request, after which the order is any.
+/// Sorts in parallel, checking for cancellation; the order of a cancelled sort is unspecified.
 pub fn sort<T: Ord + Send>(data: &mut [T], job: Job) -> Result<()> {
     job.check()?;
-    if data.len() <= SORTED {
+    if data.len() <= SERIAL_SORT {
         data.sort_unstable();
         return Ok(());
     }
@@ -191,7 +192,7 @@ mod tests {
     #[test]
     fn sorting_is_that_of_the_standard_library() {
         let monitor = Monitor::default();
-        let mut numbers: Vec<u64> = (0..3 * SORTED as u64).map(|i| crate::rng::mix(i) % 100_000).collect();
+        let mut numbers: Vec<u64> = (0..3 * SERIAL_SORT as u64).map(|i| crate::rng::mix(i) % 100_000).collect();
         let mut sorted = numbers.clone();
         sorted.sort();
         Pool::new(2).unwrap().run(|| sort(&mut numbers, monitor.job())).unwrap();

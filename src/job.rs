@@ -1,20 +1,20 @@
 //! Progress and cancellation of long work.
 //!
-//! A [`Monitor`] is shared by the thread that works and the threads that watch. A [`Job`] is the worker's end of it: a
-//! span of the whole progress bar, so that a routine reports from 0 to 1 without knowing what it is part of.
+//! A [`Monitor`] is shared by the thread that works and the threads that watch. A [`Job`] is the worker's handle: a
+//! span of the whole progress bar, so that a routine reports from 0 to 1 without knowing its place in the whole.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::reserve;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Progress in `[0, 1]`, never falling, and a cancel request, never taken back.
+/// Monotone progress in `[0, 1]`, and an irrevocable cancel request.
 pub struct Monitor {
     cancelled: AtomicBool,
-    /// Uses of the reserve before it.
+    /// Value of the reserve's use counter when the job started.
     uses: u64,
-    /// Bits of an `f64`: among non-negative floats they sort as integers do, so `fetch_max` keeps progress monotone.
+    /// Bits of an `f64`: non-negative floats sort like their bits as integers, so `fetch_max` keeps progress monotone.
     progress: AtomicU64,
-    /// Called whenever a job asks whether to go on.
+    /// Called at every check for cancellation.
     #[cfg(test)]
     pub at_check: Option<Box<dyn Fn() + Send + Sync>>,
 }
@@ -44,7 +44,7 @@ impl Monitor {
         f64::from_bits(self.progress.load(Ordering::Relaxed))
     }
 
-    /// The whole progress bar.
+    /// A job that spans the whole progress bar.
     pub fn job(&self) -> Job<'_> {
         Job { monitor: self, start: 0.0, span: 1.0 }
     }
@@ -58,27 +58,27 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// The part of this job between two of its fractions.
+    /// The sub-job between two fractions of this job.
     pub fn part(self, from: f64, to: f64) -> Job<'a> {
         debug_assert!((0.0..=1.0).contains(&from) && from <= to && to <= 1.0);
         Job { monitor: self.monitor, start: self.start + self.span * from, span: self.span * (to - from) }
     }
 
-    /// Reports how much of this job is done, in `[0, 1]`.
+    /// Reports the completed fraction of this job, in `[0, 1]`.
     pub fn report(self, fraction: f64) {
         let whole = (self.start + self.span * fraction.clamp(0.0, 1.0)).clamp(0.0, 1.0);
         self.monitor.progress.fetch_max(whole.to_bits(), Ordering::Relaxed);
     }
 
-    /// Ends the work if the caller asked for it, or if memory is so short that the reserve is in use. To be called at least
-    /// every few milliseconds.
+    /// Returns an error if the caller cancelled the job, or if memory is so short that the reserve was used. Call it
+    /// at least every few milliseconds.
     pub fn check(self) -> Result<()> {
         if self.is_cancelled() {
             Err(Error::cancelled())
         } else if reserve::uses() != self.monitor.uses {
             Err(Error::new(
                 ErrorKind::OutOfMemory,
-                "for a moment at least the process had no memory left, not even for small things",
+                "the process ran out of memory, if only for a moment: even a small allocation failed",
             ))
         } else {
             Ok(())

@@ -1,4 +1,4 @@
-//! luxfer: lighting from one photo onto a 3D scene, and stylisation guided by illumination.
+//! luxfer: transfers the lighting of a single photo to a 3D scene, and stylises images guided by illumination.
 //!
 //! ```text
 //! photo ─▶ rectify::find_view ─▶ features ─▶ segment ─▶ rectify::unwarp ─▶ emission ─┐
@@ -8,29 +8,47 @@
 //! exemplar guides + artwork, target guides ─▶ stylize ─▶ stylised image
 //! ```
 //!
-//! [`transfer`] runs the first line in order and passes the data along; stages never know of each other. [`plan`] chooses
-//! settings of its last two for an error or a time. `ffi` is the C boundary, and the only place that knows C. Engines under both:
-//! [`scene`] (description, glTF, acceleration), [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`],
-//! [`geometry`], [`photometry`] (colour temperature, glare, luminaire files), `network` (ONNX files). `tests/layering.rs`
-//! checks these arrows.
+//! [`transfer`] runs the first pipeline in order and passes data between the stages, which do not depend on each
+//! other. [`plan`] chooses settings of its last two stages for a target error or time. `ffi` is the C boundary, and
+//! the only module that deals with C. Engines under both pipelines: [`scene`] (description, glTF, acceleration),
+//! [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`], [`photometry`] (colour
+//! temperature, glare, luminaire files), `network` (ONNX files). `tests/layering.rs` checks these dependencies.
 //!
-//! Every stage has the same face: `Params` with defaults, ranges and units; an input; an output that carries its own error
-//! estimate; and a function that runs it with a [`job::Job`], which takes progress and gives cancel requests. All parallel
-//! work goes through [`exec`], in units that do not depend on the number of threads: equal input gives equal bits.
+//! Every stage has the same interface: `Params` with defaults, ranges and units; an input; an output with its own
+//! error estimate; and a function that runs it with a [`job::Job`], which reports progress and carries cancel
+//! requests. All parallel work goes through [`exec`] in units that do not depend on the number of threads: equal input
+//! yields equal bits.
 //!
-//! Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709 RGB whose luminance is in cd/m² where light
-//! is photometric; illuminance in lux, flux in lumens. `f32` for images and rays, `f64` for geometry and solvers.
+//! Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709 RGB; for photometric light their
+//! luminance is in cd/m². Illuminance is in lux, flux in lumens. Images and rays use `f32`, geometry and solvers
+//! `f64`.
 //!
 //! References:
 //! - Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization; and for its last step the
 //!   adjoint light tracing of Lipp et al. 2024, which a linear solve replaces here.
 //! - Fišer et al. 2016: StyLit, illumination-guided example-based stylization of 3D renderings.
-//! - Efros and Freeman 2001: Image quilting. Felzenszwalb and Huttenlocher 2012: Distance transforms of sampled functions.
+//! - Efros and Freeman 2001: Image quilting. Felzenszwalb and Huttenlocher 2012: Distance transforms of sampled
+//!   functions.
 //! - Hartley and Zisserman 2004: Multiple View Geometry. Heckbert 1989: Fundamentals of texture mapping.
 //! - Veach 1997: Robust Monte Carlo methods. Heitz 2018: Sampling the GGX distribution of visible normals.
-//! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen scrambling.
+//! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
+//!   scrambling.
 
-#![warn(unsafe_op_in_unsafe_fn)]
+// Nothing that ends or talks past the host.
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::dbg_macro,
+        clippy::exit,
+        clippy::get_unwrap,
+        clippy::panic,
+        clippy::print_stderr,
+        clippy::print_stdout,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unwrap_used
+    )
+)]
 
 pub mod error;
 pub mod exec;

@@ -1,80 +1,82 @@
-//! Memory for small things in a process that has none left.
+//! A memory reserve for small allocations in a process that has run out of memory.
 //!
-//! What grows with the input is asked of the system in ways that can fail ([`list`], [`make_room`]), and becomes
-//! `LUXFER_OUT_OF_MEMORY`. Small things (names, messages, the queues of threads, rows in a codec) are not: where the system has
-//! no room for one of them, Rust ends the process, and the host with it. So the library keeps a few MiB that no page of memory
-//! stands behind until they are used. Small things that find no room elsewhere are put there, and all jobs of the process end as
-//! soon as they see that one was. Before codecs of others and new threads, which take more than that and cannot do without,
-//! [`has_room`] tells whether the system has it.
+//! Allocations that grow with the input use fallible functions ([`list`], [`make_room`]) whose failure becomes
+//! `LUXFER_OUT_OF_MEMORY`. Small allocations (names, messages, thread queues, rows in a codec) are infallible: if the
+//! system cannot serve one, Rust aborts the process, and the host with it. The library therefore keeps a reserve of a
+//! few MiB, which occupies no physical memory until used. Small allocations that the system cannot serve are taken
+//! from it, and every job of the process then ends at its next check. Third-party codecs and new threads need more
+//! than that and cannot handle failure; before they run, [`has_room`] tests whether the system has enough memory.
 //!
-//! Left to end the process: that such room is taken by others in between; 48 bytes that the standard library asks of the system
-//! itself when a thread starts, or first fails in the library; and what the system's own library needs when a thread first
-//! comes to this one.
+//! The process can still be aborted if another thread takes that memory in between; by 48 bytes that the standard
+//! library requests from the system directly when a thread starts or first fails in the library; and by allocations of
+//! the system's C library when a thread first calls this library.
 //!
-//! Without the feature `reserve` the library leaves the choice of an allocator to the program that it is part of.
+//! Without the feature `reserve`, the program that links the library chooses the allocator.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::UnsafeCell;
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Bytes of the reserve, and the most that a thing in it takes.
+/// Size of the reserve in bytes, and the largest allocation it serves.
 const BYTES: usize = 8 << 20;
-const SMALL: usize = 256 << 10;
-/// They are given out in blocks.
+const MAX_ALLOCATION: usize = 256 << 10;
+/// Allocation granularity.
 const BLOCK: usize = 64;
 const BLOCKS: usize = BYTES / BLOCK;
-/// The largest alignment there is.
+/// The largest supported alignment.
 const PAGE: usize = 4096;
 
 #[cfg_attr(feature = "reserve", global_allocator)]
 static ALLOCATOR: Allocator = Allocator(Reserve::new());
 
-/// How often the system had no room for a small thing since the process began.
+/// Number of small allocations that the system could not serve since the process began.
 pub fn uses() -> u64 {
     ALLOCATOR.0.uses.load(Ordering::Relaxed)
 }
 
-/// An empty list with room for so many items, or none: never of the reserve, since whoever asks can do without.
+/// An empty list with the given capacity, or `None`. Never taken from the reserve, because the caller can handle
+/// failure.
 pub fn list<T>(len: usize) -> Option<Vec<T>> {
     let layout = Layout::array::<T>(len).ok()?;
     if layout.size() == 0 {
         return Some(Vec::new());
     }
-    // SAFETY: the layout has a size.
+    // SAFETY: the layout has a non-zero size.
     let start = unsafe { system(layout, false) };
-    // SAFETY: what is allocated has the layout of so many items; the list has none of them yet.
+    // SAFETY: the memory was allocated with the layout of `len` items; the list is empty.
     (!start.is_null()).then(|| unsafe { Vec::from_raw_parts(start.cast(), 0, len) })
 }
 
-/// Makes room for a number of items more, or says that there is none; lists grow by doubling.
+/// Ensures capacity for `more` further items, or returns false; capacity at least doubles when it grows.
 pub fn make_room<T>(items: &mut Vec<T>, more: usize) -> bool {
     if items.capacity() - items.len() >= more {
         return true;
     }
-    let most = items.len().saturating_add(more).max(2 * items.capacity()).max(4);
-    // What is too large for the reserve may be moved by the system, which is faster.
-    if most.saturating_mul(size_of::<T>()) > SMALL {
+    let capacity = items.len().saturating_add(more).max(2 * items.capacity()).max(4);
+    // The system may move larger lists in place, which is faster.
+    if capacity.saturating_mul(size_of::<T>()) > MAX_ALLOCATION {
         return items.try_reserve(more).is_ok();
     }
-    let Some(mut grown) = list(most) else { return false };
+    let Some(mut grown) = list(capacity) else { return false };
     grown.append(items);
     *items = grown;
     true
 }
 
-/// Whether the system has so many bytes now, which code that ends the process otherwise is about to take.
+/// Whether the system can allocate this many bytes now. Call it before code that aborts the process if they are
+/// missing.
 pub fn has_room(bytes: usize) -> bool {
-    // An allocation that nobody looks at need not take place.
+    // The optimiser may remove an unused allocation; `black_box` prevents that.
     std::hint::black_box(list::<u8>(bytes)).is_some()
 }
 
-/// Memory of the system's, which the allocator of the program takes back; null if there is none.
+/// Allocates memory from the system, to be freed by the program's allocator; null on failure.
 ///
 /// # Safety
-/// The layout has a size.
+/// The layout must have a non-zero size.
 pub unsafe fn system(layout: Layout, zeroed: bool) -> *mut u8 {
-    // SAFETY: what is asked of callers.
+    // SAFETY: by the contract of this function.
     unsafe {
         match (cfg!(feature = "reserve"), zeroed) {
             (true, true) => System.alloc_zeroed(layout),
@@ -85,26 +87,26 @@ pub unsafe fn system(layout: Layout, zeroed: bool) -> *mut u8 {
     }
 }
 
-/// The system's memory; after it, the reserve.
+/// The system's allocator, with the reserve as fallback.
 struct Allocator(Reserve);
 
-// SAFETY: memory is the system's, or of the reserve, which tells its own from others by their addresses.
+// SAFETY: memory belongs to the system or to the reserve, which recognises its own by address.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: what holds of the layout here is asked for there.
+        // SAFETY: the caller's guarantees about the layout are the ones required there.
         let start = unsafe { System.alloc(layout) };
         if start.is_null() { self.0.take(layout) } else { start }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: as above.
+        // SAFETY: as in `alloc`.
         let start = unsafe { System.alloc_zeroed(layout) };
         if !start.is_null() {
             return start;
         }
         let start = self.0.take(layout);
         if !start.is_null() {
-            // SAFETY: it has so many bytes, of this thing alone.
+            // SAFETY: the allocation has this many bytes and is not shared yet.
             unsafe { start.write_bytes(0, layout.size()) };
         }
         start
@@ -113,20 +115,21 @@ unsafe impl GlobalAlloc for Allocator {
     unsafe fn dealloc(&self, start: *mut u8, layout: Layout) {
         match self.0.block_of(start) {
             Some(block) => self.0.give_back(block),
-            // SAFETY: what is not of the reserve is the system's.
+            // SAFETY: memory outside the reserve belongs to the system.
             None => unsafe { System.dealloc(start, layout) },
         }
     }
 
     unsafe fn realloc(&self, start: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         if self.0.block_of(start).is_none() {
-            // SAFETY: as above; what comes back null has changed nothing.
+            // SAFETY: as in `alloc`; on failure the old allocation is unchanged.
             let moved = unsafe { System.realloc(start, layout, size) };
             if !moved.is_null() {
                 return moved;
             }
         }
-        // SAFETY: the caller sees to it that the size is one of a layout; both things are as large as is copied.
+        // SAFETY: the caller guarantees that the size is valid for a layout; both allocations are at least as large as
+        // the copy.
         unsafe {
             let moved = self.alloc(Layout::from_size_align_unchecked(size, layout.align()));
             if !moved.is_null() {
@@ -139,39 +142,40 @@ unsafe impl GlobalAlloc for Allocator {
 }
 
 #[repr(C, align(4096))]
-struct Room([u8; BYTES]);
+struct Storage([u8; BYTES]);
 
 struct Reserve {
-    room: UnsafeCell<Room>,
-    /// Number of blocks of the thing that begins at a block; 0 where none begins.
+    storage: UnsafeCell<Storage>,
+    /// Number of blocks of the allocation that begins at each block; 0 if none does.
     lengths: UnsafeCell<[u16; BLOCKS]>,
-    /// Whether a thread is at the lengths.
+    /// Spin lock that guards `lengths`.
     busy: AtomicBool,
     uses: AtomicU64,
 }
 
-// SAFETY: `lengths` are reached by `with_lengths` only, one thread at a time; `room` only by those it was given out to.
+// SAFETY: `lengths` is accessed only in `with_lengths`, by one thread at a time; `storage` only by the owners of
+// allocations.
 unsafe impl Sync for Reserve {}
 
 impl Reserve {
     const fn new() -> Self {
         Self {
-            room: UnsafeCell::new(Room([0; BYTES])),
+            storage: UnsafeCell::new(Storage([0; BYTES])),
             lengths: UnsafeCell::new([0; BLOCKS]),
             busy: AtomicBool::new(false),
             uses: AtomicU64::new(0),
         }
     }
 
-    /// Room for a small thing where the first is free; null for others, and if there is none.
+    /// First-fit allocation from the reserve; null if the request is too large or no space is free.
     fn take(&self, layout: Layout) -> *mut u8 {
-        if layout.size() > SMALL || layout.align() > PAGE {
+        if layout.size() > MAX_ALLOCATION || layout.align() > PAGE {
             return null_mut();
         }
         self.uses.fetch_add(1, Ordering::Relaxed);
         let (count, step) = (layout.size().div_ceil(BLOCK).max(1), layout.align().div_ceil(BLOCK));
         let first = self.with_lengths(|lengths| {
-            // The run of free blocks from `first`, as far as it has been looked at.
+            // The current run of free blocks, from `first` to `end`.
             let (mut first, mut end) = (0, 0);
             while end < first + count && end < BLOCKS {
                 match lengths[end] {
@@ -187,13 +191,13 @@ impl Reserve {
                 first
             })
         });
-        // SAFETY: the block lies in the room.
-        first.map_or(null_mut(), |first| unsafe { self.room.get().cast::<u8>().add(first * BLOCK) })
+        // SAFETY: the block lies inside the reserve.
+        first.map_or(null_mut(), |first| unsafe { self.storage.get().cast::<u8>().add(first * BLOCK) })
     }
 
-    /// The block that a thing begins at, if it is in the reserve.
+    /// The first block of an allocation, if it belongs to the reserve.
     fn block_of(&self, start: *mut u8) -> Option<usize> {
-        let offset = start.addr().wrapping_sub(self.room.get().addr());
+        let offset = start.addr().wrapping_sub(self.storage.get().addr());
         (offset < BYTES).then_some(offset / BLOCK)
     }
 
@@ -201,12 +205,13 @@ impl Reserve {
         self.with_lengths(|lengths| lengths[block] = 0);
     }
 
-    /// Nothing in `work` may allocate or panic. It is short, and seldom done, so others wait for it without sleeping.
+    /// Runs `work` under the spin lock. `work` must not allocate or panic. The lock is held briefly and rarely, so
+    /// spinning is acceptable.
     fn with_lengths<T>(&self, work: impl FnOnce(&mut [u16; BLOCKS]) -> T) -> T {
         while self.busy.swap(true, Ordering::Acquire) {
             std::hint::spin_loop();
         }
-        // SAFETY: no other thread is here.
+        // SAFETY: the lock excludes all other threads.
         let value = work(unsafe { &mut *self.lengths.get() });
         self.busy.store(false, Ordering::Release);
         value
@@ -231,10 +236,10 @@ mod tests {
         let mut held: Vec<(usize, *mut u8)> = Vec::new();
         let mut rng = crate::rng::Rng::new(1, &[]);
         let mut refused = 0;
-        // Interpreted, as by tests/miri.sh, each takes a thousand times as long.
+        // Under an interpreter (tests/miri.sh) each round takes a thousand times as long.
         let rounds = if cfg!(miri) { 600 } else { 20_000 };
         for _ in 0..rounds {
-            let size = 1 + (rng.next_f32().powi(4) * SMALL as f32) as usize;
+            let size = 1 + (rng.next_f32().powi(4) * MAX_ALLOCATION as f32) as usize;
             let align = 1 << (rng.next_f32() * 12.99) as u32;
             let start = RESERVE.take(layout(size, align));
             if start.is_null() {
@@ -252,9 +257,9 @@ mod tests {
             }
         }
         assert!(refused > 0 && refused < rounds / 2, "{refused} of {rounds}");
-        // Nothing was lost: when all is back, all of it can be had again.
+        // No block leaks: after everything is freed, all of the reserve can be allocated again.
         held.into_iter().for_each(|(_, start)| give_back(&RESERVE, start));
-        let all: Vec<_> = (0..BYTES / SMALL).map(|_| RESERVE.take(layout(SMALL, PAGE))).collect();
+        let all: Vec<_> = (0..BYTES / MAX_ALLOCATION).map(|_| RESERVE.take(layout(MAX_ALLOCATION, PAGE))).collect();
         assert!(all.iter().all(|start| !start.is_null()));
         assert!(RESERVE.take(layout(1, 1)).is_null());
     }
@@ -265,9 +270,9 @@ mod tests {
         assert!(items.capacity() >= 3 && items.is_empty());
         for item in 0..200_000 {
             assert!(make_room(&mut items, 1));
-            let room = items.as_ptr();
+            let storage = items.as_ptr();
             items.push(item);
-            assert_eq!(items.as_ptr(), room);
+            assert_eq!(items.as_ptr(), storage);
         }
         assert!(items.iter().zip(0..).all(|(item, i)| *item == i));
         assert!(list::<u32>(0).is_some() && list::<()>(9).is_some() && has_room(1 << 16));
@@ -280,9 +285,9 @@ mod tests {
     #[test]
     fn what_is_not_small_is_refused_and_no_use() {
         static RESERVE: Reserve = Reserve::new();
-        assert!(RESERVE.take(layout(SMALL + 1, 1)).is_null() && RESERVE.take(layout(1, 2 * PAGE)).is_null());
+        assert!(RESERVE.take(layout(MAX_ALLOCATION + 1, 1)).is_null() && RESERVE.take(layout(1, 2 * PAGE)).is_null());
         assert_eq!(RESERVE.uses.load(Ordering::Relaxed), 0);
-        assert!(!RESERVE.take(layout(SMALL, PAGE)).is_null());
+        assert!(!RESERVE.take(layout(MAX_ALLOCATION, PAGE)).is_null());
         assert_eq!(RESERVE.uses.load(Ordering::Relaxed), 1);
         assert_eq!(RESERVE.block_of((&raw const RESERVE).cast_mut().cast::<u8>().wrapping_sub(1)), None);
     }
@@ -290,11 +295,11 @@ mod tests {
     #[test]
     fn what_grows_keeps_what_it_holds() {
         static ALLOCATOR: Allocator = Allocator(Reserve::new());
-        // SAFETY: layouts are those of the calls before.
+        // SAFETY: the layouts are those of the preceding calls.
         unsafe {
             let start = ALLOCATOR.0.take(layout(100, 8));
             (0..100).for_each(|i| start.add(i).write(i as u8));
-            // The system has room now, and is asked first.
+            // The system has memory now and is tried first.
             let moved = ALLOCATOR.realloc(start, layout(100, 8), 5000);
             assert_eq!(ALLOCATOR.0.block_of(moved), None);
             assert!((0..100).all(|i| moved.add(i).read() == i as u8));

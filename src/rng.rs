@@ -1,5 +1,5 @@
-//! Counter-based random numbers: a pure function of a seed and a position, so that results do not depend on the order in
-//! which threads reach them.
+//! Counter-based random numbers: a pure function of a seed and coordinates, so that results do not depend on the order
+//! in which threads compute them.
 
 /// Mixes 64 bits so that every input bit reaches every output bit (the finaliser of SplitMix64, Steele et al. 2014).
 #[inline]
@@ -9,7 +9,7 @@ pub fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// The hash of a seed and the coordinates of whatever is random about it.
+/// Hashes a seed and the coordinates that identify a random quantity.
 #[inline]
 pub fn hash(seed: u64, coordinates: &[u64]) -> u64 {
     coordinates.iter().fold(mix(seed.wrapping_add(0x9e37_79b9_7f4a_7c15)), |h, &c| {
@@ -72,7 +72,7 @@ mod tests {
             square += u * u;
             cross += u * v;
         }
-        // Six standard deviations of each estimate.
+        // Tolerance: six standard deviations of each estimate.
         let n = n as f64;
         assert!((sum / n).abs() < 6.0 * (1.0 / 12.0 / n).sqrt());
         assert!((square / n - 1.0 / 12.0).abs() < 6.0 * (1.0 / 180.0 / n).sqrt());

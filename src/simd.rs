@@ -1,13 +1,13 @@
-//! Which vector instructions to use, and loops compiled for each kind of them.
+//! Run-time selection of vector instructions, and loops compiled for each instruction set.
 //!
-//! [`Level::widest`] is the one place that asks the processor; whoever has code for more than one level asks it. No level
-//! changes a bit: none contracts a product and a sum into one rounding where that would show, and loops are written so
-//! that no sum changes its order.
+//! [`Level::widest`] is the only place that queries the processor; all code with variants for several levels calls it.
+//! Results are identical to the bit at every level: no variant fuses a multiplication and an addition where the
+//! rounding would differ, and loops keep the order of their sums.
 
-/// Sets of instructions, each with those before it.
+/// Instruction sets; each includes the ones before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// What every processor of its kind has: SSE2 on x86-64, NEON on aarch64.
+    /// The baseline of the architecture: SSE2 on x86-64, NEON on aarch64.
     Baseline,
     /// AVX2, FMA, BMI1, BMI2, LZCNT and POPCNT.
     #[cfg(target_arch = "x86_64")]
@@ -18,11 +18,11 @@ pub enum Level {
 }
 
 impl Level {
-    /// The widest that this processor has.
+    /// The widest level that this processor supports.
     pub fn widest() -> Self {
         let level = Self::of_processor();
         #[cfg(test)]
-        let level = level.min(forced::most());
+        let level = level.min(forced::max_level());
         level
     }
 
@@ -42,7 +42,7 @@ impl Level {
     }
 }
 
-/// Defines a function whose loops use the widest instructions the processor has. Plain arguments only, no generics.
+/// Defines a function compiled for every level and dispatched at run time. Supports plain arguments only, no generics.
 macro_rules! widest {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block) => {
         $(#[$meta])*
@@ -67,7 +67,7 @@ macro_rules! widest {
             }
 
             match $crate::simd::Level::widest() {
-                // SAFETY: the processor has the instructions of its level.
+                // SAFETY: `Level::widest` returns only levels that the processor supports.
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Level::Avx512 => unsafe { avx512($($arg),*) },
                 // SAFETY: as above.
@@ -81,7 +81,7 @@ macro_rules! widest {
 
 pub(crate) use widest;
 
-/// Narrower levels than the processor's, for tests alone: what the library is shipped with asks nothing but the processor.
+/// Narrower levels than the processor's, for tests only; the shipped library always uses the widest.
 #[cfg(test)]
 pub mod forced {
     use super::Level;
@@ -93,29 +93,30 @@ pub mod forced {
     #[cfg(not(target_arch = "x86_64"))]
     const ALL: [Level; 1] = [Level::Baseline];
 
-    static MOST: AtomicU8 = AtomicU8::new(ALL.len() as u8 - 1);
+    static MAX_LEVEL: AtomicU8 = AtomicU8::new(ALL.len() as u8 - 1);
     static TURN: Mutex<()> = Mutex::new(());
 
-    pub(super) fn most() -> Level {
-        ALL[usize::from(MOST.load(Ordering::Relaxed))]
+    pub(super) fn max_level() -> Level {
+        ALL[usize::from(MAX_LEVEL.load(Ordering::Relaxed))]
     }
 
-    /// The levels of this processor, the narrowest first.
+    /// The levels that this processor supports, narrowest first.
     pub fn levels() -> impl Iterator<Item = Level> {
         ALL.into_iter().filter(|level| *level <= Level::of_processor())
     }
 
-    /// What `work` gives at a level. One at a time; other tests may meet it meanwhile, which changes nothing for them.
+    /// Runs `work` at a level. Calls are serialised; other tests running meanwhile use that level too, which does not
+    /// change their results.
     pub fn at<T>(level: Level, work: impl FnOnce() -> T) -> T {
         struct Widest;
         impl Drop for Widest {
             fn drop(&mut self) {
-                MOST.store(ALL.len() as u8 - 1, Ordering::Relaxed);
+                MAX_LEVEL.store(ALL.len() as u8 - 1, Ordering::Relaxed);
             }
         }
         let _turn = TURN.lock().unwrap_or_else(|e| e.into_inner());
         let _widest = Widest;
-        MOST.store(level as u8, Ordering::Relaxed);
+        MAX_LEVEL.store(level as u8, Ordering::Relaxed);
         work()
     }
 }

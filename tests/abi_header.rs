@@ -307,6 +307,8 @@ fn structs(header: &str) -> BTreeMap<&str, Vec<&str>> {
             current = Some(found.entry(name).or_insert_with(Vec::new));
         } else if line.starts_with('}') {
             current = None;
+        } else if line.trim_start().starts_with(['*', '/']) {
+            // A comment, whose lines may end with a semicolon too.
         } else if let (Some(fields), Some(declaration)) = (&mut current, line.strip_suffix(';')) {
             let name = declaration.split('[').next().unwrap();
             fields.push(name.rsplit([' ', '*']).next().unwrap());

@@ -57,7 +57,7 @@ const UNSAFE: &[&str] = &[
     "reserve.rs",
     "simd.rs",
     "image/pages.rs",
-    "rectify/four.rs",
+    "rectify/lanes.rs",
     "rectify/gather.rs",
     "scene/accel/cluster.rs",
     "scene/accel/lanes.rs",
@@ -69,6 +69,25 @@ const UNSAFE: &[&str] = &[
     "scene/accel/stack.rs",
     "patch/kernel.rs",
 ];
+
+/// Parts whose float constants all say where their value comes from (docs/glossary.md, "Tags of constants").
+const TAGGED: &[&str] = &[
+    "demo",
+    "features",
+    "geometry",
+    "guides",
+    "network",
+    "patch",
+    "photometry",
+    "plan",
+    "rectify",
+    "scene",
+    "sheet",
+    "stylize",
+];
+
+/// Tags of constants of these parts whose origin nobody recorded. A bench or a paper may lower this number; nothing may raise it.
+const UNRECORDED: usize = 64;
 
 /// Longest file that may be committed.
 const MAX_LINES: usize = 600;
@@ -155,4 +174,35 @@ fn nothing_unfinished_nothing_printed_nothing_too_long() {
         let lines = text.lines().count();
         assert!(lines <= MAX_LINES, "{} has {lines} lines; split it along a step of its algorithm", path.display());
     }
+}
+
+/// The comment above a line, constants that share it included.
+fn comment_above(lines: &[&str], at: usize) -> String {
+    let is_constant = |l: &str| l.trim_start_matches("pub ").contains("const ") && !l.starts_with("//");
+    let above = lines[..at].iter().rev().map(|l| l.trim()).skip_while(|l| is_constant(l));
+    let comment: Vec<&str> =
+        above.take_while(|l| l.starts_with("//")).map(|l| l.trim_start_matches(['/', ' '])).collect();
+    comment.into_iter().rev().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn float_constants_say_where_they_come_from() {
+    const TAGS: [&str; 6] = ["[paper", "[bench", "[rounding]", "[convention", "[judged on ", "[origin not recorded]"];
+    let mut unrecorded = 0;
+    for (path, text) in sources().iter().filter(|(path, _)| TAGGED.contains(&part(path).as_str()) && !is_test(path)) {
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+        unrecorded += code.replace("\n///", "").matches("[origin not recorded]").count();
+        let lines: Vec<&str> = code.lines().collect();
+        for (at, line) in lines.iter().enumerate() {
+            let constant = line.trim_start().trim_start_matches("pub ").strip_prefix("const ");
+            let Some((_, kind)) = constant.and_then(|c| c.split_once(": ")) else { continue };
+            let kind = kind.trim_start_matches(['[', '(']);
+            if line.contains("fn ") || !(kind.starts_with("f32") || kind.starts_with("f64")) {
+                continue;
+            }
+            let comment = comment_above(&lines, at);
+            assert!(TAGS.iter().any(|tag| comment.contains(tag)), "{}: no tag on {line:?}", path.display());
+        }
+    }
+    assert!(unrecorded <= UNRECORDED, "{unrecorded} constants of unrecorded origin; there were {UNRECORDED}");
 }

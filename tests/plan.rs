@@ -90,14 +90,14 @@ fn what_is_expected_does_not_hang_on_the_seed() {
             let [(_, a), (_, b)] = [11, 12].map(|seed| shot(&world, &camera, &Params { seed, ..params.clone() }));
             let found = error_of(&a.beauty, &b.beauty);
             let expected = |seed| {
-                let probe = render::probe::run(
+                let pilot = render::pilot::run(
                     &world,
                     &camera,
                     &Params { seed, ..params.clone() },
                     &plan::wall(),
                     Monitor::default().job(),
                 );
-                probe.unwrap().squares[1].sqrt()
+                pilot.unwrap().squared_errors[1].sqrt()
             };
             let ratios: Vec<f64> = (0..5).map(|seed| found / expected(seed)).collect();
             println!("{ratios:.2?}");

@@ -88,5 +88,5 @@ fn the_exemplars_own_guides_give_the_artwork_back() {
     pair.guides.iter_mut().for_each(|(source, target)| *target = source.clone());
     let output = stylise(&pair, &Params::default());
     assert!(output.image == pair.artwork);
-    assert_eq!(output.report.usage.most, 1);
+    assert_eq!(output.report.usage.max_uses, 1);
 }

@@ -3,7 +3,7 @@
 use luxfer::image::Image;
 use luxfer::image::colour::linear_to_srgb;
 use luxfer::job::Monitor;
-use luxfer::patch::{Domain, Features, Field, Kernel, Quantiser, Search, Sweep};
+use luxfer::patch::{Domain, Field, Kernel, QuantisedImage, Quantiser, Search, Sweep};
 use luxfer::rng::{Rng, hash};
 use std::collections::HashSet;
 
@@ -40,12 +40,12 @@ fn encoded(image: &Image) -> Image {
 }
 
 /// All patches of an image may be matches.
-fn everywhere(of: &Features) -> Domain {
+fn everywhere(of: &QuantisedImage) -> Domain {
     Domain::new(of.width, of.height, PATCH, None, false).expect("an image as large as a patch")
 }
 
 /// Looks for the nearest patches, whatever else is used.
-fn nearest<'a>(query: &'a Features, base: &'a Features, allowed: &'a Domain) -> Search<'a> {
+fn nearest<'a>(query: &'a QuantisedImage, base: &'a QuantisedImage, allowed: &'a Domain) -> Search<'a> {
     Search { query, base, allowed, patch: PATCH, occurrence: None, kernel: Kernel::detect(), seed: 9 }
 }
 
@@ -57,7 +57,7 @@ pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f6
     weights.extend(vec![each; 3 * guides.len()]);
     let quantisers = Quantiser::for_weights(&weights, PATCH);
     let features = |colours: &Image, side: &dyn Fn(usize) -> Image| {
-        let mut out = Features::new(colours.width, colours.height, weights.len()).expect("memory");
+        let mut out = QuantisedImage::new(colours.width, colours.height, weights.len()).expect("memory");
         out.fill(0, &quantisers[..3], &encoded(colours), monitor.job()).expect("nobody cancels");
         for g in 0..guides.len() {
             let first = 3 + 3 * g;
@@ -72,7 +72,7 @@ pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f6
     let mut field = Field::new(query.width + 1 - PATCH, query.height + 1 - PATCH).expect("memory");
     for index in 0..10 {
         search
-            .sweep(&mut field, Sweep { index, reach: 256, fresh: 8 }, monitor.job(), |_| true)
+            .sweep(&mut field, Sweep { index, radius: 256, initial_samples: 8 }, monitor.job(), |_| true)
             .expect("nobody cancels");
     }
     let unit = Quantiser::unit(&weights, PATCH).powi(2) * (PATCH * PATCH) as f64;
@@ -102,7 +102,7 @@ fn coherence(picture: &Image, artwork: &Image) -> f64 {
     let weights = [1.0; 3];
     let quantisers = Quantiser::for_weights(&weights, PATCH);
     let features = |image: &Image| {
-        let mut out = Features::new(image.width, image.height, 3).expect("memory");
+        let mut out = QuantisedImage::new(image.width, image.height, 3).expect("memory");
         out.fill(0, &quantisers, &encoded(image), monitor.job()).expect("nobody cancels");
         out
     };
@@ -116,7 +116,7 @@ fn coherence(picture: &Image, artwork: &Image) -> f64 {
     // A good match first, so that comparing with all stops early.
     for index in 0..4 {
         search
-            .sweep(&mut field, Sweep { index, reach: 512, fresh: 64 }, monitor.job(), |i| chosen[i])
+            .sweep(&mut field, Sweep { index, radius: 512, initial_samples: 64 }, monitor.job(), |i| chosen[i])
             .expect("nobody cancels");
     }
     search.exhaustive(&mut field, monitor.job(), |i| chosen[i]).expect("nobody cancels");

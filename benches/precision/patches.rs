@@ -5,7 +5,7 @@ use half::f16;
 use half::slice::HalfFloatSliceExt;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
-use luxfer::patch::{Features, Kernel, Patch, Quantiser};
+use luxfer::patch::{Kernel, Patch, QuantisedImage, Quantiser};
 use luxfer::rng::Rng;
 
 const SIDE: usize = 256;
@@ -49,7 +49,7 @@ fn in_halves(data: &[f16], pairs: &[[usize; 2]]) -> Vec<f32> {
     pairs.iter().map(&mut distance).collect()
 }
 
-fn in_integers(features: &Features, pairs: &[[usize; 2]]) -> Vec<u32> {
+fn in_integers(features: &QuantisedImage, pairs: &[[usize; 2]]) -> Vec<u32> {
     let kernel = Kernel::detect();
     let patch = |at: usize| Patch { samples: &features.data[at..], row_len: features.row_len() };
     pairs.iter().map(|&[a, b]| kernel.distance(patch(a), patch(b), RUN, PATCH, u32::MAX)).collect()
@@ -73,7 +73,7 @@ pub fn measure(study: &mut Study) {
     // What is matched has been read from 8 bits or rendered; here it is what f32 holds.
     let images: Vec<Image> = (0..CHANNELS as u64 / 4).map(image).collect();
     let weights = [1.0; CHANNELS];
-    let mut features = Features::new(SIDE, SIDE, CHANNELS).expect("features");
+    let mut features = QuantisedImage::new(SIDE, SIDE, CHANNELS).expect("features");
     for (k, image) in images.iter().enumerate() {
         let quantisers = &Quantiser::for_weights(&weights, PATCH)[4 * k..4 * k + 4];
         features.fill(4 * k, quantisers, image, Monitor::default().job()).expect("features");

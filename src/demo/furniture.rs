@@ -1,4 +1,4 @@
-//! Pieces that stand in the rooms. Each is built at the origin, its front towards +z, and then turned and moved.
+//! Furniture of the rooms. Each piece is built at the origin with its front towards +z, then rotated and moved.
 
 use super::Builder;
 use super::shapes::{ball, cuboid, lathe, moved};
@@ -6,7 +6,7 @@ use crate::rng::Rng;
 use crate::scene::Mesh;
 use glam::{Vec2, Vec3};
 
-/// A box given by its middle on the floor, its base height and its size.
+/// A box given by the centre of its base, the height of its base and its size.
 fn block(mesh: &mut Mesh, x: f32, y: f32, z: f32, size: [f32; 3]) {
     let half = Vec3::new(size[0] / 2.0, 0.0, size[2] / 2.0);
     let foot = Vec3::new(x, y, z);
@@ -45,8 +45,9 @@ pub fn chair(b: &mut Builder, at: Vec3, degrees: f32, wood: usize, cloth: usize)
     b.add("Cushion", cloth, moved(cushion, degrees, at));
 }
 
-/// An open shelf with its back at z = 0 and books on every board; the books take the given paints in turn.
+/// An open shelf with its back at z = 0 and books on every board; the books take the given paints at random.
 pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, covers: &[usize]) {
+    /// Depth of the shelf and heights of its boards, in metres [convention].
     const DEPTH: f32 = 0.30;
     const BOARDS: [f32; 5] = [0.06, 0.44, 0.82, 1.20, 1.58];
     let mut frame = Mesh::default();
@@ -158,8 +159,8 @@ pub fn plant(b: &mut Builder, foot: Vec3, height: f32, pot: usize, leaves: usize
     for i in 0..60 {
         let (s, c) = (i as f32 * 2.399_963).sin_cos();
         let up = (i as f32 + 0.5) / 60.0;
-        let reach = 0.05 + 0.25 * (std::f32::consts::PI * up).sin() * (0.6 + 0.4 * rng.next_f32());
-        let centre = foot + Vec3::new(reach * c, 0.30 + (height - 0.4) * up, reach * s);
+        let radius = 0.05 + 0.25 * (std::f32::consts::PI * up).sin() * (0.6 + 0.4 * rng.next_f32());
+        let centre = foot + Vec3::new(radius * c, 0.30 + (height - 0.4) * up, radius * s);
         ball(&mut crown, centre, Vec2::new(0.055, 0.03 + 0.03 * rng.next_f32()), 10);
     }
     b.add("Plant", leaves, crown);

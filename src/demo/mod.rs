@@ -1,14 +1,15 @@
-//! A small world of its own to try everything on: two rooms, generated, and a photo taken of one of them; a sphere on a
-//! table with artworks of it, and a still life.
+//! Self-contained demonstration scenes: two generated rooms and a photo of one of them; a sphere on a table with
+//! artworks of it, and a still life.
 //!
 //! [`target_room`] is the furnished room to be lit; it has no lights. [`exemplar_room`] is a different room, an office
-//! under a grid of luminaires whose true positions and colour come along, so that a picture of it can stand for the photo
-//! and what is read from the picture can be checked.
+//! under a grid of luminaires with known positions and colour: a rendering of it can stand for the photo, and the
+//! results can be checked against the truth.
 //!
-//! [`sphere_on_table`] is the exemplar of a stylisation, [`artwork`] draws it in three manners, [`still_life`] is a target.
+//! [`sphere_on_table`] is the exemplar of a stylisation, [`artwork`] draws it in three techniques, [`still_life`] is a
+//! target.
 //!
 //! Metres, Y up, floors at y = 0. Nothing is loaded from files: shapes are boxes, sheets and bodies of revolution,
-//! textures are noise. The same bits every time.
+//! textures are noise. The result is the same to the bit every time.
 
 pub mod artwork;
 mod furniture;
@@ -30,20 +31,20 @@ use crate::image::Image;
 use crate::scene::{Material, Mesh, Scene, Texture, TextureRef};
 use glam::{Mat3, Vec2, Vec3};
 
-/// A scene in the making.
+/// A scene under construction.
 #[derive(Default)]
 struct Builder {
     scene: Scene,
 }
 
 impl Builder {
-    /// A matt or glossy paint; returns the index of its material.
+    /// Adds a paint and returns the index of its material.
     fn paint(&mut self, name: &str, colour: Vec3, roughness: f32) -> usize {
         self.scene.materials.push(Material { roughness, ..Material::diffuse(name, colour) });
         self.scene.materials.len() - 1
     }
 
-    /// A material with a pattern that repeats every `period` metres of texture coordinates.
+    /// Adds a material with a pattern that repeats every `period` metres of texture coordinates.
     fn pattern(&mut self, name: &str, image: Image, period: Vec2, roughness: f32) -> usize {
         self.scene.textures.push(Texture::new(name, image));
         let transform = Mat3::from_scale(period.recip());
@@ -57,8 +58,8 @@ impl Builder {
         self.scene.meshes.push(Mesh { name: name.into(), material, ..mesh });
     }
 
-    /// The finished scene, checked.
-    fn finish(self) -> Result<Scene> {
+    /// Validates and returns the scene.
+    fn build(self) -> Result<Scene> {
         self.scene.validate()?;
         Ok(self.scene)
     }

@@ -7,16 +7,16 @@ use crate::scene::{Camera, Material, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(5.4, 2.7, 9.0);
-/// Edge of the ceiling's tiles: 9 by 15 of them.
+/// Side of the ceiling's tiles in metres, and their number along x and z [convention].
 const TILE: f32 = 0.6;
 const TILES: [usize; 2] = [9, 15];
-/// Width and depth of the bars the tiles lie on.
+/// Width and depth of the bars that carry the tiles.
 const BAR: Vec2 = Vec2::new(0.024, 0.004);
-/// Edge of a luminaire; the rest of its tile is a white rim.
+/// Side of a luminaire in metres; the rest of its tile is a white rim [convention].
 const LUMINAIRE: f32 = 0.56;
-/// cd/m².
+/// Luminance of the luminaires in cd/m² [convention].
 const LUMINANCE: f32 = 3000.0;
-/// Linear Rec.709 of a black body at 3500 K (CIE xy 0.4053, 0.3907), luminance 1.
+/// Linear Rec.709 of a blackbody at 3500 K (CIE xy 0.4053, 0.3907), with luminance 1.
 const WARM_WHITE: Vec3 = Vec3::new(1.564, 0.892, 0.406);
 
 /// The true grid of luminaires: positions on the ceiling as (x, z) in metres.
@@ -24,18 +24,18 @@ const WARM_WHITE: Vec3 = Vec3::new(1.564, 0.892, 0.406);
 pub struct LuminaireGrid {
     pub columns: usize,
     pub rows: usize,
-    /// Centre of the luminaire with the least x and z.
+    /// Centre of the luminaire with the smallest x and z.
     pub first: Vec2,
-    /// Distance of neighbouring centres along x and z.
+    /// Distance between neighbouring centres along x and z.
     pub period: Vec2,
-    /// Extent of the part that emits, along x and z.
+    /// Extent of the emitting part along x and z.
     pub size: Vec2,
     /// Emitted linear RGB in cd/m².
     pub emission: Vec3,
 }
 
 impl LuminaireGrid {
-    /// Row by row, x first.
+    /// Centres row by row, x first.
     pub fn centres(&self) -> impl Iterator<Item = Vec2> {
         let grid = *self;
         (0..grid.rows * grid.columns)
@@ -43,18 +43,18 @@ impl LuminaireGrid {
     }
 }
 
-/// The office and what is known about its lights.
+/// The office, with the ground truth about its lights.
 #[derive(Clone, Debug)]
 pub struct Exemplar {
     pub scene: Scene,
     pub grid: LuminaireGrid,
     /// Height of the plane of ceiling tiles and luminaires.
     pub ceiling_height: f32,
-    /// Index of the camera that takes the photo: made for an aspect of 3:2, 66° across, pitched up by 22°.
+    /// Index of the camera that takes the photo: intended for an aspect of 3:2, 66° across, pitched up by 22°.
     pub camera: usize,
 }
 
-/// An office whose only lights are those of its ceiling.
+/// An office lit only by its ceiling.
 pub fn exemplar_room() -> Result<Exemplar> {
     let grid = LuminaireGrid {
         columns: 3,
@@ -69,7 +69,7 @@ pub fn exemplar_room() -> Result<Exemplar> {
     shell(&mut b)?;
     fittings(&mut b)?;
 
-    // Turned against the room and rolled a little: all three vanishing points are finite.
+    // Rotate the camera against the room and roll it slightly, so that all three vanishing points are finite.
     let (yaw, pitch, roll) = (-17f32.to_radians(), 22f32.to_radians(), 1.2f32.to_radians());
     let turn = Mat3::from_rotation_y(yaw) * Mat3::from_rotation_x(pitch) * Mat3::from_rotation_z(roll);
     let fov_y = 2.0 * ((33f32.to_radians()).tan() / 1.5).atan();
@@ -80,10 +80,10 @@ pub fn exemplar_room() -> Result<Exemplar> {
         up: turn * Vec3::Y,
         fov_y,
     });
-    Ok(Exemplar { scene: b.finish()?, grid, ceiling_height: SIZE.y, camera: 0 })
+    Ok(Exemplar { scene: b.build()?, grid, ceiling_height: SIZE.y, camera: 0 })
 }
 
-/// Tiles, luminaires with their rims, and the bars between them. Everything but the bars lies in one plane.
+/// Tiles, luminaires with their rims, and the bars between them. Everything except the bars lies in one plane.
 fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     let fibre = b.pattern("Ceiling tile", pattern::tile()?, Vec2::splat(TILE), 1.0);
     let white = b.paint("White steel", Vec3::splat(0.75), 0.5);
@@ -94,7 +94,7 @@ fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     });
     let diffuser = b.scene.materials.len() - 1;
 
-    // Corner and edges of a downward square: x × z points down.
+    // Adds a downward-facing square: x × z points down.
     let square = |m: &mut Mesh, centre: Vec2, edge: f32| {
         let corner = centre - edge / 2.0;
         sheet(m, Vec3::new(corner.x, SIZE.y, corner.y), Vec3::X * edge, Vec3::Z * edge, [1, 1]);
@@ -138,7 +138,7 @@ fn ceiling(b: &mut Builder, grid: &LuminaireGrid) -> Result<()> {
     Ok(())
 }
 
-/// Lower and upper corner of each window of the wall at x = 0, along -z from z = 9 and y.
+/// Lower and upper corner of each window in the wall at x = 0: distance along -z from z = 9, and height y.
 fn windows() -> [[Vec2; 2]; 4] {
     std::array::from_fn(|i| {
         let start = 0.5 + 2.1 * i as f32;
@@ -185,7 +185,7 @@ fn shell(b: &mut Builder) -> Result<()> {
 
 fn fittings(b: &mut Builder) -> Result<()> {
     let (x, z) = (SIZE.x, SIZE.z);
-    // Lockers along the right wall, in two blues, with gaps that draw vertical lines, and boxes on top.
+    // Lockers along the right wall in two colours, with gaps that form vertical lines, and boxes on top.
     let blues = [
         b.paint("Locker blue", Vec3::new(0.06, 0.16, 0.34), 0.4),
         b.paint("Locker grey", Vec3::new(0.40, 0.44, 0.48), 0.4),
@@ -207,7 +207,7 @@ fn fittings(b: &mut Builder) -> Result<()> {
     }
     b.add("Boxes", card, boxes);
 
-    // The end wall: door, sign above it, board and clock.
+    // The end wall: door, sign above it, board.
     let orange = b.paint("Door orange", Vec3::new(0.62, 0.25, 0.06), 0.5);
     let white = b.paint("Board white", Vec3::splat(0.80), 0.2);
     let dark = b.paint("Dark plastic", Vec3::splat(0.05), 0.4);
@@ -222,7 +222,7 @@ fn fittings(b: &mut Builder) -> Result<()> {
     b.add("Board", white, board);
     b.add("Trim", dark, trim);
 
-    // Desks in two rows, back to back, under dividing screens.
+    // Desks in two rows, back to back, with dividing screens.
     let top = b.pattern("Beech", pattern::wood(Vec3::new(0.55, 0.38, 0.22))?, Vec2::new(1.2, 0.6), 0.5);
     let cloth = b.pattern(
         "Divider",

@@ -1,4 +1,4 @@
-//! Procedural textures, in linear reflectance; all repeat.
+//! Procedural textures in linear reflectance; all are tileable.
 
 use crate::error::Result;
 use crate::image::Image;
@@ -23,13 +23,13 @@ pub(super) fn noise(at: Vec2, period: [u64; 2], seed: u64) -> f32 {
     top + (bottom - top) * t.y
 }
 
-/// Noise of three scales over the unit square.
+/// Noise of three octaves over the unit square.
 fn cloud(at: Vec2, cells: u64, seed: u64) -> f32 {
     let octave = |factor: u64| noise(at * (cells * factor) as f32, [cells * factor; 2], seed + factor);
     octave(1) * 0.5 + octave(2) * 0.3 + octave(4) * 0.2
 }
 
-/// A texture from the reflectance at each point of the unit square.
+/// A texture from a function of the reflectance over the unit square.
 fn paint(reflectance: impl Fn(Vec2) -> Vec3) -> Result<Image> {
     Image::from_fn(SIDE, SIDE, |x, y| {
         let at = (Vec2::new(x as f32, y as f32) + 0.5) / SIDE as f32;
@@ -37,7 +37,7 @@ fn paint(reflectance: impl Fn(Vec2) -> Vec3) -> Result<Image> {
     })
 }
 
-/// Boards along u, each of its own tone; 8 across, their ends staggered.
+/// Boards along u with individual tones: 8 across, with staggered ends.
 pub fn planks() -> Result<Image> {
     paint(|at| {
         let board = (at.y * 8.0).floor();
@@ -61,7 +61,7 @@ pub fn wood(colour: Vec3) -> Result<Image> {
     })
 }
 
-/// Painted bricks in a running bond: 4 by 8.
+/// Painted bricks in running bond, 4 by 8.
 pub fn bricks(colour: Vec3) -> Result<Image> {
     paint(|at| {
         let row = (at.y * 8.0).floor();
@@ -73,12 +73,12 @@ pub fn bricks(colour: Vec3) -> Result<Image> {
     })
 }
 
-/// Plaster: nearly even, a little cloudy.
+/// Plaster: nearly uniform, slightly cloudy.
 pub fn plaster(colour: Vec3) -> Result<Image> {
     paint(|at| colour * (0.93 + 0.14 * cloud(at, 8, 41)))
 }
 
-/// Cloth of two yarns.
+/// Cloth woven from two yarns.
 pub fn weave(warp: Vec3, weft: Vec3) -> Result<Image> {
     paint(|at| {
         let (x, y) = ((at.x * 32.0).floor() as i64, (at.y * 32.0).floor() as i64);
@@ -89,7 +89,7 @@ pub fn weave(warp: Vec3, weft: Vec3) -> Result<Image> {
     })
 }
 
-/// A rug: a border, and diamonds inside.
+/// A rug with a border and diamonds inside.
 pub fn rug() -> Result<Image> {
     paint(|at| {
         let rim = at.min(1.0 - at).min_element();
@@ -130,7 +130,7 @@ pub fn tile() -> Result<Image> {
     })
 }
 
-/// Carpet tiles, two by two, turned against each other.
+/// Carpet tiles, two by two, with alternating direction.
 pub fn carpet(colour: Vec3) -> Result<Image> {
     paint(|at| {
         let turned = ((at * 2.0).floor().element_sum() as i64) % 2 == 0;

@@ -1,4 +1,4 @@
-//! A photo of a generated room: a rendering seen through a lens and an 8-bit sensor.
+//! A photo of a generated room: a rendering with a model of a lens and an 8-bit sensor.
 
 use crate::error::Result;
 use crate::exec;
@@ -11,17 +11,19 @@ use crate::scene::{Camera, Scene};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Standard deviation of the lens blur in pixels.
+/// Standard deviation of the lens blur in pixels [convention].
 const LENS_BLUR: f32 = 0.7;
-/// Share of the light that the lens scatters into a glow around lamps, and the glow's standard deviation in pixels.
+/// Share of the light that the lens scatters into a glow around lamps, and the standard deviation of the glow in
+/// pixels [convention].
 const GLARE: (f32, f32) = (0.03, 9.0);
-/// Brightness in the corner of the picture relative to its centre.
+/// Brightness in the corner of the picture relative to its centre [convention].
 const VIGNETTE: f32 = 0.8;
-/// Electrons that white holds, and the read-out noise in electrons.
+/// Full-well capacity and read-out noise, in electrons [convention].
 const WELL: (f64, f64) = (6000.0, 12.0);
-/// How far the camera's white balance goes from the colour of the light towards white: as cameras do, not all the way.
+/// Strength of the camera's white balance from the colour of the light (0) to white (1): real cameras correct
+/// partially [convention].
 const WHITE_BALANCE: f32 = 0.6;
-/// Linear value the median of the picture is exposed to.
+/// Linear value to which the median of the picture is exposed [convention].
 const MEDIAN_EXPOSURE: f32 = 0.14;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -39,8 +41,8 @@ impl Default for Params {
     }
 }
 
-/// Takes the picture: linear RGB in `[0, 1]` that has been through 8-bit sRGB, lamps clipped to white. Also returns the
-/// exposure: the linear value of 1 cd/m².
+/// Takes the picture: linear RGB in `[0, 1]` after quantisation to 8-bit sRGB, with lamps clipped to white. Also
+/// returns the exposure: the linear value of 1 cd/m².
 pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job) -> Result<(Image, f32)> {
     let world = World::build(scene, job.part(0.0, 0.05))?;
     let settings = render::Params {
@@ -52,17 +54,17 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     };
     let film = render::run(&world, camera, &settings, job.part(0.05, 0.9), &mut |_| {})?;
 
-    // Lens: a little blur, and a glow that carries what is far too bright.
+    // Lens: slight blur, and glare around very bright parts.
     let sharp = pyramid::blur(&film.beauty, LENS_BLUR, job.part(0.9, 0.92))?;
     let glow = pyramid::blur(&film.beauty, GLARE.1, job.part(0.92, 0.96))?;
 
-    // Exposure for the room, not for its lamps.
+    // Expose for the room, not for its lamps.
     let mut levels = try_collect(film.beauty.data.chunks_exact(3).map(|p| luminance(Vec3::from_slice(p))))?;
     let half = levels.len() / 2;
     let median = *levels.select_nth_unstable_by(half, f32::total_cmp).1;
     let exposure = MEDIAN_EXPOSURE / median.max(f32::MIN_POSITIVE);
 
-    // White balance: the mean of the room moves towards grey, its luminance stays.
+    // White balance: shift the room's mean colour towards grey at constant luminance.
     let mean = film.beauty.data.chunks_exact(3).map(|p| Vec3::from_slice(p)).sum::<Vec3>();
     let mean = (mean / luminance(mean).max(f32::MIN_POSITIVE)).max(Vec3::splat(1e-3));
     let balance = mean.powf(-WHITE_BALANCE);
@@ -71,10 +73,10 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     // Sensor: vignetting, shot and read-out noise, saturation, 8 bits.
     let mut photo = Image::new(params.width, params.height, 3)?;
     let centre = [params.width as f32 / 2.0, params.height as f32 / 2.0];
-    let reach = centre[0].hypot(centre[1]);
+    let half_diagonal = centre[0].hypot(centre[1]);
     exec::for_rows(&mut photo.data, params.width * 3, job.part(0.96, 1.0), |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            let radius = (x as f32 + 0.5 - centre[0]).hypot(y as f32 + 0.5 - centre[1]) / reach;
+            let radius = (x as f32 + 0.5 - centre[0]).hypot(y as f32 + 0.5 - centre[1]) / half_diagonal;
             let falloff = 1.0 - (1.0 - VIGNETTE) * radius * radius;
             let mut rng = Rng::new(params.seed, &[x as u64, y as u64]);
             for (c, out) in pixel.iter_mut().enumerate() {

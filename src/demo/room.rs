@@ -1,4 +1,4 @@
-//! The room to be lit: 6 × 4 m, 2.8 m high, furnished, with no light in it.
+//! The room to be lit: 6 × 4 m, 2.8 m high, furnished, without lights.
 
 use super::shapes::{ball, cuboid, flat, moved, pierced, sheet};
 use super::{Builder, furniture, pattern};
@@ -7,15 +7,15 @@ use crate::scene::{Camera, Mesh, Scene};
 use glam::{Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(6.0, 2.8, 4.0);
-/// Edge of the cells that walls, floor and ceiling are divided into.
+/// Side of the cells into which walls, floor and ceiling are divided [convention].
 const CELL: f32 = 0.25;
-/// Depth of door and window openings.
+/// Depth of door and window openings [convention].
 const REVEAL: f32 = 0.12;
-/// Openings of the wall at z = 0: lower and upper corner along x and y.
+/// Openings in the wall at z = 0: lower and upper corner along x and y.
 const WINDOW: [Vec2; 2] = [Vec2::new(1.1, 0.95), Vec2::new(3.1, 2.25)];
 const DOOR: [Vec2; 2] = [Vec2::new(4.3, 0.0), Vec2::new(5.2, 2.05)];
 
-/// A furnished living room without lights; its first camera is `Camera`, its ceiling the object `Ceiling`.
+/// A furnished living room without lights; its first camera is named `Camera`, its ceiling `Ceiling`.
 pub fn target_room() -> Result<Scene> {
     let mut b = Builder::default();
     shell(&mut b)?;
@@ -25,7 +25,7 @@ pub fn target_room() -> Result<Scene> {
         name: "Camera".into(),
         ..Camera::look_at(Vec3::new(5.65, 1.55, 3.75), Vec3::new(2.2, 1.32, 1.15), 56f32.to_radians())
     });
-    b.finish()
+    b.build()
 }
 
 /// Floor, ceiling and walls, all facing inwards.
@@ -58,7 +58,7 @@ fn shell(b: &mut Builder) -> Result<()> {
     Ok(())
 }
 
-/// A frame of bars around an opening of the wall at z = 0, as deep as the wall.
+/// A frame of bars around an opening in the wall at z = 0, as deep as the wall.
 fn frame(m: &mut Mesh, [low, high]: [Vec2; 2], bar: f32, sill: bool) {
     let mut piece = |a: Vec2, b: Vec2| cuboid(m, a.extend(-REVEAL), b.extend(0.03));
     piece(Vec2::new(low.x - bar, low.y), Vec2::new(low.x, high.y));
@@ -69,7 +69,7 @@ fn frame(m: &mut Mesh, [low, high]: [Vec2; 2], bar: f32, sill: bool) {
     }
 }
 
-/// Window with a frosted pane and curtains, and the door.
+/// A window with a frosted pane and curtains, and the door.
 fn openings(b: &mut Builder) {
     let lacquer = b.paint("Frame lacquer", Vec3::splat(0.80), 0.35);
     let frames = flat(|m| {
@@ -110,7 +110,7 @@ fn openings(b: &mut Builder) {
     ball(&mut knob, Vec3::new(low.x + 0.08, 1.03, 0.02), Vec2::splat(0.028), 24);
     b.add("Door knob", brass, knob);
 
-    // Curtains: sheets in folds.
+    // Curtains: folded sheets.
     let mustard = b.paint("Curtain", Vec3::new(0.66, 0.40, 0.05), 1.0);
     for (from, to) in [(0.75, 1.25), (2.95, 3.45)] {
         let mut mesh = flat(|m| sheet(m, Vec3::new(from, 0.12, 0.10), Vec3::X * (to - from), Vec3::Y * 2.3, [60, 6]));

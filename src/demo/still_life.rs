@@ -1,8 +1,8 @@
-//! The two scenes of a stylisation: the sphere on a table that an artist paints (StyLit, section 3.1), and a still life of
-//! other shapes on the same table under the same lamp.
+//! The two scenes of a stylisation: the sphere on a table that an artist paints (StyLit, section 3.1), and a still
+//! life of other shapes on the same table under the same lamp.
 //!
-//! Both hold what the light does that artists paint differently: a highlight, a core shadow, the red light that the thing
-//! throws onto the table, and the shadow on it with its soft rim.
+//! Both show the effects of light that artists paint differently: a highlight, a core shadow, the red light that the
+//! object reflects onto the table, and its cast shadow with a soft edge.
 
 use super::Builder;
 use super::shapes::{ball, flat, lathe, moved, sheet};
@@ -12,7 +12,7 @@ use glam::{Mat3, Vec2, Vec3};
 
 /// Corner, width and depth of the lamp, which faces the table.
 const LAMP: [Vec3; 2] = [Vec3::new(0.12, 0.62, -0.12), Vec3::new(0.34, 0.56, 0.06)];
-/// Luminance of the lamp in cd/m².
+/// Luminance of the lamp in cd/m² [convention].
 const LAMP_LUMINANCE: f32 = 12_000.0;
 /// Luminance of the dim surroundings.
 const SURROUNDINGS: Vec3 = Vec3::new(120.0, 125.0, 135.0);
@@ -24,7 +24,7 @@ pub fn sphere_on_table() -> Result<Scene> {
     let mut sphere = Mesh::default();
     ball(&mut sphere, Vec3::new(0.0, 0.1, 0.0), Vec2::splat(0.1), 96);
     b.add("Ball", red, sphere);
-    b.finish()
+    b.build()
 }
 
 /// The target: a vase, a ring and two balls. Object names: `Vase`, `Ring`, `Balls`, `Table`, `Wall`.
@@ -45,7 +45,7 @@ pub fn still_life() -> Result<Scene> {
     ball(&mut balls, Vec3::new(0.075, 0.042, 0.085), Vec2::splat(0.042), 64);
     ball(&mut balls, Vec3::new(-0.02, 0.024, 0.115), Vec2::splat(0.024), 64);
     b.add("Balls", red, balls);
-    b.finish()
+    b.build()
 }
 
 /// Table, wall, lamp, surroundings and camera.
@@ -64,7 +64,7 @@ fn stage() -> Builder {
     b.scene.materials[lamp].emission = Vec3::new(1.0, 0.97, 0.9) * LAMP_LUMINANCE;
     b.scene.materials[lamp].double_sided = false;
     let [low, high] = LAMP;
-    // Tilted towards the thing on the table.
+    // Tilt it towards the object on the table.
     let (u, v) = (Vec3::new(high.x - low.x, high.y - low.y, 0.0), Vec3::Z * (high.z - low.z));
     b.add("Lamp", lamp, flat(|m| sheet(m, low, u, v, [1, 1])));
     b.scene.environment = Some(Environment::Constant(SURROUNDINGS));
@@ -113,7 +113,7 @@ fn vase_profile() -> Vec<Vec2> {
     profile
 }
 
-/// Adds a ring about the vertical through the origin: the radii of its middle and of its tube.
+/// Adds a ring about the vertical through the origin, with the radii of its centre line and of its tube.
 fn torus(mesh: &mut Mesh, radius: f32, tube: f32) {
     let (around, across) = (128u32, 48u32);
     let first = mesh.positions.len() as u32;

@@ -1,4 +1,4 @@
-//! The strokes a user would paint on the photo of the exemplar room.
+//! The strokes that a user would paint on the photo of the exemplar room.
 
 use super::Exemplar;
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::scene::Camera;
 use crate::segment::{Stroke, StrokeSet};
 use glam::{DVec2, Vec2, Vec3};
 
-/// Brush radius as a share of the photo's height.
+/// Brush radius as a share of the photo's height [convention].
 const RADIUS: f64 = 0.006;
 
 /// Strokes on a photo of `width` × `height` pixels taken by the room's own camera.
@@ -25,9 +25,9 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     let between = |column: usize, row: usize| lamp(column, row) + grid.period * Vec2::new(0.5, 0.0);
     let half = Vec2::new(0.3, 0.0) * grid.size;
 
-    // Ceiling: along it between two columns of lamps, and across between two rows. Not ceiling: the walls and what
-    // stands before them.
-    // No two strokes cross, so that one drawing can hold them all.
+    // Positive strokes on the ceiling: along it between two columns of lamps, and across between two rows. Negative
+    // strokes: on the walls and the objects in front of them. No two strokes cross, so that a single drawing can hold
+    // them all.
     let along = |column: usize, row: usize| [on_ceiling(between(column, row)), on_ceiling(between(column, row + 1))];
     let across = |column: usize, row: usize| {
         let middle = Vec2::new(0.0, 0.5) * grid.period;
@@ -47,7 +47,7 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
         set.plane.push(stroke(points, false)?);
     }
 
-    // Lights: across three lamps. Not lights: the same ceiling.
+    // Positive strokes on lights: across three lamps. Negative strokes: the ceiling.
     for (column, row) in [(0, 2), (1, 1), (1, 3)] {
         let centre = lamp(column, row);
         set.lights.push(stroke(&[on_ceiling(centre - half), on_ceiling(centre + half)], true)?);
@@ -72,7 +72,7 @@ pub fn drawing(set: &StrokeSet, width: usize, height: usize) -> Result<Image> {
     Ok(image)
 }
 
-/// Where a camera sees a point, in pixels; `None` behind it.
+/// The pixel position at which a camera sees a point; `None` if it is behind the camera.
 fn project(camera: &Camera, point: Vec3, width: usize, height: usize) -> Option<DVec2> {
     let v = point - camera.position;
     let depth = v.dot(camera.forward);

@@ -1,4 +1,4 @@
-//! The last step: colour, depth, positions by Eq. 1 and normals of a row, interleaved.
+//! The last step of the stage: interleaves colour, depth, positions by Eq. 1 and normals of one row.
 
 use super::depth::Surface;
 use super::{CHANNELS, Frustum};
@@ -6,25 +6,25 @@ use crate::image::{Image, colour, interleave};
 use crate::simd::widest;
 use glam::{Mat3, Vec2, Vec3};
 
-/// Pixels worked on together: their planes stay in the first-level cache.
+/// Pixels processed together, so that their channel planes stay in the first-level cache.
 const TILE: usize = 64;
 
-/// A feature of the pixels of a tile.
+/// One feature channel of the pixels of a tile.
 type Plane = [f32; TILE];
 
-/// What the geometry of a tile is made from.
+/// Inputs of the geometric channels of a tile.
 struct Geometry<'a> {
     inverse_depth: &'a [f32],
-    /// Interleaved.
+    /// Three channels, interleaved.
     normals: &'a [f32],
     frustum: &'a Frustum,
     to_room: Mat3,
-    /// Normalised device coordinates of the first pixel, and the step from one to the next.
+    /// Normalised device coordinates of the first pixel, and the step between neighbouring pixels.
     start: Vec2,
     step: f32,
 }
 
-/// All channels of row `y`; `to_room` turns camera axes into the room's.
+/// Computes all channels of row `y`; `to_room` rotates camera axes into room axes.
 pub fn row(photo: &Image, surface: &Surface, frustum: &Frustum, to_room: Mat3, y: usize, out: &mut [f32]) {
     let (width, height) = (photo.width, photo.height);
     let mut planes = [[0.0; TILE]; CHANNELS];
@@ -46,7 +46,7 @@ pub fn row(photo: &Image, surface: &Surface, frustum: &Frustum, to_room: Mat3, y
     }
 }
 
-/// The first three channels of pixels; of fewer the first for all.
+/// Splits pixels into three colour planes; images with fewer than three channels repeat the first.
 fn spread(pixels: &[f32], channels: usize, [r, g, b]: [&mut Plane; 3]) {
     if channels == 3 {
         for (k, p) in pixels.as_chunks::<3>().0.iter().enumerate().take(TILE) {

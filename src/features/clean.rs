@@ -1,4 +1,4 @@
-//! Pixels that are no light: NaN, infinite and negative values.
+//! Replaces invalid pixels: NaN, infinite and negative values.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,13 +6,13 @@ use crate::image::Image;
 use crate::job::Job;
 use std::borrow::Cow;
 
-/// Values above this are as good as infinite: their squares would overflow.
-const LARGEST: f32 = 1e18;
+/// Values above this count as infinite, because their squares would overflow [rounding].
+const MAX_VALUE: f32 = 1e18;
 
-/// The photo with bad pixels replaced by the nearest good one of their row or column (black if there is none), as RGB if
-/// there were any, and how many they were.
+/// Returns the photo with each invalid pixel replaced by the nearest valid one in its row or column (black if there is
+/// none), and the number of replaced pixels. Converts to RGB if there are any.
 pub fn clean<'a>(photo: &'a Image, job: Job) -> Result<(Cow<'a, Image>, usize)> {
-    let is_good = |p: &[f32]| p[..p.len().min(3)].iter().all(|v| (0.0..=LARGEST).contains(v));
+    let is_good = |p: &[f32]| p[..p.len().min(3)].iter().all(|v| (0.0..=MAX_VALUE).contains(v));
     let (width, channels) = (photo.width, if photo.channels < 3 { 1 } else { 3 });
     let bad_in_rows = exec::map(photo.height, job, |y| {
         let pixels = photo.row(y).chunks_exact(photo.channels);
@@ -23,7 +23,7 @@ pub fn clean<'a>(photo: &'a Image, job: Job) -> Result<(Cow<'a, Image>, usize)> 
         return Ok((Cow::Borrowed(photo), 0));
     }
     let mut rgb = photo.to_rgb()?;
-    // Along rows first; rows without any good pixel are then copied from the nearest row that has one.
+    // Fill along rows first; then copy rows without any valid pixel from the nearest row that has one.
     let good_rows: Vec<usize> = (0..rgb.height).filter(|&y| bad_in_rows[y] < width).collect();
     exec::for_rows(&mut rgb.data, width * 3, job, |y, row| {
         if bad_in_rows[y] == width {

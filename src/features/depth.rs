@@ -1,4 +1,4 @@
-//! Depth from the caller, and the neutral prior: a surface as inverse depth, normals and trust.
+//! Depth from the caller, and the neutral prior: a surface as inverse depth, normals and confidence.
 
 use super::normals;
 use super::{DepthKind, DepthMap, Frustum};
@@ -7,24 +7,25 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// What is known of the surface each pixel shows. Inverse depth, because it is affine on planes: `1/z = (n · ray) / c`.
+/// The estimated surface at each pixel. Stores inverse depth, which is affine on planes: `1/z = (n · ray) / c`.
 pub struct Surface {
-    /// `1/z` in the frustum's units, > 0.
+    /// Inverse depth `1/z` in the units of the frustum, > 0.
     pub inverse_depth: Image,
-    /// Unit, in camera space, towards the camera.
+    /// Unit normals in camera space, towards the camera.
     pub normals: Image,
-    /// In `[0, 1]`.
+    /// Confidence in `[0, 1]`.
     pub confidence: Image,
 }
 
-/// Trust in a depth that no one measured.
+/// Confidence in the neutral prior [convention].
 const NEUTRAL_CONFIDENCE: f32 = 0.05;
-/// Depths are kept within this factor of the median: beyond it there is nothing to tell apart.
-const LARGEST_RATIO: f32 = 1e4;
-/// Most depths that the scale is found from.
+/// Depths are clamped to within this factor of the median; larger ratios are not meaningful [origin not recorded].
+const MAX_RATIO: f32 = 1e4;
+/// Maximum number of depths from which quantiles are estimated.
 const QUANTILE_SAMPLES: usize = 1 << 16;
 
-/// The caller's depth, scaled so that its 2 % quantile lies on the near plane, holes filled from their surroundings.
+/// The caller's depth, scaled so that its 2 % quantile lies on the near plane, with holes filled from their
+/// surroundings.
 pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let depth = map.image;
     let (width, height) = (depth.width, depth.height);
@@ -32,7 +33,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
         return Err(Error::argument(format!("depth has {} channels; it must have 1", depth.channels)));
     }
 
-    // Distances along the ray become distances along z; holes become 0.
+    // Convert distances along the ray to distances along z; mark holes by 0.
     let inverse_at = |x: usize, y: usize, d: f32| {
         let per_z = match map.kind {
             DepthKind::AlongZ => 1.0,
@@ -42,11 +43,11 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     };
     let inverse_row = |y: usize| depth.row(y).iter().enumerate().map(move |(x, &d)| inverse_at(x, y, d));
 
-    // The scale: only ratios of depth mean anything.
+    // Normalise the scale: only ratios of depth are meaningful.
     let mut known = sample_known(depth, inverse_at, job.part(0.0, 0.15))?;
     if known.is_empty() {
         return Err(Error::degenerate(format!(
-            "depth has no positive finite value in its {width} x {height} pixels; leave it out to use the built-in layout"
+            "depth has no positive finite value in its {width} x {height} pixels; omit it to use the built-in layout"
         )));
     }
     let mut quantile = |q: f64| {
@@ -54,7 +55,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
         *known.select_nth_unstable_by(k, f32::total_cmp).1
     };
     let (median, nearest) = (quantile(0.5), quantile(0.98));
-    let (low, high) = (median / LARGEST_RATIO, median.min(f32::MAX / LARGEST_RATIO) * LARGEST_RATIO);
+    let (low, high) = (median / MAX_RATIO, median.min(f32::MAX / MAX_RATIO) * MAX_RATIO);
     let nearest = nearest.clamp(low, high);
     let (inverse, confidence) = exec::both(|| Image::new(width, height, 1), || Image::new(width, height, 1));
     let (mut inverse, mut confidence) = (inverse?, confidence?);
@@ -67,14 +68,14 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
         row.iter_mut().zip(inverse.row(y)).for_each(|(c, &w)| *c = f32::from(w > 0.0));
     })?;
 
-    // Normals from measured pixels only, then the holes.
+    // Fit normals to measured pixels only, then fill the holes.
     let normals = normals::fit(&inverse, &confidence, frustum, radius, job.part(0.25, 0.8))?;
     let mut surface = Surface { inverse_depth: inverse, normals, confidence };
     fill_holes(&mut surface, job.part(0.8, 1.0))?;
     Ok(surface)
 }
 
-/// Known inverse depths, evenly spaced among all there are, enough for quantiles to a thousandth.
+/// Known inverse depths at regular intervals among all known ones, enough for quantiles to a thousandth.
 fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + Sync, job: Job) -> Result<Vec<f32>> {
     let (width, height) = (depth.width, depth.height);
     let at = |x: usize, y: usize| inverse_at(x, y, depth.data[y * width + x]);
@@ -86,7 +87,7 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
     let mut before = 0usize;
     let mut skips = Vec::with_capacity(height);
     for count in &counts {
-        // The next of the row is the one that makes a whole number of strides.
+        // Skip to the next index in this row that is a multiple of the stride.
         skips.push(before.next_multiple_of(stride) - before);
         before += count;
     }
@@ -99,8 +100,8 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
     Ok(sampled.concat())
 }
 
-/// A guess that knows nothing of the photo but that it is an interior: farthest at mid-height, nearer towards the
-/// ceiling above and the floor below, `1/z` rising with the square of the height to twice its value.
+/// The prior for an interior without any knowledge of the photo: farthest at mid-height, nearer towards the ceiling
+/// above and the floor below. `1/z` rises quadratically with height, to twice its central value.
 pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let middle = 1.0 / (frustum.near * frustum.far).sqrt();
     let mut inverse_depth = Image::new(width, height, 1)?;
@@ -121,7 +122,7 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
     if !has_holes.contains(&true) {
         return Ok(());
     }
-    // Inverse depth and normal, premultiplied by whether they are known; the fifth channel counts.
+    // Inverse depth and normal, premultiplied by the known flag; the fifth channel is that flag.
     let mut base = Image::new(width, height, 5)?;
     for (i, out) in base.data.chunks_exact_mut(5).enumerate() {
         if surface.confidence.data[i] > 0.0 {
@@ -130,7 +131,7 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
             out[4] = 1.0;
         }
     }
-    // Pull: each level sums four pixels of the finer one and keeps its weight at most 1.
+    // Pull: each level sums four pixels of the finer one and limits the weight to 1.
     let mut levels = vec![base];
     while let Some(fine) = levels.last().filter(|l| l.width > 1 || l.height > 1) {
         job.check()?;
@@ -148,7 +149,7 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
         }
         levels.push(coarse);
     }
-    // Push: what a level lacks comes from the next coarser one, bilinearly.
+    // Push: fill missing weight from the next coarser level by bilinear interpolation.
     for fine in (0..levels.len() - 1).rev() {
         job.check()?;
         let (finer, coarser) = levels.split_at_mut(fine + 1);

@@ -1,9 +1,9 @@
-//! Eq. 1 of the paper: from a pixel and its screen depth back to space, `p_w = P⁻¹ p_s`.
+//! Eq. 1 of the paper: from a pixel and its screen depth to a point in space, `p_w = P⁻¹ p_s`.
 //!
-//! `P(t, b, l, r, f, n)` is the common projection matrix. Its screen depth is affine in *inverse* depth: with
-//! `d_s = 0` on the near and 1 on the far plane (normalised device depth `2 d_s - 1`),
-//! `1/z = 1/n + d_s (1/f - 1/n)`. That is why an inverse depth such as MiDaS gives, normalised to `[0, 1]`, is exactly
-//! `1 - d_s`, and why points beyond the far plane are still finite: `d_s` tends to `f / (f - n)` as z grows.
+//! `P(t, b, l, r, f, n)` is the standard projection matrix. Its screen depth is affine in *inverse* depth: with `d_s =
+//! 0` on the near plane and 1 on the far plane (normalised device depth `2 d_s - 1`), `1/z = 1/n + d_s (1/f - 1/n)`.
+//! Hence an inverse depth such as that of MiDaS, normalised to `[0, 1]`, equals `1 - d_s`, and points beyond the far
+//! plane stay finite: `d_s` tends to `f / (f - n)` as z grows.
 
 use crate::error::{Error, Result};
 use crate::geometry::Perspective;
@@ -21,12 +21,12 @@ pub struct Frustum {
 }
 
 impl Frustum {
-    /// The paper's choice: bounds ±1, whatever the photo's shape. y runs downwards here, so the top is -1.
+    /// The paper's choice: bounds ±1 for any aspect ratio of the photo. The y axis points down here, so the top is -1.
     pub fn paper(near: f32, far: f32) -> Self {
         Self { left: -1.0, right: 1.0, top: -1.0, bottom: 1.0, near, far }
     }
 
-    /// The frustum of a real camera: its corners are the rays through the photo's corners.
+    /// The frustum of a real camera: its corner rays pass through the photo's corners.
     pub fn of_camera(camera: &Perspective, width: usize, height: usize, near: f32, far: f32) -> Result<Self> {
         let corner = |x: usize, y: usize| camera.ray(glam::DVec2::new(x as f64, y as f64)).as_vec3() * near;
         let (low, high) = (corner(0, 0), corner(width, height));
@@ -35,7 +35,8 @@ impl Frustum {
             return Ok(frustum);
         }
         Err(Error::argument(format!(
-            "room.perspective has focal length {} px and principal point {}; the focal length must be positive and both finite",
+            "room.perspective has focal length {} px and principal point {}; both must be finite and \
+             the focal length > 0",
             camera.focal, camera.principal
         )))
     }
@@ -45,7 +46,7 @@ impl Frustum {
         Vec2::new((2 * x + 1) as f32 / width as f32 - 1.0, (2 * y + 1) as f32 / height as f32 - 1.0)
     }
 
-    /// The direction through normalised device coordinates, its z being 1.
+    /// The direction through normalised device coordinates, scaled to z = 1.
     pub fn ray(&self, ndc: Vec2) -> Vec3 {
         let x = self.left + (self.right - self.left) * (ndc.x + 1.0) / 2.0;
         let y = self.top + (self.bottom - self.top) * (ndc.y + 1.0) / 2.0;
@@ -57,13 +58,13 @@ impl Frustum {
         (1.0 / self.near - inverse_depth) / (1.0 / self.near - 1.0 / self.far)
     }
 
-    /// Eq. 1: `(x, y)` in normalised device coordinates and the screen depth, to camera space.
+    /// Eq. 1: maps `(x, y)` in normalised device coordinates and the screen depth to camera space.
     pub fn unproject(&self, screen: Vec3) -> Vec3 {
         let inverse_depth = 1.0 / self.near + screen.z * (1.0 / self.far - 1.0 / self.near);
         self.ray(screen.truncate()) / inverse_depth
     }
 
-    /// The forward map of Eq. 1, `p_s = P p_w` after division; for `z > 0`.
+    /// The forward map of Eq. 1, `p_s = P p_w` after the perspective division; requires `z > 0`.
     pub fn project(&self, point: Vec3) -> Vec3 {
         let on_near = point.truncate() * (self.near / point.z);
         let x = 2.0 * (on_near.x - self.left) / (self.right - self.left) - 1.0;
@@ -78,7 +79,7 @@ mod tests {
     use crate::geometry::FocalSource;
     use glam::{DMat3, DVec2, DVec3, Mat4, Vec4};
 
-    /// The textbook matrix (OpenGL `glFrustum`, y up and looking along -z), inverted, gives the same points.
+    /// The standard matrix (OpenGL `glFrustum`, y up and looking along -z), inverted, yields the same points.
     #[test]
     fn equation_1_is_the_inverse_of_the_common_projection_matrix() {
         let (n, f) = (1.0, 10.0);

@@ -1,10 +1,11 @@
-//! The built-in depth: the room as one box along its axes, seen from inside (after Hedau, Hoiem and Forsyth 2009).
+//! The built-in depth: the room as a single box aligned with its axes, seen from inside (after Hedau, Hoiem and
+//! Forsyth 2009).
 //!
-//! In room axes the box is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`: the back wall at distance one fixes the
-//! scale, which a single picture cannot tell (a camera 1.6 m above the floor would make it `1.6 / bottom` metres). So
-//! the four numbers are the back wall's sides in its central projection, candidates for them are the very
-//! segments that could be its sides, and the search is over all boxes these make (see `search`). See `score` for what makes a
-//! box good.
+//! In room axes the box is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall at distance one fixes
+//! the scale, which a single image cannot determine (a camera 1.6 m above the floor makes it `1.6 / bottom` metres).
+//! The four numbers are thus the sides of the back wall in its central projection. Their candidates are the detected
+//! segments that could be these sides, and the search covers all boxes that the candidates form (see `search`).
+//! `score` rates a box.
 
 use super::depth::Surface;
 use super::score::MAX_SEGMENTS;
@@ -56,25 +57,25 @@ impl Face {
 pub struct Layout {
     /// Distances, all > 0, to the left wall, the right wall, the ceiling and the floor.
     pub sides: [f64; 4],
-    /// How well the segments agree with the box, at most 1 for a room with nothing in it.
+    /// Agreement of the segments with the box; at most 1 for an empty room.
     pub score: f64,
-    /// Trust in the box as a whole, in `[0, 1]`: how far its score is ahead of any really different box's, and how
-    /// many segments speak.
+    /// Confidence in the box as a whole, in `[0, 1]`: depends on its lead in score over every clearly different box
+    /// and on the number of segments.
     pub trust: f64,
 }
 
-/// The room's axes with z the way the camera looks and x to its right; the vertical stays.
+/// The room's axes with z along the viewing direction and x to its right; the vertical is unchanged.
 pub fn facing_axes(perspective: &Perspective) -> DMat3 {
     let axes = perspective.axes;
     if axes.z_axis.z >= 0.0 { axes } else { DMat3::from_cols(-axes.x_axis, axes.y_axis, -axes.z_axis) }
 }
 
-/// For each of the two faces a ray comes nearest to: the face and the inverse of the ray's parameter there.
+/// The two faces that a ray meets first, each with the inverse of the ray parameter at the face.
 pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     let x = if ray.x < 0.0 { (Face::Left, -ray.x / sides[0]) } else { (Face::Right, ray.x / sides[1]) };
     let y = if ray.y < 0.0 { (Face::Ceiling, -ray.y / sides[2]) } else { (Face::Floor, ray.y / sides[3]) };
     let z = (Face::Back, ray.z.max(0.0));
-    // From inside a convex room the face that is hit is the one with the largest inverse.
+    // Inside a convex room, the ray hits the face with the largest inverse parameter.
     let (high, low) = if x.1 >= y.1 { (x, y) } else { (y, x) };
     if z.1 >= high.1 {
         [z, high]
@@ -86,12 +87,12 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
 }
 
 impl Layout {
-    /// The face seen along a direction in (facing) room axes, and the inverse of the distance there in units of its length.
+    /// The face seen along a direction in (facing) room axes, and the inverse of the ray parameter at the face.
     pub fn hit(&self, ray: DVec3) -> (Face, f64) {
         faces(&self.sides, ray)[0]
     }
 
-    /// Inverse depth, normals and trust of every pixel.
+    /// Inverse depth, normals and confidence of every pixel.
     pub fn surface(
         &self,
         room: &RoomView,
@@ -104,7 +105,7 @@ impl Layout {
         let to_room = axes.transpose();
         let ray = |x: f64, y: f64| to_room * room.perspective.ray(DVec2::new(x, y));
 
-        // The nearest depth goes to the near plane, as with a caller's depth.
+        // Put the nearest depth on the near plane, as for the caller's depth.
         let steps = |n: usize| (0..48).map(move |i| (i as f64 + 0.5) / 48.0 * n as f64);
         let mut samples: Vec<f64> =
             steps(height).flat_map(|y| steps(width).map(move |x| (x, y))).map(|(x, y)| self.hit(ray(x, y)).1).collect();
@@ -129,7 +130,7 @@ impl Layout {
         Ok(Surface { inverse_depth, normals, confidence })
     }
 
-    /// Trust falls with the distance to the nearest segment that lies on the same face and may do so.
+    /// Confidence falls with the distance to the nearest segment that lies on the same face and is consistent with it.
     fn confidence(&self, room: &RoomView, width: usize, height: usize, job: Job) -> Result<Image> {
         let to_room = facing_axes(room.perspective).transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
@@ -142,9 +143,9 @@ impl Layout {
             })
             .take(MAX_SEGMENTS)
             .collect();
-        let reach = 0.15 * DVec2::new(width as f64, height as f64).length();
+        let falloff = 0.15 * DVec2::new(width as f64, height as f64).length();
 
-        // On a coarse grid, then bilinearly.
+        // Evaluate on a coarse grid, then interpolate bilinearly.
         let (columns, rows) = (width.div_ceil(16).min(64), height.div_ceil(16).min(64));
         let cell = DVec2::new(width as f64 / columns as f64, height as f64 / rows as f64);
         let mut coarse = Image::new(columns, rows, 1)?;
@@ -154,7 +155,7 @@ impl Layout {
                 let face = self.hit(ray(centre)).0;
                 let on_face = support.iter().filter(|(f, _)| *f == face);
                 let distance = on_face.map(|(_, p)| p.distance(centre)).fold(f64::INFINITY, f64::min);
-                *out = (self.trust * (0.3 + 0.7 * (-distance / reach).exp())) as f32;
+                *out = (self.trust * (0.3 + 0.7 * (-distance / falloff).exp())) as f32;
             }
         })?;
         let mut confidence = Image::new(width, height, 1)?;

@@ -1,4 +1,4 @@
-//! Features: what segmentation knows of each pixel ("Single-Exemplar Lighting Style Transfer", §4.1).
+//! Features: the per-pixel input of segmentation ("Single-Exemplar Lighting Style Transfer", §4.1).
 //!
 //! ```text
 //! photo ─▶ clean ─▶ L*, a*, b* ───────────────────────────────┐
@@ -9,19 +9,21 @@
 //!
 //! | channel | meaning | range |
 //! |---|---|---|
-//! | 0-2 | CIELAB of the photo (D65), 1 = display white | L* in `[0, 100]` for display-referred photos |
-//! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near plane, 1 on the far plane | `[-far/near, far / (far - near)]` |
+//! | 0-2 | CIELAB of the photo (D65, display white = 1) | L* in `[0, 100]` for display-referred photos |
+//! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near, 1 on the far plane | `[-far/near, far / (far - near)]` |
 //! | 4-6 | position by Eq. 1, in units of the frustum; in room axes if the room is known | finite |
 //! | 7-9 | unit normal towards the camera, in the same axes | `[-1, 1]` |
 //!
-//! Axes are x right, y down, z forward: of the camera, or of the room turned as the camera sees it ([`RoomView`]). Where
-//! a perspective is known its rays replace the paper's 90° frustum: Eq. 1 then takes bounds from the real focal length,
-//! so that planes stay planes. Only ratios of depth matter; the nearest depth (its 2 % quantile) is put on the near plane.
+//! Axes are x right, y down, z forward: camera axes, or the room's axes in the order the camera sees them
+//! ([`RoomView`]). If the perspective is known, its rays replace the paper's 90° frustum: Eq. 1 then takes bounds from
+//! the real focal length, so that planes stay planes. Only ratios of depth are meaningful; the nearest depth (its 2 %
+//! quantile) is put on the near plane.
 //!
-//! A depth map may also be made here from the photo alone, by a network that the caller has as an ONNX file (the Cargo feature
-//! `onnx`).
+//! A depth map may also be estimated from the photo alone, by a network that the caller supplies as an ONNX file
+//! (Cargo feature `onnx`).
 //!
-//! Not modelled: lens distortion, and anything but one box for the built-in layout (furniture, beams, two-part rooms).
+//! Not modelled: lens distortion; room shapes other than a single box in the built-in layout (furniture, beams,
+//! two-part rooms).
 
 mod assemble;
 mod clean;
@@ -53,7 +55,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Number of feature channels: L*, a*, b*, depth, x, y, z, and the normal's x, y, z.
 pub const CHANNELS: usize = 10;
 
-/// What a caller's depth map measures.
+/// The distance that a caller's depth map measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthKind {
     /// Distance along the viewing axis.
@@ -62,35 +64,35 @@ pub enum DepthKind {
     AlongRay,
 }
 
-/// A depth map of the photo's size with one channel, in any unit; zero, negative or non-finite values are holes.
+/// A depth map of the photo's size with one channel, in any unit; zero, negative or non-finite values mark holes.
 #[derive(Clone, Copy)]
 pub struct DepthMap<'a> {
     pub image: &'a Image,
     pub kind: DepthKind,
 }
 
-/// What is known of the room's geometry: the built-in depth is laid out from it.
+/// Known geometry of the room, from which the built-in depth is laid out.
 #[derive(Clone, Copy)]
 pub struct RoomView<'a> {
     pub perspective: &'a Perspective,
-    /// Detected segments with the room axis each runs along (0, 1, 2), if any.
+    /// Detected segments, each with the index (0, 1, 2) of the room axis it runs along, if any.
     pub segments: &'a [(Segment, Option<usize>)],
-    /// Strokes on one of the room's planes, whichever it is, and on others, if any.
+    /// Strokes on one plane of the room (any one), and strokes on other surfaces, if any.
     pub strokes: &'a [PlaneStroke<'a>],
 }
 
-/// What a stroke of the user's says of the room.
+/// A user's stroke as evidence about the room.
 #[derive(Clone, Copy)]
 pub struct PlaneStroke<'a> {
-    /// `y * width + x` of each; those off the photo are passed over.
+    /// Pixel indices `y * width + x`; indices outside the photo are ignored.
     pub pixels: &'a [u32],
-    /// On the plane, or elsewhere.
+    /// Whether the stroke lies on the plane or on another surface.
     pub positive: bool,
 }
 
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
-    /// Linear RGB, 1 = display white. Pixels that are NaN, infinite or negative are replaced and counted.
+    /// Linear RGB, 1 = display white. NaN, infinite or negative pixels are replaced and counted.
     pub photo: &'a Image,
     pub depth: Option<DepthMap<'a>>,
     pub room: Option<RoomView<'a>>,
@@ -98,12 +100,12 @@ pub struct Input<'a> {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Near plane of Eq. 1, in its own units, in `[1e-3, 1e3]`.
+    /// Near plane of Eq. 1, in arbitrary units, in `[1e-3, 1e3]`.
     pub near: f32,
     /// Far plane of Eq. 1, in `[1.001, 1e6]` times `near`.
     pub far: f32,
-    /// Half-width of the window of the normals' plane fits, in pixels, in `[1, 64]`; 0 = one per 100 columns, at least 2.
-    /// Wider windows see through more noise and round off more of what is small.
+    /// Half-width in pixels of the window of the normals' plane fits, in `[1, 64]`; 0 selects one pixel per 100
+    /// columns, at least 2. Wider windows suppress more noise and smooth away more small detail.
     pub normal_radius: usize,
 }
 
@@ -123,15 +125,15 @@ impl Params {
     }
 }
 
-/// Where the depth came from, best first.
+/// Origin of the depth, most reliable first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthSource {
     Caller,
-    /// A network of the caller's.
+    /// A network supplied by the caller.
     Network,
     /// The box room of [`Features::layout`].
     Layout,
-    /// A guess that knows nothing of the photo.
+    /// The prior that uses no information from the photo.
     Neutral,
 }
 
@@ -139,17 +141,17 @@ pub enum DepthSource {
 pub struct Features {
     /// [`CHANNELS`] channels of the photo's size; finite everywhere.
     pub image: Image,
-    /// Trust in the depth of each pixel, in `[0, 1]`: 1 where the caller gave it, 0 in its holes, 0.5 from a network, less than 1 for the
-    /// built-in layout, 0.05 without any knowledge.
+    /// Confidence in the depth of each pixel, in `[0, 1]`: 1 where the caller gave it, 0 in its holes, 0.5 from a
+    /// network, below 1 for the built-in layout, 0.05 for the neutral prior.
     pub depth_confidence: Image,
     pub depth_source: DepthSource,
-    /// The box room the depth was laid out from, if it was.
+    /// The box room from which the depth was laid out, if any.
     pub layout: Option<Layout>,
-    /// Photo pixels with a NaN, infinite or negative value: they were replaced from their neighbours.
+    /// Number of photo pixels with a NaN, infinite or negative value, which were replaced from their neighbours.
     pub non_finite: usize,
 }
 
-/// Computes the features of a photo. Fails where a depth map has no positive finite value at all.
+/// Computes the features of a photo. Fails if a depth map has no positive finite value.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
     params.check()?;
     let (width, height) = (input.photo.width, input.photo.height);
@@ -161,7 +163,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
 
     let (photo, non_finite) = clean::clean(input.photo, job.part(0.0, 0.1))?;
 
-    // Depth and normals, from the best source there is.
+    // Compute depth and normals from the best available source.
     let geometry_job = job.part(0.1, 0.7);
     let radius = if params.normal_radius > 0 { params.normal_radius } else { (width / 100).clamp(2, 64) };
     let geometry = || match (&input.depth, &input.room) {
@@ -178,12 +180,12 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
             Ok((depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None))
         }
     };
-    // Making room for the answer takes as long as a tenth of it.
+    // Allocate the output meanwhile: it takes a tenth of the total time.
     let (geometry, image) = exec::both(geometry, || Image::new(width, height, CHANNELS));
     let (surface, depth_source, layout) = geometry?;
     let mut image = image?;
 
-    // All channels together, in room axes.
+    // Write all channels, in room axes.
     let to_room = perspective.map_or(glam::Mat3::IDENTITY, |p| layout::facing_axes(p).transpose().as_mat3());
     let is_finite = AtomicBool::new(true);
     exec::for_rows(&mut image.data, width * CHANNELS, job.part(0.7, 1.0), |y, row| {

@@ -1,15 +1,17 @@
-//! Depth from one photo by a network of the caller's, in the form in which MiDaS and DPT are published as ONNX files (Ranftl
-//! et al. 2020, "Towards Robust Monocular Depth Estimation"; 2021, "Vision Transformers for Dense Prediction").
+//! Depth from a single photo by a network that the caller supplies, in the form in which MiDaS and DPT are published
+//! as ONNX files (Ranftl et al. 2020, "Towards Robust Monocular Depth Estimation"; 2021, "Vision Transformers for
+//! Dense Prediction").
 //!
-//! Photo to network, as their own scripts do it: sRGB values in `[0, 1]`, resized by cubic convolution (slope -0.75, no
-//! low-pass) to the size of the file's input, less a mean and over a deviation. Where the file leaves its size open, the
-//! photo's shape is kept: its longer side becomes 384 pixels, the shorter a multiple of 32 in proportion.
+//! Photo to network, as in the published scripts: sRGB values in `[0, 1]`, resized to the network's input by cubic
+//! convolution (slope -0.75, no low-pass filter), minus a mean, divided by a standard deviation. If the file leaves
+//! its input size open, the aspect ratio is kept: the longer side becomes 384 pixels, the shorter side a multiple of
+//! 32.
 //!
-//! Network to depth: the map comes back by cubic convolution, is normalised to `m` in `[0, 1]` by its extremes, and taken for
-//! inverse depth, `1/z = 1/far + m (1/near - 1/far)`: the nearest pixel is on the near plane of [`Params`], the farthest on the
-//! far plane, and `1 - m` is the screen depth of Eq. 1 (see `frustum`).
+//! Network to depth: the map is resized back by cubic convolution, normalised by its extremes to `m` in `[0, 1]`, and
+//! taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest pixel then lies on the near plane of
+//! [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of Eq. 1 (see `frustum`).
 //!
-//! Not modelled: the unknown offset of the network's inverse depth, which the far plane stands for; metric networks.
+//! Not modelled: the unknown offset of the network's inverse depth, which the far plane replaces; metric networks.
 
 use super::clean;
 use super::{DepthKind, DepthMap, DepthSource, Features, Input, Params};
@@ -19,48 +21,48 @@ use crate::image::{Image, colour::linear_to_srgb};
 use crate::job::Job;
 use crate::network::{Network, Tensor, resize_cubic};
 
-/// What the network was trained to see. The file does not say.
+/// The input normalisation the network was trained with. The file does not record it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Normalisation {
-    /// That of the published networks of this size: [`Self::ImageNet`] for inputs of 256 x 256 (MiDaS small), else [`Self::Half`]
-    /// (DPT).
+    /// By the input size of the published networks: [`Self::ImageNet`] for inputs of 256 x 256 (MiDaS small), else
+    /// [`Self::Half`] (DPT).
     BySize,
-    /// Less the mean, over the deviation of ImageNet's colours: MiDaS 2.1, large and small.
+    /// Subtract the mean of ImageNet's colours and divide by their standard deviation: MiDaS 2.1, large and small.
     ImageNet,
-    /// From `[0, 1]` to `[-1, 1]`: DPT.
+    /// Map `[0, 1]` to `[-1, 1]`: DPT.
     Half,
-    /// `[0, 1]` as it is.
+    /// Keep `[0, 1]` unchanged.
     None,
 }
 
-/// A network that gives the relative inverse depth of a photo.
+/// A network that estimates the relative inverse depth of a photo.
 pub struct DepthNetwork {
     pub network: Network,
     pub normalisation: Normalisation,
 }
 
-/// Where an input's size is open: its longer side, and what sides are multiples of.
+/// For inputs of open size: the longer side, and the number that both sides are multiples of.
 const OPEN_SIDE: usize = 384;
 const MULTIPLE: usize = 32;
-/// Largest side of a network's input.
-const MOST_SIDE: usize = 4096;
-/// Trust in what a network has estimated, beside 1 for what was measured.
+/// Maximum side of a network's input.
+const MAX_INPUT_SIDE: usize = 4096;
+/// Confidence in depth estimated by a network; measured depth has confidence 1 [convention].
 const CONFIDENCE: f32 = 0.5;
 
 impl DepthNetwork {
-    /// Reads an ONNX file and checks that it is from one image to something.
+    /// Reads an ONNX file and checks that its input is a single image.
     pub fn parse(bytes: &[u8], normalisation: Normalisation) -> Result<Self> {
         let network = Self { network: Network::parse(bytes)?, normalisation };
         network.input_size(1, 1)?;
         Ok(network)
     }
 
-    /// Rows and columns of the input for a photo.
+    /// Rows and columns of the network's input for a photo.
     fn input_size(&self, width: usize, height: usize) -> Result<[usize; 2]> {
         let shape = self.network.input_shape();
         let is = |size: Option<usize>, wanted: usize| size.is_none_or(|n| n == wanted);
         let &[batch, channels, rows, columns] = shape else { return Err(not_an_image(shape)) };
-        let is_small = |size: Option<usize>| size.is_none_or(|n| n <= MOST_SIDE);
+        let is_small = |size: Option<usize>| size.is_none_or(|n| n <= MAX_INPUT_SIDE);
         if !(is(batch, 1) && is(channels, 3) && is_small(rows) && is_small(columns)) {
             return Err(not_an_image(shape));
         }
@@ -87,7 +89,7 @@ impl DepthNetwork {
         let [rows, columns] = self.input_size(width, height)?;
         let [mean, deviation] = self.mean_and_deviation([rows, columns]);
 
-        // Planes of sRGB values, resized, then normalised.
+        // Encode the photo as planes of sRGB values, resize, then normalise.
         let (photo, _) = clean::clean(photo, job.part(0.0, 0.02))?;
         let mut planes = Image::new(width, height, 3)?;
         exec::for_rows(&mut planes.data, width, job.part(0.02, 0.05), |k, row| {
@@ -104,7 +106,7 @@ impl DepthNetwork {
         let input = Tensor::floats(vec![1, 3, rows, columns], input);
         let output = self.network.run(input, job.part(0.1, 0.95))?;
 
-        // One map, back to the photo's size.
+        // Check that the output is a single map, and resize it to the photo's size.
         let Some((before, &[map_height, map_width])) = output.shape.split_last_chunk::<2>() else {
             return Err(not_a_map(&output.shape));
         };
@@ -119,18 +121,18 @@ impl DepthNetwork {
             )));
         }
         let mut map = resize_cubic(values, 1, [map_height, map_width], [height, width], job.part(0.95, 1.0))?;
-        let least = map.iter().copied().fold(f32::INFINITY, f32::min);
-        let most = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        // A map that says nothing, but for rounding, is a wall on the near plane.
-        let range = most - least;
-        let says_nothing = range <= 1e-5 * (most.abs() + least.abs());
-        let normalised = |v: f32| if !says_nothing { ((v - least) / range).clamp(0.0, 1.0) } else { 1.0 };
+        let lowest = map.iter().copied().fold(f32::INFINITY, f32::min);
+        let highest = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        // A map that is constant up to rounding becomes a wall on the near plane.
+        let range = highest - lowest;
+        let is_constant = range <= 1e-5 * (highest.abs() + lowest.abs());
+        let normalised = |v: f32| if !is_constant { ((v - lowest) / range).clamp(0.0, 1.0) } else { 1.0 };
         map.iter_mut().for_each(|v| *v = 1.0 / (1.0 / far + normalised(*v) * (1.0 / near - 1.0 / far)));
         Ok(Image { width, height, channels: 1, data: map })
     }
 }
 
-/// Of the colours of ImageNet in `[0, 1]`: mean, and standard deviation.
+/// Mean and standard deviation of ImageNet's colours in `[0, 1]` [convention].
 const IMAGENET: [[f32; 3]; 2] = [[0.485, 0.456, 0.406], [0.229, 0.224, 0.225]];
 
 fn not_an_image(shape: &[Option<usize>]) -> Error {
@@ -144,7 +146,7 @@ fn not_a_map(shape: &[usize]) -> Error {
     Error::new(ErrorKind::Unsupported, format!("the network's output has shape {shape:?}; one map of depth is needed"))
 }
 
-/// The features of a photo with depth from a network, and that depth. `input.depth` is not used.
+/// The features of a photo with depth from a network, and that depth. Ignores `input.depth`.
 pub fn run_with_network(input: &Input, network: &DepthNetwork, params: &Params, job: Job) -> Result<(Features, Image)> {
     params.check()?;
     let depth = network.estimate(input.photo, params.near, params.far, job.part(0.0, 0.9))?;
@@ -161,7 +163,7 @@ mod tests {
     use crate::job::Monitor;
     use crate::network::writer::{Setting, Writer};
 
-    /// The mean of what the network sees, less three.
+    /// A network that outputs the mean of its input channels minus three.
     fn file(rows: i64, columns: i64) -> Vec<u8> {
         let three = Tensor::floats(vec![], vec![3.0]);
         let axis = [Setting::Is("axes", &[1])];

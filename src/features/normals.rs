@@ -1,9 +1,10 @@
-//! Normals from the pixel grid: a plane through each pixel's neighbours.
+//! Normals from the pixel grid, by fitting a plane to each pixel's neighbourhood.
 //!
-//! On a plane `n · p = c` the point of a pixel is `p = z ray`, so that `1/z = (n / c) · ray`: inverse depth is affine
-//! in pixel coordinates, and the plane fit is a linear regression of `1/z` over a window (see `plane_fit`), exact for exact
-//! planes. At depth edges and creases the window must stay on one side: each pixel takes the best of the fits of its own
-//! window and of the eight windows that have it on their border (Kuwahara et al. 1976, with planes for constants).
+//! On a plane `n · p = c` the point of a pixel is `p = z ray`, so `1/z = (n / c) · ray`: inverse depth is affine in
+//! pixel coordinates. The plane fit is therefore a linear regression of `1/z` over a window (see `plane_fit`), exact
+//! for exact planes. At depth edges and creases the window must stay on one side: each pixel takes the best fit among
+//! its own window and the eight windows that have the pixel on their border (Kuwahara et al. 1976, with planes instead
+//! of constants).
 
 use super::Frustum;
 use super::plane_fit::{self, FitRow};
@@ -13,47 +14,49 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::simd::widest;
 
-/// Rows worked on together: their sums slide down from one to the next.
+/// Rows processed together: the window sums slide from one row to the next.
 const BAND: usize = 64;
-/// A shifted window must fit this much better than the centred one to be taken.
+/// Factor on the cost of the centred window: a shifted window must fit better by this factor to be preferred [origin
+/// not recorded].
 const PREFER_CENTRED: f32 = 0.5;
-/// Steps, in radii, to the centres of the windows that hold a pixel; of equal fits the first is taken.
+/// Offsets, in radii, of the centres of the windows that contain a pixel; ties go to the first.
 const SHIFTS: [[isize; 2]; 9] = [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [-1, 0], [1, 0], [0, 1]];
 
-/// Pixels of a row that windows are chosen for together: what they are chosen from stays in the first-level cache.
+/// Pixels of a row whose windows are selected together, so that the candidates stay in the first-level cache.
 const TILE: usize = 128;
 /// Pixels whose best plane is held in registers.
 const LANES: usize = 16;
 
-/// The best plane of each pixel of a tile: its cost, and the steps of inverse depth along it.
+/// The best plane of each pixel of a tile: its cost, and the derivatives of inverse depth along x and y.
 struct Best {
     cost: [f32; TILE],
     dx: [f32; TILE],
     dy: [f32; TILE],
 }
 
-/// The windows at one shift from the pixels of a tile.
+/// The windows at one offset from the pixels of a tile.
 #[derive(Clone, Copy)]
 struct Windows<'a> {
     fits: FitRow<'a>,
-    /// From their centres to the pixels, columns and rows.
+    /// Offset from the window centre to the pixel, in columns and rows.
     steps: [f32; 2],
-    /// What their costs are multiplied by.
+    /// Factor on the cost.
     favour: f32,
 }
 
-/// How the rays of a frustum change from pixel to pixel of a tile.
+/// Ray directions of a tile of pixels.
 #[derive(Clone, Copy)]
 struct Rays {
-    /// x of the first ray, and of each step.
+    /// x of the first ray, and its step per pixel.
     first_x: f32,
     step_x: f32,
-    /// y of all, and its step to the next row.
+    /// y of all rays, and its step per row.
     y: f32,
     step_y: f32,
 }
 
-/// Unit normals in camera space, towards the camera. Pixels with confidence 0 do not count and face the camera.
+/// Unit normals in camera space, towards the camera. Pixels of confidence 0 are ignored and get a normal facing the
+/// camera.
 pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius: usize, job: Job) -> Result<Image> {
     let (width, height) = (inverse_depth.width, inverse_depth.height);
     let bands = || {
@@ -61,7 +64,7 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
             plane_fit::band(inverse_depth, confidence, radius, band * BAND..((band + 1) * BAND).min(height))
         })
     };
-    // Making room takes a while too.
+    // Allocate the output in parallel: that takes time too.
     let (bands, normals) = exec::both(bands, || Image::new(width, height, 3));
     let (bands, mut normals) = (bands?, normals?);
     let fits_of = |y: usize| FitRow::of(&bands[y / BAND], y % BAND, width);
@@ -73,7 +76,7 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
     let off_weight = 1.0 / (2.0 * radius as f32 + 1.0);
     exec::for_rows(&mut normals.data, width * 3, job.part(0.6, 1.0), |y, row| {
         let w = inverse_depth.row(y);
-        // Where windows to the left or to the right would be cut off, there are fewer of them.
+        // Near the left and right border, fewer windows lie inside the image.
         let inner = radius.min(width)..width.saturating_sub(radius).max(radius.min(width));
         for part in [0..inner.start, inner.clone(), inner.end..width] {
             for start in part.clone().step_by(TILE) {
@@ -101,12 +104,13 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
 }
 
 widest! {
-    /// The windows with the pixels in them that cost least: by what they leave, and by how far they miss the pixel itself.
+    /// Selects for each pixel the window of lowest cost: its mean squared residual plus the squared residual at the
+    /// pixel itself.
     fn best_of(w: &[f32], windows: &[Option<Windows>; 9], off_weight: f32) -> Best {
         let mut best = Best { cost: [f32::INFINITY; TILE], dx: [0.0; TILE], dy: [0.0; TILE] };
         for start in (0..w.len()).step_by(LANES) {
             let w = lanes(w, start);
-            // New arrays for old: what is changed in place goes through memory, masked, which takes three times as long.
+            // Write to new arrays: updating in place compiles to masked stores, which take three times as long.
             let (mut cost, mut dx, mut dy) = ([f32::INFINITY; LANES], [0.0; LANES], [0.0; LANES]);
             for Windows { fits, steps, favour } in windows.iter().flatten() {
                 let (value, residual) = (lanes(fits.value, start), lanes(fits.residual, start));
@@ -129,7 +133,7 @@ widest! {
     }
 }
 
-/// Values from `start` on; zeros where there are none.
+/// Values from `start` on, padded with zeros.
 #[inline(always)]
 fn lanes(values: &[f32], start: usize) -> [f32; LANES] {
     match values.get(start..start + LANES).map(TryInto::try_into) {
@@ -139,7 +143,8 @@ fn lanes(values: &[f32], start: usize) -> [f32; LANES] {
 }
 
 widest! {
-    /// Normals of planes `1/z = a · ray` from the inverse depth `w` and its steps, turned to the camera.
+    /// Normals of the planes `1/z = a · ray` from the inverse depth `w` and its derivatives, oriented towards the
+    /// camera.
     fn plane_normals(w: &[f32], confidence: &[f32], best: &Best, rays: Rays, out: &mut [f32]) {
         let n = w.len().min(TILE);
         let (w, confidence) = (&w[..n], &confidence[..n]);
@@ -147,7 +152,7 @@ widest! {
         let mut planes = [[0.0; TILE]; 3];
         let [nx, ny, nz] = &mut planes;
         for x in 0..n {
-            // a · ray = w > 0: `a` points away from the camera.
+            // Since a · ray = w > 0, `a` points away from the camera.
             let (ax, ay) = (best.dx[x] * per_x, best.dy[x] * per_y);
             let az = w[x] - ax * (rays.first_x + rays.step_x * x as f32) - ay * rays.y;
             let length = (ax * ax + ay * ay + az * az).sqrt();

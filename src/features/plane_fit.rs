@@ -1,16 +1,16 @@
-//! Regression planes of inverse depth over the windows about all pixels, by sums that slide: down the columns from row to
-//! row, and along the rows as differences of running sums. In `f64`, because the differences cancel.
+//! Regression planes of inverse depth over windows around all pixels, by sliding sums: updated down the columns from
+//! row to row, and differences of running sums along the rows. In `f64`, because the differences cancel.
 
 use crate::image::Image;
 use crate::simd::widest;
 use std::ops::Range;
 
-/// Determinants below this share of the product of the variances are those of points on one line. The smallest of points
-/// that are not, with whole coordinates in the largest window, is 1e-9; rounding makes 1e-15.
+/// Below this ratio of the determinant to the product of the variances, the points are collinear. Non-collinear points
+/// with integer coordinates in the largest window have at least 1e-9; rounding yields 1e-15 [rounding].
 const SINGULAR: f64 = 1e-12;
 
-/// The regression planes of a row, each about its own pixel: `w ≈ value + dx i + dy j`, and the mean square of what that
-/// leaves, infinite where there is no plane.
+/// The regression planes of a row, each relative to its own pixel: `w ≈ value + dx i + dy j`, and the mean squared
+/// residual, infinite where there is no plane.
 #[derive(Clone, Copy)]
 pub struct FitRow<'a> {
     pub value: &'a [f32],
@@ -20,7 +20,7 @@ pub struct FitRow<'a> {
 }
 
 impl<'a> FitRow<'a> {
-    /// Row `y` of what [`band`] gave.
+    /// Row `y` of the output of [`band`].
     pub fn of(band: &'a [f32], y: usize, width: usize) -> Self {
         let plane = |k: usize| &band[(4 * y + k) * width..(4 * y + k + 1) * width];
         Self { value: plane(0), dx: plane(1), dy: plane(2), residual: plane(3) }
@@ -47,15 +47,16 @@ struct Columns {
     ww: Vec<f64>,
 }
 
-/// Sums over columns before each one, `i` being the column: differences of two are sums over windows. There are as many
-/// places before the first column and after the last as the window reaches beyond them.
+/// Prefix sums over columns, where `i` is the column: the difference of two is the sum over a window. Padded by the
+/// window's radius before the first column and after the last.
 struct Running {
     /// n, i, ii, j, jj, ij, w, iw, jw, ww.
     sums: [Vec<f64>; 10],
     radius: usize,
 }
 
-/// The fits of all pixels of some rows: for each row values, steps along x, steps along y, and residuals (see [`FitRow`]).
+/// The fits of all pixels of some rows; for each row the values, the derivatives along x and y, and the residuals (see
+/// [`FitRow`]).
 pub fn band(inverse_depth: &Image, confidence: &Image, radius: usize, rows: Range<usize>) -> Vec<f32> {
     let (width, height) = (inverse_depth.width, inverse_depth.height);
     let zeros = || vec![0.0; width];
@@ -85,7 +86,7 @@ pub fn band(inverse_depth: &Image, confidence: &Image, radius: usize, rows: Rang
 }
 
 impl Columns {
-    /// A row at offset `j` comes (`sign` 1) or goes (-1).
+    /// Adds (`sign` 1) or removes (-1) a row at offset `j`.
     fn add(&mut self, w: &[f32], confidence: &[f32], j: f64, sign: f64) {
         add_row(self, w, confidence, j, sign);
     }
@@ -111,7 +112,7 @@ widest! {
 }
 
 widest! {
-    /// Offsets counted from the next row.
+    /// Re-bases the row offsets to the next row.
     fn move_down(columns: &mut Columns) {
         let width = columns.n.len();
         let (n, w) = (&columns.n[..width], &columns.w[..width]);
@@ -145,7 +146,8 @@ impl Running {
 }
 
 widest! {
-    /// Least squares of `w` on `(1, i, j)`, about the means, for the windows of a row; no fit where the points lie on one line.
+    /// Least squares of `w` on `(1, i, j)`, about the means, for the windows of a row; no fit where the points are
+    /// collinear.
     fn regress(running: &Running, out: &mut [f32]) {
         let width = out.len() / 4;
         let [n, i, ii, j, jj, ij, w, iw, jw, ww] = running.sums.each_ref().map(|sums| {
@@ -156,7 +158,7 @@ widest! {
         let (dy, residual) = rest.split_at_mut(width);
         let residual = &mut residual[..width];
         for x in 0..width {
-            // Sums over the window, columns counted from its own.
+            // Sums over the window, with columns relative to its centre.
             let at = x as f64;
             let (n, j, w) = (n.1[x] - n.0[x], j.1[x] - j.0[x], w.1[x] - w.0[x]);
             let (jj, jw, ww) = (jj.1[x] - jj.0[x], jw.1[x] - jw.0[x], ww.1[x] - ww.0[x]);
@@ -166,7 +168,7 @@ widest! {
             let ij = ij.1[x] - ij.0[x] - at * j;
             let iw = iw.1[x] - iw.0[x] - at * w;
 
-            // About the means.
+            // Centre the sums about the means.
             let per_n = 1.0 / n.max(1.0);
             let (mi, mj) = (i * per_n, j * per_n);
             let (cii, cij, cjj) = (ii - mi * i, ij - mi * j, jj - mj * j);

@@ -1,5 +1,6 @@
-//! What makes a box room good: segments lie on faces that contain their direction (a vertical edge cannot be drawn on
-//! the ceiling), the seams between faces are where segments along them are, and the strokes of a plane lie on one face.
+//! Score of a box room. Segments must lie on faces that contain their direction (a vertical edge cannot lie on the
+//! ceiling); seams between faces should coincide with segments along them; the strokes of a plane should lie on a
+//! single face.
 
 use super::RoomView;
 use super::strokes;
@@ -10,34 +11,36 @@ use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
-/// The longest segments that are heard; more cannot change a layout.
+/// Number of longest segments used; more do not change the layout.
 pub const MAX_SEGMENTS: usize = 160;
-/// Points tested along each segment, as shares of its length.
+/// Sample points along each segment, as shares of its length [origin not recorded].
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
-/// A segment on a face that cannot hold it counts this much against the box.
+/// Penalty, relative to its weight, of a segment on a face that cannot contain it [origin not recorded].
 const IMPOSSIBLE: f64 = 1.5;
-/// A segment on a seam counts this much more than one on a face.
+/// Additional reward of a segment on a seam, relative to one on a face [origin not recorded].
 const SEAM: f64 = 2.0;
-/// Relative difference of the distances to two faces at which a segment is off their seam.
+/// Relative difference of the distances to two faces at which a segment no longer lies on their seam [origin not
+/// recorded].
 const SEAM_WIDTH: f64 = 0.03;
-/// What the strokes on the plane count for a box if all of them lie on its face, and the others against it. Lines seldom prefer
-/// one box to another by as much: one that puts a part of the strokes where they should not be is taken only if hardly a line
-/// allows of others.
+/// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
+/// it too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes on the
+/// wrong face wins only if the lines rule out nearly all others [origin not recorded].
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
-/// Sums run in lanes, whose order is the same whatever the processor.
+/// Sums run in lanes, whose order is independent of the processor.
 const LANES: usize = 8;
 
-/// A segment that may lie on some faces and not on others.
-struct Witness {
+/// A segment, which is consistent with some faces and not with others.
+struct RoomSegment {
     axis: usize,
-    /// The ray, in room axes, to its middle.
+    /// Ray through its midpoint, in room axes.
     middle: DVec3,
-    /// Share of the length of all segments.
+    /// Weight: its share of the length of all segments.
     weight: f64,
 }
 
-/// Points of segments along one axis: the sizes of their rays' coordinates along it, and along the other two.
+/// Sample points of segments along one axis: the absolute coordinates of their rays along this axis and along the
+/// other two.
 #[derive(Default)]
 struct Points {
     own: Vec<f64>,
@@ -46,51 +49,51 @@ struct Points {
     weight: Vec<f64>,
 }
 
-/// What is seen towards one of the two side walls and towards one of ceiling and floor: of the box's sides only these two
-/// matter to it.
+/// The part of the view towards one side wall and towards either ceiling or floor. Its score depends on these two
+/// sides of the box only.
 #[derive(Default)]
 pub struct Quadrant {
-    /// For each axis.
+    /// Sample points for each axis.
     points: [Points; 3],
-    /// The sizes of their rays' coordinates, and what each counts where it lies on the plane's face.
-    spots: Vec<(DVec3, f64)>,
+    /// Absolute coordinates of the rays of stroke samples, and the weight of each if it lies on the plane's face.
+    stroke_samples: Vec<(DVec3, f64)>,
 }
 
-/// The classified segments of a view, and the strokes on it.
+/// The classified segments and the strokes of a view.
 pub struct Evidence {
-    witnesses: Vec<Witness>,
-    /// Left and right below the ceiling, left and right above the floor.
+    segments: Vec<RoomSegment>,
+    /// Upper left, upper right, lower left, lower right.
     pub quadrants: [Quadrant; 4],
-    /// Some stroke lies on the plane.
+    /// Whether any stroke lies on the plane.
     pub has_plane: bool,
 }
 
-/// The other two axes of each.
+/// For each axis, the other two.
 const OTHERS: [[usize; 2]; 3] = [[VERTICAL, HORIZONTAL_B], [HORIZONTAL_A, HORIZONTAL_B], [HORIZONTAL_A, VERTICAL]];
 
 impl Evidence {
-    /// What the segments and strokes of a view say of its box; `axes` are the room's as the camera sees them.
+    /// Collects the segments and strokes of a view; `axes` are the room's axes in the order the camera sees them.
     pub fn gather(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Self> {
         let to_room = axes.transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
-        // One very long segment must not outvote the rest.
+        // Limit the weight of very long segments.
         let longest = 0.25 * DVec2::new(width as f64, height as f64).length();
-        let mut heard: Vec<(f64, usize, [DVec3; 3])> =
+        let mut used: Vec<(f64, usize, [DVec3; 3])> =
             try_collect(room.segments.iter().filter_map(|(segment, axis)| {
                 let axis = axis.filter(|&a| a < 3)?;
                 let rays = POINTS.map(|t| ray(segment.a.lerp(segment.b, t)));
                 let length = segment.length();
                 (length > 0.0 && rays.iter().all(|r| r.is_finite())).then_some((length, axis, rays))
             }))?;
-        heard.sort_by(|a, b| b.0.total_cmp(&a.0));
-        heard.truncate(MAX_SEGMENTS);
-        let total: f64 = heard.iter().map(|(length, ..)| length.min(longest)).sum();
+        used.sort_by(|a, b| b.0.total_cmp(&a.0));
+        used.truncate(MAX_SEGMENTS);
+        let total: f64 = used.iter().map(|(length, ..)| length.min(longest)).sum();
 
         let mut quadrants: [Quadrant; 4] = Default::default();
-        let mut witnesses = Vec::with_capacity(heard.len());
-        for (length, axis, rays) in heard {
+        let mut segments = Vec::with_capacity(used.len());
+        for (length, axis, rays) in used {
             let weight = length.min(longest) / total;
-            witnesses.push(Witness { axis, middle: rays[1], weight });
+            segments.push(RoomSegment { axis, middle: rays[1], weight });
             for ray in rays {
                 let (quadrant, size) = quadrant(ray);
                 let [p, q] = OTHERS[axis];
@@ -99,34 +102,35 @@ impl Evidence {
         }
         quadrants.iter_mut().flat_map(|q| &mut q.points).for_each(Points::fill_up);
 
-        // What lies elsewhere says nothing where no stroke is on the plane.
-        let spots = strokes::spots(room, &to_room, [width, height], job)?;
-        let has_plane = spots.iter().any(|s| s.positive);
-        for spot in spots.iter().filter(|_| has_plane) {
-            let (quadrant, size) = quadrant(spot.ray);
-            let worth = if spot.positive { ON_PLANE } else { -ELSEWHERE };
-            quadrants[quadrant].spots.push((size, worth * spot.weight));
+        // Strokes elsewhere are uninformative unless some stroke lies on the plane.
+        let stroke_samples = strokes::stroke_samples(room, &to_room, [width, height], job)?;
+        let has_plane = stroke_samples.iter().any(|s| s.positive);
+        for sample in stroke_samples.iter().filter(|_| has_plane) {
+            let (quadrant, size) = quadrant(sample.ray);
+            let weight = if sample.positive { ON_PLANE } else { -ELSEWHERE };
+            quadrants[quadrant].stroke_samples.push((size, weight * sample.weight));
         }
-        Ok(Self { witnesses, quadrants, has_plane })
+        Ok(Self { segments, quadrants, has_plane })
     }
 
     pub fn len(&self) -> usize {
-        self.witnesses.len()
+        self.segments.len()
     }
 
-    /// Agreement of the segments with a box, at most 1 if none lies on a seam and `1 + SEAM` if all do.
+    /// Agreement of the segments with a box: at most 1 if none lies on a seam, and `1 + SEAM` if all do.
     pub fn score(&self, sides: &[f64; 4]) -> f64 {
         let agreement = |(i, quadrant): (usize, &Quadrant)| quadrant.lines(1.0 / sides[i % 2], 1.0 / sides[2 + i / 2]);
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Values of one side (left, right, ceiling, floor) at which segments could be the back wall's edge, the best
-    /// supported first.
+    /// Values of one side (left, right, ceiling, floor) at which a segment could be the back wall's edge, in order of
+    /// falling support.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
-        // The edge at a side wall is vertical, the one at ceiling or floor runs along the horizontal axis of the back wall.
+        // The edge at a side wall is vertical; the edge at ceiling or floor runs along the horizontal axis of the back
+        // wall.
         let (edge_axis, across) = if side < 2 { (VERTICAL, 0) } else { (HORIZONTAL_A, 1) };
         let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
-        let mut values: Vec<(f64, f64)> = (self.witnesses.iter())
+        let mut values: Vec<(f64, f64)> = (self.segments.iter())
             .filter(|w| w.axis == edge_axis)
             .filter_map(|w| {
                 let value = sign * w.middle[across] / w.middle.z;
@@ -134,7 +138,7 @@ impl Evidence {
             })
             .collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Support of each value: all within 4 %. The best is taken, its neighbours dropped, and so on.
+        // Support of a value: the weight of all values within 4 %. Take the best, drop its neighbours, and repeat.
         let support = |v: f64| values.iter().filter(|(u, _)| (u / v).ln().abs() < 0.04).map(|(_, w)| w).sum::<f64>();
         let mut ranked: Vec<(f64, f64)> = values.iter().map(|&(v, _)| (v, support(v))).collect();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -148,14 +152,14 @@ impl Evidence {
     }
 }
 
-/// The quadrant a ray points to, and the sizes of its coordinates; what is behind the camera is far away to the front.
+/// The quadrant a ray points to, and its absolute coordinates; a direction behind the camera is treated as z = 0.
 fn quadrant(ray: DVec3) -> (usize, DVec3) {
     let index = usize::from(ray.x >= 0.0) + 2 * usize::from(ray.y >= 0.0);
     (index, DVec3::new(ray.x.abs(), ray.y.abs(), ray.z.max(0.0)))
 }
 
 impl Quadrant {
-    /// What its segments say of a side wall, and a ceiling or floor, at distances of these inverses.
+    /// Agreement of its segments with a side wall and a ceiling or floor at the given inverse distances.
     pub fn lines(&self, wall: f64, level: f64) -> f64 {
         let inverse = [wall, level, 1.0];
         let agreement = self.points.iter().zip(OTHERS).enumerate().map(|(axis, (points, [p, q]))| {
@@ -164,13 +168,13 @@ impl Quadrant {
         agreement.sum()
     }
 
-    /// What its strokes count if the plane is the side wall, the ceiling or floor, or the back wall.
+    /// Score of its strokes if the plane is the side wall, the ceiling or floor, or the back wall.
     pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
         let mut counts = [0.0; 3];
-        for (size, worth) in &self.spots {
+        for (size, weight) in &self.stroke_samples {
             let inverse = [size.x * wall, size.y * level, size.z];
             let first = (1..3).fold(0, |first, i| if inverse[i] > inverse[first] { i } else { first });
-            counts[first] += worth;
+            counts[first] += weight;
         }
         counts
     }
@@ -184,7 +188,7 @@ impl Points {
         self.weight.push(weight);
     }
 
-    /// Points without weight, up to whole lanes.
+    /// Pads with points of zero weight to a multiple of the lanes.
     fn fill_up(&mut self) {
         while !self.weight.len().is_multiple_of(LANES) {
             self.push([0.0, 1.0, 1.0], 0.0);
@@ -193,8 +197,8 @@ impl Points {
 }
 
 widest! {
-/// The weighted agreement of points of segments along an axis. `inverse` has, for this axis and the two others, the inverse
-/// distances of the faces across them: the face that is hit is the one with the largest inverse along the ray.
+/// Weighted agreement of sample points of segments along an axis. `inverse` holds, for this axis and the two others,
+/// the inverse distances of the faces perpendicular to them; the ray hits the face with the largest inverse parameter.
 fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3]) -> f64 {
     let mut sums = [0.0; LANES];
     let others = p.chunks_exact(LANES).zip(q.chunks_exact(LANES));
@@ -202,7 +206,7 @@ fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3
         for lane in 0..LANES {
             let (own, p, q) = (own[lane] * inverse[0], p[lane] * inverse[1], q[lane] * inverse[2]);
             let (first, second) = if p > q { (p, q) } else { (q, p) };
-            // On a seam the two nearest faces are hit together, and the seam runs along the third axis.
+            // On a seam the ray meets the two nearest faces together, and the seam runs along the third axis.
             let off = (first - second) / (first * SEAM_WIDTH);
             let near = 1.0 - off * off;
             let seam = if second >= own && near > 0.0 { SEAM * near } else { 0.0 };

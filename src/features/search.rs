@@ -1,9 +1,10 @@
 //! The search over all boxes.
 //!
-//! What a ray meets depends on two of the four sides: a side wall, and the ceiling or the floor. So the score of a box is a sum
-//! of four parts (see [`Quadrant`](super::score::Quadrant)), each a table over the values of two sides, and the best of all
-//! boxes of many values is found exactly: for every left and right the best ceiling and the best floor are sought apart. The
-//! boxes that are best, and really different, are sought again among finer values around each.
+//! The face that a ray meets depends on two of the four sides: a side wall, and either the ceiling or the floor. The
+//! score of a box is therefore a sum of four parts (see [`Quadrant`](super::score::Quadrant)), each a table over the
+//! values of two sides. This allows the exact optimum over all boxes of many values: for every pair of left and right,
+//! the best ceiling and the best floor are found independently. The best, clearly different boxes are then refined on
+//! finer grids of values.
 
 use super::RoomView;
 use super::layout::{Face, Layout, faces, facing_axes};
@@ -15,32 +16,35 @@ use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
-/// A side of an ordinary room, for where nothing is seen of it, and what the square of a side's logarithm away from it costs: the
-/// same whichever side it is, so that a photo may lie any way round.
-const USUAL: f64 = 0.4;
-const UNUSUAL: f64 = 0.01;
-/// Sides tried whatever is seen: `LEAST × RATIO^k`.
-const LEAST: f64 = 0.06;
+/// Prior of a side (in units of the distance to the back wall) where nothing is seen of it, and the cost of the
+/// squared logarithm of its ratio to the prior. Equal for all sides, so that the result does not depend on the photo's
+/// orientation [origin not recorded].
+const PRIOR_SIDE: f64 = 0.4;
+const PRIOR_COST: f64 = 0.01;
+/// Sides tried regardless of the evidence: `MIN_SIDE × RATIO^k` [origin not recorded].
+const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;
-/// Sides tried because segments are there.
+/// Candidates per side from segments.
 const PEAKS: usize = 24;
-/// Boxes are really different where this share of the view meets another face, or one whose distance differs by this factor.
-const DIFFERENT_SHARE: f64 = 0.05;
-const DIFFERENT: f64 = 1.3;
-/// Rays along each side of the photo by which they are compared.
+/// Two boxes are clearly different if more than this share of the view meets different faces, or faces whose distances
+/// differ by more than this factor [origin not recorded].
+const MIN_DIFFERENT_SHARE: f64 = 0.05;
+const MIN_RATIO: f64 = 1.3;
+/// Rays along each side of the photo by which boxes are compared.
 const RAYS: usize = 9;
-/// Boxes that are sought again among finer values: so many on either side, a factor apart.
+/// Number of boxes that are refined; ratios of neighbouring values in the two refinements; and number of values on
+/// either side [origin not recorded].
 const STARTS: usize = 6;
-const FINER: [f64; 2] = [1.006, 1.0008];
-const AROUND: i32 = 8;
-/// Sums run in lanes, whose order is the same whatever the processor.
+const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
+const VALUES_EITHER_SIDE: i32 = 8;
+/// Sums run in lanes, whose order is independent of the processor.
 const LANES: usize = 8;
 
-/// A box and its value.
-type Found = ([f64; 4], f64);
+/// The sides of a box, and its score.
+type ScoredBox = ([f64; 4], f64);
 
-/// Finds the box that the segments and strokes of a view agree with best.
+/// Finds the box that agrees best with the segments and strokes of a view.
 pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<Layout> {
     let axes = facing_axes(room.perspective);
     let orthogonality = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
@@ -51,24 +55,25 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
 
     let values: [Vec<f64>; 4] = std::array::from_fn(|side| {
         let mut all = evidence.candidates(side, PEAKS);
-        all.extend((0..GRID).map(|k| LEAST * RATIO.powi(k as i32)));
+        all.extend((0..GRID).map(|k| MIN_SIDE * RATIO.powi(k as i32)));
         all
     });
     let coarse = Tables::new(&evidence, values, job.part(0.1, 0.4))?.best(job.part(0.4, 0.7))?;
     let view = rays(room, &axes, [width, height]);
-    let mut starts: Vec<Found> = Vec::new();
+    let mut starts: Vec<ScoredBox> = Vec::new();
     for found in &coarse {
         if starts.len() < STARTS && starts.iter().all(|s| differ(&view, &s.0, &found.0)) {
             starts.push(*found);
         }
     }
 
-    // Finer around each.
+    // Refine each on finer grids.
     let mut tops = Vec::with_capacity(starts.len());
     for start in starts {
         let mut top = start;
-        for step in FINER {
-            let values = top.0.map(|side| (-AROUND..=AROUND).map(|k| side * step.powi(k)).collect());
+        for step in REFINEMENTS {
+            let values =
+                top.0.map(|side| (-VALUES_EITHER_SIDE..=VALUES_EITHER_SIDE).map(|k| side * step.powi(k)).collect());
             let found = Tables::new(&evidence, values, job.part(0.7, 0.7))?.best(job.part(0.7, 0.7))?;
             top = found[0];
         }
@@ -77,16 +82,20 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
     tops.sort_by(|a, b| b.1.total_cmp(&a.1));
     let best = tops[0];
 
-    // Trust: the lead over the best of the really different boxes.
-    let rival = |all: &[Found]| {
+    // Compute the confidence from the lead over the best clearly different box.
+    let runner_up = |all: &[ScoredBox]| {
         let other = all.iter().find(|other| differ(&view, &other.0, &best.0));
         other.map_or(f64::NEG_INFINITY, |other| other.1)
     };
-    let rival = rival(&tops).max(rival(&coarse));
-    let lead = (best.1 - rival).max(0.0);
-    let heard = 1.0 - (-(evidence.len() as f64) / 15.0).exp();
+    let runner_up = runner_up(&tops).max(runner_up(&coarse));
+    let lead = (best.1 - runner_up).max(0.0);
+    let evidence_weight = 1.0 - (-(evidence.len() as f64) / 15.0).exp();
     job.report(1.0);
-    Ok(Layout { sides: best.0, score: evidence.score(&best.0), trust: heard * (0.3 + 0.7 * lead / (lead + 0.03)) })
+    Ok(Layout {
+        sides: best.0,
+        score: evidence.score(&best.0),
+        trust: evidence_weight * (0.3 + 0.7 * lead / (lead + 0.03)),
+    })
 }
 
 /// Rays over the whole photo, in room axes.
@@ -100,16 +109,16 @@ fn rays(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2]) -> Vec<DVec3
 fn differ(view: &[DVec3], a: &[f64; 4], b: &[f64; 4]) -> bool {
     let is_other = |ray: &&DVec3| {
         let ((face, there), (other, here)) = (faces(a, **ray)[0], faces(b, **ray)[0]);
-        face != other || there > here * DIFFERENT || here > there * DIFFERENT
+        face != other || there > here * MIN_RATIO || here > there * MIN_RATIO
     };
-    view.iter().filter(is_other).count() as f64 > DIFFERENT_SHARE * view.len() as f64
+    view.iter().filter(is_other).count() as f64 > MIN_DIFFERENT_SHARE * view.len() as f64
 }
 
-/// Which of the faces is the plane of the strokes: each is tried.
+/// The faces that may be the plane of the strokes; each is tried.
 const PLANES: [Face; Face::COUNT] = [Face::Left, Face::Right, Face::Ceiling, Face::Floor, Face::Back];
 
-/// What the four parts of the score are for the values of the two sides of each: rows for those of a wall, columns for those of
-/// the ceiling or floor, for each face that may be the plane.
+/// The four parts of the score over the values of their two sides: rows for the wall, columns for the ceiling or
+/// floor; one set of tables for each face that may be the plane.
 struct Tables {
     values: [Vec<f64>; 4],
     parts: Vec<[Vec<f64>; 4]>,
@@ -118,19 +127,19 @@ struct Tables {
 impl Tables {
     fn new(evidence: &Evidence, values: [Vec<f64>; 4], job: Job) -> Result<Self> {
         let planes = if evidence.has_plane { &PLANES[..] } else { &PLANES[..1] };
-        // One task for a row of each part.
+        // Fill one row of one part per task.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
         let tasks: Vec<(usize, usize)> = (0..4).flat_map(|part| (0..rows[part]).map(move |row| (part, row))).collect();
-        let unusual = |value: f64| UNUSUAL * (value / USUAL).ln().powi(2);
+        let prior_cost = |value: f64| PRIOR_COST * (value / PRIOR_SIDE).ln().powi(2);
         let filled = exec::map(tasks.len(), job, |task| {
             let (part, row) = tasks[task];
             let (wall, level) = (part % 2, 2 + part / 2);
             let quadrant = &evidence.quadrants[part];
             let at = values[wall][row];
             let entry = |&height: &f64| {
-                // Each side is in two parts.
-                let usual = -0.5 * (unusual(at) + unusual(height));
-                let lines = quadrant.lines(1.0 / at, 1.0 / height) + usual;
+                // Each side occurs in two parts: halve the cost of its prior.
+                let prior = -0.5 * (prior_cost(at) + prior_cost(height));
+                let lines = quadrant.lines(1.0 / at, 1.0 / height) + prior;
                 let strokes = quadrant.strokes(1.0 / at, 1.0 / height);
                 let here = |face: Face| match face {
                     Face::Left | Face::Right if face as usize == wall => strokes[0],
@@ -151,10 +160,10 @@ impl Tables {
         Ok(Self { values, parts })
     }
 
-    /// For every left and right the best box, the best of all first.
-    fn best(&self, job: Job) -> Result<Vec<Found>> {
+    /// For every pair of left and right, the best box; sorted by falling score.
+    fn best(&self, job: Job) -> Result<Vec<ScoredBox>> {
         let [lefts, rights, tops, bottoms] = self.values.each_ref().map(Vec::len);
-        let found = exec::map(lefts, job, |left| -> Vec<Found> {
+        let found = exec::map(lefts, job, |left| -> Vec<ScoredBox> {
             let of_right = |right: usize| {
                 let best = self.parts.iter().map(|[lt, rt, lb, rb]| {
                     let top = (&lt[left * tops..][..tops], &rt[right * tops..][..tops]);
@@ -174,14 +183,14 @@ impl Tables {
 }
 
 widest! {
-/// The largest sum of an item of each list at one place.
+/// The largest sum of two items at equal positions of the lists.
 fn largest_sum(a: &[f64], b: &[f64]) -> f64 {
     let mut largest = [f64::NEG_INFINITY; LANES];
     let (a, b) = (a.chunks(LANES), b.chunks(LANES));
     for (a, b) in a.zip(b) {
-        for ((most, a), b) in largest.iter_mut().zip(a).zip(b) {
+        for ((maximum, a), b) in largest.iter_mut().zip(a).zip(b) {
             let sum = a + b;
-            *most = if sum > *most { sum } else { *most };
+            *maximum = if sum > *maximum { sum } else { *maximum };
         }
     }
     largest.into_iter().fold(f64::NEG_INFINITY, f64::max)

@@ -1,5 +1,5 @@
-//! What strokes say of the room: at most one thing of each kind from each cell of a grid, so that neither the width of the brush
-//! nor the number of strokes decides.
+//! Strokes as evidence about the room: at most one sample of each kind per cell of a grid, so that neither brush width
+//! nor the number of strokes affects the result.
 
 use super::RoomView;
 use crate::error::Result;
@@ -7,21 +7,27 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Cells along each side of the photo. Odd: no pixel's centre lies between two, and a mirrored photo has mirrored cells.
+/// Cells along each side of the photo. Odd, so that no pixel centre lies between two cells and a mirrored photo has
+/// mirrored cells.
 const CELLS: usize = 15;
 
-/// What the strokes of one kind in a cell say.
-pub struct Spot {
-    /// The ray, in room axes, to the mean of their pixels.
+/// The strokes of one kind within a cell.
+pub struct StrokeSample {
+    /// Ray through the mean of their pixels, in room axes.
     pub ray: DVec3,
-    /// On the plane, or elsewhere.
+    /// Whether they lie on the plane or elsewhere.
     pub positive: bool,
-    /// Share of the kind's spots.
+    /// Weight: one over the number of samples of this kind.
     pub weight: f64,
 }
 
-/// The spots of a view's strokes. Pixels off the image are passed over; those that both kinds cover speak for both.
-pub fn spots(room: &RoomView, to_room: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Vec<Spot>> {
+/// The samples of a view's strokes. Pixels outside the image are ignored; pixels covered by both kinds count for both.
+pub fn stroke_samples(
+    room: &RoomView,
+    to_room: &DMat3,
+    [width, height]: [usize; 2],
+    job: Job,
+) -> Result<Vec<StrokeSample>> {
     let mut cells = try_vec(2 * CELLS * CELLS, (DVec2::ZERO, 0.0))?;
     for stroke in room.strokes {
         job.check()?;
@@ -35,11 +41,11 @@ pub fn spots(room: &RoomView, to_room: &DMat3, [width, height]: [usize; 2], job:
     }
     let painted = |positive: bool| cells.iter().skip(usize::from(positive)).step_by(2).filter(|c| c.1 > 0.0);
     let counts = [false, true].map(|positive| painted(positive).count());
-    let spots = [false, true].into_iter().flat_map(|positive| {
+    let stroke_samples = [false, true].into_iter().flat_map(|positive| {
         painted(positive).map(move |(sum, count)| {
             let ray = *to_room * room.perspective.ray(sum / *count);
-            Spot { ray, positive, weight: 1.0 / counts[usize::from(positive)] as f64 }
+            StrokeSample { ray, positive, weight: 1.0 / counts[usize::from(positive)] as f64 }
         })
     });
-    Ok(spots.filter(|spot| spot.ray.is_finite()).collect())
+    Ok(stroke_samples.filter(|sample| sample.ray.is_finite()).collect())
 }

@@ -1,4 +1,4 @@
-//! Exact rooms: analytic depth of a box seen by a known camera.
+//! Tests on exact rooms: the analytic depth of a box seen by a known camera.
 
 mod strokes;
 
@@ -25,14 +25,14 @@ fn photo(width: usize, height: usize) -> Image {
     Image::from_fn(width, height, |x, y| [x as f32 / width as f32, 0.5, y as f32 / height as f32]).unwrap()
 }
 
-/// Depth along z of the box with these sides, and the index of the face, at a pixel.
+/// Depth along z, and the index of the face, at a pixel of the box with the given sides.
 fn truth(camera: &Perspective, sides: &[f64; 4], x: usize, y: usize) -> (f64, usize) {
     let ray = camera.axes.transpose() * camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
     let (face, inverse) = faces(sides, ray)[0];
     (1.0 / inverse, face as usize)
 }
 
-/// Segments of a box room: seams, and lines drawn on its faces, with their axes.
+/// Segments of a box room with their axes: seams, and lines drawn on its faces.
 fn room_segments(camera: &Perspective, sides: &[f64; 4], width: usize, height: usize) -> Vec<(Segment, Option<usize>)> {
     let [l, r, t, b] = *sides;
     let project = |p: DVec3| {
@@ -101,11 +101,11 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
             for x in 0..width {
                 let p = features.image.pixel(x, y);
                 let (z, face) = truth(&camera, &sides, x, y);
-                // Creases included: the window moves to one side of them.
+                // Include creases: there the window moves to one side.
                 let off = Vec3::from_slice(&p[7..10]).angle_between(normals[face]);
                 all += 1;
                 exact += usize::from(off < 1e-3);
-                // Positions are the true ones up to one scale for the whole picture.
+                // Positions equal the true ones up to one global scale.
                 let want = camera.axes.transpose() * camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5)) * z;
                 let got = Vec3::from_slice(&p[4..7]).as_dvec3();
                 let s = *scale.get_or_insert(got.length() / want.length());
@@ -120,7 +120,7 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
 fn noise_depth_edges_and_holes_leave_normals_robust() {
     let (width, height) = (320, 240);
     let camera = camera(0.0, 0.0, 0.0, width, height);
-    // A near slanted board in front of the back wall, 1 % noise in disparity, a hole in it.
+    // A nearby slanted board in front of the back wall, with 1 % noise in disparity and a hole.
     let noise = |x: usize, y: usize| 1.0 + 0.002 * Rng::new(5, &[x as u64, y as u64]).normal();
     let board = |x: usize| x > 100 && x < 220;
     let depth = Image::from_fn(width, height, |x, y| {
@@ -148,7 +148,7 @@ fn noise_depth_edges_and_holes_leave_normals_robust() {
     let (median, p95) = (errors[errors.len() / 2], errors[errors.len() * 95 / 100]);
     assert!(median < 2.5 && p95 < 8.0, "median {median}, 95 % {p95} degrees");
     assert_eq!(features.depth_confidence.pixel(160, 110)[0], 0.0);
-    // The hole's inside is filled with the board's depth.
+    // The hole is filled with the board's depth.
     let inside = features.image.pixel(160, 110)[3];
     let beside = features.image.pixel(140, 110)[3];
     assert!((inside - beside).abs() < 0.05, "{inside} {beside}");
@@ -165,7 +165,7 @@ fn the_layout_of_a_synthetic_room_is_recovered() {
         let room = RoomView { perspective: &camera, segments: &segments, strokes: &[] };
         let features = run_with(&photo(width, height), None, Some(room)).unwrap();
         let layout = features.layout.unwrap();
-        // Every face that is really seen is the right one, and nearly at its place.
+        // Nearly every visible pixel lies on the correct face, at nearly the correct depth.
         let (mut right, mut all, mut worst) = (0, 0, 0.0f64);
         let mut scale = Vec::new();
         for y in (0..height).step_by(5) {
@@ -188,13 +188,13 @@ fn the_layout_of_a_synthetic_room_is_recovered() {
 }
 
 #[test]
-fn without_segments_the_layout_is_a_usual_room_that_no_one_trusts() {
+fn without_segments_the_layout_is_the_prior_room_with_low_confidence() {
     let camera = camera(0.0, 0.0, 0.0, 64, 48);
     let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
     let features = run_with(&photo(64, 48), None, Some(room)).unwrap();
     assert_eq!(features.depth_source, DepthSource::Layout);
     assert!(features.depth_confidence.data.iter().all(|&c| c <= 0.05));
-    // Zero-length segments and unknown axes are no evidence either.
+    // Segments of zero length and of unknown axis are no evidence either.
     let point = Segment { a: DVec2::ONE, b: DVec2::ONE };
     let segments = [(point, Some(1)), (point, None), (point, Some(9))];
     let room = RoomView { perspective: &camera, segments: &segments, strokes: &[] };
@@ -216,12 +216,12 @@ fn degenerate_depth_has_a_right_answer_or_a_clear_error() {
     let wrong_size = Image::new(41, 30, 1).unwrap();
     assert!(with(&wrong_size).unwrap_err().message.contains("41 x 30"));
     assert!(with(&Image::new(40, 30, 3).unwrap()).is_err());
-    // Beside what is measured, zeros and infinities are holes.
+    // Next to measured values, zeros and infinities are holes.
     let mixed = |x: usize, y: usize| [[2.0, 0.0, f32::INFINITY, -0.0, f32::NAN, f32::NEG_INFINITY][(x + y) % 6]];
     let features = with(&Image::from_fn(40, 30, mixed).unwrap()).unwrap();
     assert!(features.image.data.chunks_exact(CHANNELS).all(|p| p[3].abs() < 1e-6));
     assert_eq!(features.depth_confidence.data.iter().filter(|&&c| c == 1.0).count(), 40 * 30 / 6);
-    // One measured pixel: everything else is filled from it.
+    // A single measured pixel: all others are filled from it.
     let mut one = constant(0.0);
     one.pixel_mut(7, 9)[0] = 3.0;
     let features = with(&one).unwrap();
@@ -231,7 +231,7 @@ fn degenerate_depth_has_a_right_answer_or_a_clear_error() {
 
 #[test]
 fn planes_are_exact_beside_holes_and_on_narrow_images() {
-    // A slanted plane, a hole at random in every third pixel: the fit is still exact.
+    // A slanted plane with random holes in a third of the pixels: the fit is still exact.
     let (width, height) = (90, 70);
     let camera = camera(0.0, 0.0, 0.0, width, height);
     let slanted = Vec3::new(-0.4, 0.2, -1.0).normalize();
@@ -247,7 +247,7 @@ fn planes_are_exact_beside_holes_and_on_narrow_images() {
     for p in features.image.data.chunks_exact(CHANNELS) {
         assert!(Vec3::from_slice(&p[7..10]).angle_between(slanted) < 2e-3, "{p:?}");
     }
-    // Pixels of one row or column span no plane: they face the camera.
+    // Pixels of a single row or column span no plane: their normals face the camera.
     for (w, h) in [(40, 1), (1, 40), (1, 1)] {
         let depth = Image::from_fn(w, h, |x, y| [1.0 + (x + y) as f32]).unwrap();
         let map = Some(DepthMap { image: &depth, kind: DepthKind::AlongZ });
@@ -261,7 +261,7 @@ fn saturated_and_grey_photos_have_their_lab() {
     for (channels, value, lab) in [(3, 1.0, [100.0, 0.0, 0.0]), (1, 0.18, [49.496_108, 0.0, 0.0]), (4, 0.0, [0.0; 3])] {
         let mut photo = Image::new(70, 3, channels).unwrap();
         photo.data.fill(value);
-        // What is beyond colour does not count, whatever it is.
+        // Channels beyond the colours are ignored.
         if channels == 4 {
             photo.data.chunks_exact_mut(4).for_each(|p| p[3] = f32::NAN);
         }
@@ -286,7 +286,7 @@ fn any_photo_has_finite_features() {
         let features = run_with(&photo, Some(DepthMap { image: &depth, kind: DepthKind::AlongRay }), None).unwrap();
         assert_eq!(features.image.count_non_finite(), 0);
     }
-    // One bit to a pixel.
+    // A binary image.
     let bit = |x: usize, y: usize| f32::from(Rng::new(6, &[x as u64, y as u64]).next_f32() < 0.5);
     let features = run_with(&Image::from_fn(31, 23, |x, y| [bit(x, y)]).unwrap(), None, None).unwrap();
     for (i, p) in features.image.data.chunks_exact(CHANNELS).enumerate() {

@@ -1,20 +1,25 @@
 //! Context
 //!
-//! A context owns the threads that do the work, a memory budget and the error messages. All other objects are made in a
-//! context and keep it alive, so objects may be released in any order; objects of two contexts cannot be mixed
+//! A context owns the worker threads, a memory budget and the error messages. All other objects are created in a
+//! context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
 //! (LUXFER_INVALID_ARGUMENT).
 //!
-//! Handles, of every kind: X_retain adds a reference, X_release gives one back; the last one frees the object. Releasing
-//! NULL does nothing. A handle is checked on entry: NULL, a handle of another kind or one released before is
-//! LUXFER_INVALID_ARGUMENT, as far as the memory behind it still shows it.
+//! Handles of every kind are reference counted: X_retain adds a reference, X_release removes one, and removing the last
+//! reference frees the object. Releasing NULL does nothing. Each call checks its handles: NULL and a handle of another
+//! kind give LUXFER_INVALID_ARGUMENT; so does a released handle in most cases, but not if its memory has been reused.
 //!
-//! Threads: different objects may be used from different threads at the same time, and so may one object; calls that
-//! change it take turns. Only the release of the last reference must not overlap any other use.
+//! Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
+//! use different objects at the same time, and also the same object: calls that change an object wait for each other.
+//! Only the release of the last reference must not overlap with another use of the object.
 //!
-//! The library has no global state, prints nothing, reads no environment variables, never ends the process and installs
-//! no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads and
-//! whatever floating-point mode (rounding, flush to zero) the host is in: calls work in the standard mode, so do callbacks
-//! they make, and hand the host's back.
+//! The library prints nothing, reads no environment variables, does not end the process on an error and installs no
+//! handlers. All state belongs to a context, with one exception: an emergency reserve of memory, shared by all contexts
+//! of the process. The library uses it for small allocations when the system has no memory left; all running jobs of
+//! the process then end with LUXFER_OUT_OF_MEMORY.
+//!
+//! With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
+//! any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
+//! the mode of the host on return. Callbacks run in the standard mode.
 
 use super::guard::{enter, guard, lock};
 use super::handle::{self, Handle, Owned, tag};
@@ -34,16 +39,17 @@ pub struct luxfer_context {
     _opaque: [u8; 0],
 }
 
-/// How a context is set up. Fill it with luxfer_context_params_init.
+/// Settings of a context. Fill it with luxfer_context_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_context_params {
     /// sizeof(luxfer_context_params), set by luxfer_context_params_init.
     pub struct_size: u32,
-    /// Number of worker threads in [0, 1024]; 0, the default, is one for each core the process may use.
+    /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use.
     pub num_threads: u32,
-    /// Limit in MiB for the pixels, meshes and textures of all objects the caller makes in this context; what exceeds it
-    /// is LUXFER_OUT_OF_MEMORY. 0, the default, is no limit. Working memory of a job and its results are not counted.
+    /// Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
+    /// that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. The working memory of jobs and
+    /// their results do not count.
     pub memory_budget_mib: u64,
 }
 
@@ -56,7 +62,7 @@ unsafe impl Versioned for luxfer_context_params {
     }
 }
 
-/// Messages are kept for this many threads, those that failed last.
+/// Number of threads whose messages are kept: the threads that failed last.
 const MAX_MESSAGES: usize = 256;
 
 /// What a `luxfer_context` refers to.
@@ -67,7 +73,8 @@ pub(super) struct Context {
     messages: Mutex<Messages>,
 }
 
-/// The last error message of each thread. A map and no thread-local: those would outlive the context, and the library.
+/// The last error message of each thread. A map rather than thread-local storage, which would outlive the context and
+/// the library.
 #[derive(Default)]
 struct Messages {
     count: u64,
@@ -86,7 +93,7 @@ impl Context {
         }
     }
 
-    /// Takes `bytes` from the memory budget for as long as the charge lives.
+    /// Charges `bytes` to the memory budget for the lifetime of the returned charge.
     pub(super) fn charge(self: &Arc<Self>, bytes: u64) -> Result<Charge> {
         let take = |used: u64| used.checked_add(bytes).filter(|&sum| self.budget == 0 || sum <= self.budget);
         match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take) {
@@ -135,16 +142,16 @@ impl Handle for luxfer_context {
     const NAME: &'static str = "luxfer_context";
 }
 
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is not that
-/// of any version of the struct.
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
+/// the struct has this size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_context_params_init(params: *mut luxfer_context_params, size: usize) -> luxfer_status {
     guard(|| params::init(params, size))
 }
 
 /// Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
-/// LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY if
-/// the threads cannot be started.
+/// LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY
+/// if the threads cannot be started.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_context_create(
     params: *const luxfer_context_params,
@@ -171,17 +178,18 @@ pub unsafe extern "C" fn luxfer_context_retain(context: *mut luxfer_context) -> 
     handle::retain(context)
 }
 
-/// Gives a reference back. The threads end, and are waited for, when the context and everything made in it are released.
-/// Any thread.
+/// Removes a reference. When the context and all objects created in it are released, the call waits until the worker
+/// threads have ended. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_context_release(context: *mut luxfer_context) -> luxfer_status {
     handle::release(context)
 }
 
-/// Copies the message of the calling thread's latest failure in this context into buffer, as UTF-8 that ends with a zero,
-/// cut if it does not fit into capacity bytes. *needed, unless NULL, becomes the capacity for all of it. Without a failure
-/// the message is empty. Messages stay until the thread's next failure; those of the last 256 threads are kept. buffer may
-/// be NULL if capacity is 0. A call that fails because its first handle is no handle leaves no message. Any thread.
+/// Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,
+/// truncated to capacity bytes. *needed, unless NULL, receives the capacity that the whole message needs. If no call
+/// has failed, the message is empty. A message stays until the thread's next failure; the messages of the 256 threads
+/// that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
+/// valid leaves no message. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_context_last_error(
     context: *mut luxfer_context,

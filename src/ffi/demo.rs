@@ -1,6 +1,7 @@
 //! Demonstration
 //!
-//! Input that the library makes itself, for examples and tests: the same bits every time, nothing loaded from files.
+//! Scenes and artworks that the library generates itself, for examples and tests: equal to the bit every time, without
+//! files.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -18,16 +19,16 @@ use std::sync::Arc;
 
 /// A generated scene: a LUXFER_DEMO_ value.
 pub type luxfer_demo = i32;
-/// A furnished room without any light; its ceiling is the object "Ceiling".
+/// A furnished room without lights; its ceiling is the object "Ceiling".
 pub const LUXFER_DEMO_TARGET_ROOM: luxfer_demo = 0;
 /// An office under a grid of luminaires; camera 0 takes the photo.
 pub const LUXFER_DEMO_EXEMPLAR_ROOM: luxfer_demo = 1;
 /// A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation.
 pub const LUXFER_DEMO_SPHERE_ON_TABLE: luxfer_demo = 2;
-/// A vase, a ring and two balls on the same table under the same lamp: a target for a stylisation.
+/// A vase, a ring and two balls on the table of LUXFER_DEMO_SPHERE_ON_TABLE under its lamp: a target for a stylisation.
 pub const LUXFER_DEMO_STILL_LIFE: luxfer_demo = 3;
 
-/// How an artwork is drawn: a LUXFER_ARTWORK_ value.
+/// The style of a generated artwork: a LUXFER_ARTWORK_ value.
 pub type luxfer_artwork = i32;
 /// Hatching with a pen and two inks.
 pub const LUXFER_ARTWORK_PEN: luxfer_artwork = 0;
@@ -51,9 +52,9 @@ pub unsafe extern "C" fn luxfer_demo_scene(
     })
 }
 
-/// Draws an artwork of a scene in place of an artist, aligned with its guides and of their size: made for
-/// LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to some seconds. The caller releases *image. Any
-/// thread.
+/// Draws an artwork of a scene in place of an artist, of the size of its guides and aligned with them; designed for
+/// LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to a few seconds. The caller releases
+/// *image. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_artwork(

@@ -1,7 +1,7 @@
 //! Demonstration photo
 //!
-//! A photo of the generated office, as a camera would take it, and the strokes a user would paint on it: what a lighting
-//! transfer needs, without a file.
+//! A photo of the generated office, as a camera would take it, and strokes on it, as a user would paint them: the input
+//! of a lighting transfer without files.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -17,12 +17,12 @@ use crate::error::{Error, check_range};
 use crate::image::Image;
 use std::sync::Arc;
 
-/// A photo in the making. See luxfer_demo_photo_create.
+/// A generator of the demonstration photo. See luxfer_demo_photo_create.
 pub struct luxfer_demo_photo {
     _opaque: [u8; 0],
 }
 
-/// An image of the demonstration: a LUXFER_DEMO_PHOTO_ value.
+/// An image of the demonstration photo: a LUXFER_DEMO_PHOTO_ value.
 pub type luxfer_demo_photo_image = i32;
 /// The photo: linear RGB, 1 = display white; its lamps are clipped.
 pub const LUXFER_DEMO_PHOTO_PICTURE: luxfer_demo_photo_image = 0;
@@ -37,11 +37,11 @@ pub struct luxfer_demo_photo_params {
     pub struct_size: u32,
     /// Width in pixels, in [16, 8192]; default 600.
     pub width: u32,
-    /// Height in pixels, in [16, 8192]; default 400. The camera is made for 3:2.
+    /// Height in pixels, in [16, 8192]; default 400. The camera is designed for an aspect ratio of 3:2.
     pub height: u32,
-    /// Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise.
+    /// Paths per pixel, in [2, 1048576]; default 12, which leaves some noise.
     pub samples: u32,
-    /// Seed of paths and noise; default 1.
+    /// Seed of the paths and the noise; default 1.
     pub seed: u64,
 }
 
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn luxfer_demo_photo_create(
     })
 }
 
-/// Starts a job that takes the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that renders the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_start(
@@ -140,7 +140,7 @@ pub unsafe extern "C" fn luxfer_demo_photo_retain(demo: *mut luxfer_demo_photo) 
     handle::retain(demo)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_release(demo: *mut luxfer_demo_photo) -> luxfer_status {
     handle::release(demo)

@@ -1,7 +1,7 @@
 //! Lighting design
 //!
-//! What luminaires can make of a light that was found: the drives of their LEDs, the blackbody that comes nearest; what it takes
-//! in power; and what a standard asks for. These calls return when they are done.
+//! Realises a solved light with real luminaires: the drive levels of LED primaries, the nearest blackbody light, the
+//! electric power, and the requirements of a standard. These calls return when their work is done.
 
 use super::context::luxfer_context;
 use super::geometry::{list, numbers};
@@ -17,17 +17,18 @@ use crate::relight::{MAX_PRIMARIES, mix_primaries};
 use glam::DVec3;
 use std::ffi::c_char;
 
-/// A light mixed from primaries. Set struct_size before the call.
+/// A colour mixed from primaries. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_mixture {
     /// sizeof(luxfer_mixture), set by the caller.
     pub struct_size: u32,
-    /// 1 if it is the colour asked for; 0 if that is out of reach, and this the nearest.
+    /// 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
+    /// mixture.
     pub reached: u32,
-    /// The linear colour it is.
+    /// Linear colour of the mixture.
     pub colour: [f64; 3],
-    /// CIEDE2000 difference from the colour asked for, seen at the exposure that shows that as a middle grey.
+    /// CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
     pub delta_e: f64,
 }
 
@@ -40,7 +41,7 @@ unsafe impl Versioned for luxfer_mixture {
     }
 }
 
-/// The blackbody light that suits a target. Set struct_size before the call.
+/// The blackbody light that fits a target best. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_temperature_fit {
@@ -50,11 +51,11 @@ pub struct luxfer_temperature_fit {
     pub reserved: u32,
     /// Correlated colour temperature, in [1000, 20000] kelvin.
     pub kelvin: f64,
-    /// Luminance of the emission, >= 0, where responses are those to 1 cd/m² of white.
+    /// Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m².
     pub luminance: f64,
-    /// Mean radiance of the target under it and all other light, in cd/m².
+    /// Mean radiance of the target from this light and all other light, in cd/m².
     pub achieved: [f64; 3],
-    /// CIEDE2000 difference of that from the target, seen at the exposure that shows the target as a middle grey.
+    /// CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle grey.
     pub delta_e: f64,
 }
 
@@ -67,8 +68,8 @@ unsafe impl Versioned for luxfer_temperature_fit {
     }
 }
 
-/// What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts.
-/// Set struct_size before the call.
+/// Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the standard itself
+/// is binding. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_preset {
@@ -76,17 +77,17 @@ pub struct luxfer_preset {
     pub struct_size: u32,
     /// Year of the edition of the standard.
     pub edition: u32,
-    /// Least mean illuminance of the task area, in lux.
+    /// Minimum mean illuminance of the task area, in lux.
     pub illuminance: f64,
-    /// Largest unified glare rating.
+    /// Maximum unified glare rating.
     pub glare: f64,
-    /// Least uniformity U0 of the task area.
+    /// Minimum uniformity U0 of the task area.
     pub uniformity: f64,
-    /// Least colour rendering index.
+    /// Minimum colour rendering index.
     pub rendering: f64,
-    /// Least mean illuminance of the walls, in lux; 0 where none is asked for.
+    /// Minimum mean illuminance of the walls, in lux; 0 if there is no requirement.
     pub walls: f64,
-    /// Least mean illuminance of the ceiling, in lux; 0 where none is asked for.
+    /// Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement.
     pub ceiling: f64,
 }
 
@@ -100,9 +101,10 @@ unsafe impl Versioned for luxfer_preset {
     }
 }
 
-/// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire: primaries holds the linear RGB
-/// of each at a drive of 1, negative where it is out of gamut; count is in [1, 64]. drives receives count numbers in
-/// [0, most]; most may be infinite. Of several mixtures it is the one of least squared drives. Any thread.
+/// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
+/// linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
+/// drives receives count drive levels in [0, most]; most may be infinite. If several mixtures give the colour, the one
+/// with the smallest sum of squared drive levels is returned. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
@@ -134,9 +136,9 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
     })
 }
 
-/// Finds the temperature and strength of blackbody light that bring a target nearest to a mean radiance. response, background
-/// and target hold three channels each: what luxfer_relight_get_report or luxfer_importance_respond tell for a white
-/// emission, what other lights bring, and what is wanted. Any thread.
+/// Finds the temperature and luminance of the blackbody light that brings a target nearest to a mean radiance. Each
+/// array holds three channels: response is the response to a white emission, from luxfer_relight_get_report or
+/// luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. Any thread.
 /// LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(
@@ -172,8 +174,8 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
     })
 }
 
-/// Tells the electric power per floor area, in W/m², that a luminous flux takes: flux in lumens, >= 0, efficacy of the
-/// luminaires in lumens per watt and area in m², both > 0. Any thread.
+/// Computes the electric power per floor area, in W/m²: flux is the luminous flux in lumens, >= 0, efficacy that of the
+/// luminaires in lumens per watt, area in m², both > 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_power_density(
@@ -193,7 +195,7 @@ pub unsafe extern "C" fn luxfer_power_density(
     })
 }
 
-/// Tells the number of presets. Any thread.
+/// Gets the number of presets. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
     enter(context, |_| {
@@ -202,7 +204,7 @@ pub unsafe extern "C" fn luxfer_preset_count(context: *mut luxfer_context, count
     })
 }
 
-/// Tells what a preset asks for. Any thread.
+/// Gets the requirements of a preset. Any thread.
 /// LUXFER_NOT_FOUND if there is no such preset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_get(
@@ -227,8 +229,8 @@ pub unsafe extern "C" fn luxfer_preset_get(
     })
 }
 
-/// Copies the name of a preset, such as "office: filing, copying", zero-terminated, into buffer of capacity bytes, cut if it is
-/// longer. *needed, unless NULL, receives the capacity for all of it. Any thread.
+/// Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
+/// capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
 /// LUXFER_NOT_FOUND if there is no such preset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_name(

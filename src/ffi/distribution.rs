@@ -1,7 +1,7 @@
 //! Luminous intensity distributions
 //!
-//! What a luminaire sends out in which direction, from and to IES (LM-63) and EULUMDAT files. These calls return when they
-//! are done.
+//! The luminous intensity of a luminaire by direction, read from and written to IES (LM-63) and EULUMDAT files. These
+//! calls return when their work is done.
 
 use super::context::{Context, luxfer_context};
 use super::guard::enter;
@@ -28,23 +28,23 @@ pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
 /// EULUMDAT.
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 
-/// A distribution on the whole. Set struct_size before the call.
+/// Summary of a distribution. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_distribution_report {
     /// sizeof(luxfer_distribution_report), set by the caller.
     pub struct_size: u32,
-    /// C planes.
+    /// Number of C planes.
     pub planes: u32,
-    /// Vertical angles of each plane.
+    /// Number of vertical angles in each plane.
     pub angles: u32,
     /// 0.
     pub reserved: u32,
-    /// Luminous flux in lumens: the intensity over all directions.
+    /// Luminous flux in lumens: the integral of the intensity over all directions.
     pub flux: f64,
-    /// Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry).
+    /// Rated flux of the lamps in lumens; 0 if the file does not state it (absolute photometry).
     pub lamp_flux: f64,
-    /// Electric power in watts; 0 if not known.
+    /// Electric power in watts; 0 if unknown.
     pub watts: f64,
     /// Length, width and height of the luminous opening in metres; negative for round ones.
     pub size: [f64; 3],
@@ -110,8 +110,8 @@ fn read(bytes: &[u8], format: luxfer_distribution_format) -> Result<Luminaire> {
 }
 
 /// Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
-/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT, with the line, if it is malformed, LUXFER_UNSUPPORTED for types A and
-/// B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is malformed: the message names the line,
+/// LUXFER_UNSUPPORTED for types A and B of IES, LUXFER_INVALID_ARGUMENT for another extension.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_load(
     context: *mut luxfer_context,
@@ -131,7 +131,7 @@ pub unsafe extern "C" fn luxfer_distribution_load(
     })
 }
 
-/// Loads from the size bytes of a file held in memory; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
+/// Loads a distribution from a file in memory of size bytes; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
 /// luxfer_distribution_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_load_memory(
@@ -152,7 +152,8 @@ pub unsafe extern "C" fn luxfer_distribution_load_memory(
     })
 }
 
-/// Saves to an .ies or .ldt file; path is UTF-8. An existing file is replaced only by a complete one. Any thread.
+/// Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
+/// complete. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_save(
@@ -169,7 +170,7 @@ pub unsafe extern "C" fn luxfer_distribution_save(
     })
 }
 
-/// Tells the distribution on the whole. Any thread.
+/// Gets the summary of a distribution. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_report(
     distribution: *mut luxfer_distribution,
@@ -190,8 +191,8 @@ pub unsafe extern "C" fn luxfer_distribution_get_report(
     })
 }
 
-/// Copies the luminaire's name, zero-terminated, into buffer of capacity bytes, cut if it is longer. *needed, unless NULL,
-/// receives the capacity for all of it. Any thread.
+/// Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
+/// receives the capacity that the whole name needs. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_name(
     distribution: *mut luxfer_distribution,
@@ -202,8 +203,8 @@ pub unsafe extern "C" fn luxfer_distribution_get_name(
     enter(distribution, |object| copy_text(&object.luminaire.name, buffer, capacity, needed))
 }
 
-/// Tells the luminous intensity in candela in a direction, in degrees: c around the axis, gamma from straight down at 0 to
-/// straight up at 180. Any thread.
+/// Gets the luminous intensity in candela in a direction. Angles are in degrees: c turns around the axis, gamma goes
+/// from straight down at 0 to straight up at 180. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_intensity(
     distribution: *mut luxfer_distribution,
@@ -227,7 +228,7 @@ pub unsafe extern "C" fn luxfer_distribution_retain(distribution: *mut luxfer_di
     handle::retain(distribution)
 }
 
-/// Gives a reference back. Any thread.
+/// Removes a reference. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_release(distribution: *mut luxfer_distribution) -> luxfer_status {
     handle::release(distribution)

@@ -1,7 +1,7 @@
 //! Emission
 //!
-//! From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
-//! its luminaires.
+//! Synthesises an emissive texture of any size that continues the light pattern of an unwarped photo, and lists its
+//! luminaires.
 
 use super::context::{Context, luxfer_context};
 use super::geometry::numbers;
@@ -22,20 +22,20 @@ use glam::{DMat3, DVec2};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// An emissive texture in the making. See luxfer_emission_create.
+/// A synthesis of an emissive texture. See luxfer_emission_create.
 pub struct luxfer_emission {
     _opaque: [u8; 0],
 }
 
 /// An image of the emission: a LUXFER_EMISSION_ value.
 pub type luxfer_emission_image = i32;
-/// The texture: linear RGB relative to the photo's white, 0 where there is no lamp.
+/// The texture: linear RGB relative to the photo's white; 0 outside lamps.
 pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
 /// 1 on lamps, else 0; 1 channel.
 pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
-/// What synthesis started from, at working size: confidence, signed x and y distance to the nearest light; 3 channels.
+/// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3 channels.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
-/// The same of its result.
+/// Metadata of the result, with these channels.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 
 /// Settings of the emission. Fill them with luxfer_emission_params_init.
@@ -50,34 +50,36 @@ pub struct luxfer_emission_params {
     pub height: u32,
     /// Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights.
     pub block: u32,
-    /// Unwarped pixels per texel, in [1e-3, 1e3]; default 1.
+    /// Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1.
     pub scale: f64,
     /// Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256.
     pub working_side: u32,
-    /// Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting.
+    /// Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting.
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
-    /// Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
-    /// repetition is held to exactly, at 1 none is, and patches go anywhere.
+    /// Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
+    /// continued exactly; at 1 no repetition is, and patches may lie anywhere.
     pub least_regularity: f32,
-    /// 1, the default, shows every lamp as one piece; with 0 seams may cut lamps.
+    /// 1, the default: every lamp stays in one piece; 0: seams may cut lamps.
     pub whole_lamps: u32,
-    /// Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0. Lights without
-    /// a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
+    /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
+    /// default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is tileable, where
+    /// it shifts the lamps.
     pub offset: [f64; 2],
-    /// Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
-    /// as dark as the clipped channels allow. With 0 nothing is taken for clipped.
+    /// Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the colour
+    /// of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped.
     pub clip_level: f32,
-    /// With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo.
+    /// 1: every lamp has its mean colour everywhere; 0, the default: as in the photo.
     pub even_lamps: u32,
-    /// With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
-    /// than half a period over the whole, to fit. Needs whole_lamps. Default 0.
+    /// 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side, and
+    /// a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps. Default 0.
     pub tileable: u32,
-    /// With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
-    /// two in its middle, so that the border cuts as few lamps as it can. Default 0.
+    /// 1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle between
+    /// two lamps, so that the border cuts as few lamps as possible. Default 0.
     pub centred: u32,
-    /// Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536]; default 192.
+    /// Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536]; default
+    /// 192.
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -136,7 +138,7 @@ impl luxfer_emission_params {
     }
 }
 
-/// How good the texture is. Set struct_size before the call.
+/// Quality of the texture. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
@@ -144,17 +146,19 @@ pub struct luxfer_emission_report {
     pub struct_size: u32,
     /// Number of luminaires; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
-    /// The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
-    /// distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is no texture yet.
+    /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
+    /// whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as exemplar_lamps
+    /// allows. NaN for a plan, which has no texture yet.
     pub error: f64,
-    /// How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
+    /// Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
     pub regularity: f64,
-    /// Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
-    /// part of what there is, and without a whole lamp the texture shows the cut ones.
+    /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
+    /// large part of the lamps. Without a whole lamp the texture shows the cut ones.
     pub exemplar_lamps: u32,
-    /// By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same difference between
-    /// parts of the texture as large as the exemplar, and the whole. An error of up to twice this says nothing against the texture.
-    /// 0 where the texture shows nothing else than the exemplar does, of blended exemplars, and of a plan.
+    /// Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined for
+    /// error, between the whole texture and parts of it that are as large as the exemplar. If error is at most twice
+    /// this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
+    /// exemplars, and for a plan.
     pub sampling_error: f32,
 }
 
@@ -167,27 +171,28 @@ unsafe impl Versioned for luxfer_emission_report {
     }
 }
 
-/// One lamp of the texture. Set struct_size before the call.
+/// A lamp of the texture. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_luminaire {
     /// sizeof(luxfer_luminaire), set by the caller.
     pub struct_size: u32,
-    /// Number of corners of its outline.
+    /// Number of corners of the outline.
     pub corners: u32,
     /// Centre in texels, x and y.
     pub centre: [f64; 2],
-    /// Lengths of the principal axes in texels, the long one first.
+    /// Lengths of the principal axes in texels, the longer first.
     pub size: [f64; 2],
     /// Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2].
     pub orientation: f64,
-    /// Area in texels, of those at the edge what is light.
+    /// Area in texels; texels at the edge count with the share that the lamp covers.
     pub area: f64,
-    /// Share of the light of the whole texture, in [0, 1].
+    /// Share of the luminous flux of the whole texture, in [0, 1].
     pub flux_share: f64,
     /// Mean linear colour, relative to the photo's white.
     pub colour: [f32; 3],
-    /// Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the border cuts it.
+    /// Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are sorted by
+    /// the number of their lamps, the largest first. 0 if the border cuts the lamp.
     pub kind: u32,
 }
 
@@ -347,9 +352,9 @@ pub unsafe extern "C" fn luxfer_emission_create(
     })
 }
 
-/// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
-/// channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by luxfer_emission_add_style. Any
-/// thread.
+/// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
+/// (1 channel, in [0, 1]) and the mask where both are valid (1 channel, 1 or 0). luxfer_emission_add_style adds more
+/// exemplars. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     emission: *mut luxfer_emission,
@@ -366,8 +371,9 @@ pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     })
 }
 
-/// Sets the photo from which full detail is recovered, and the map from unwarped to photo pixels, 9 doubles row by row
-/// (luxfer_rectify_report.to_photo). photo may be NULL: the unwarped image is the finest there is. Any thread.
+/// Sets the photo from which full detail is recovered, and the homography from unwarped to photo pixels, 9 doubles row
+/// by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the unwarped image only. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_photo(
     emission: *mut luxfer_emission,
@@ -383,10 +389,10 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     })
 }
 
-/// Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for
-/// the defaults. The caller releases *job. Any thread.
+/// Starts a job that makes the whole texture in memory; for very large textures use luxfer_emission_start_plan. params
+/// may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
-/// there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+/// the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start(
     emission: *mut luxfer_emission,
@@ -425,7 +431,7 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Tells how good the texture is, or what a plan consists of. Any thread.
+/// Gets the quality of the texture, or the contents of a plan. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
@@ -453,8 +459,9 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
     })
 }
 
-/// Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
-/// ends; lights that run through their exemplar are as the texture shows them. Any thread.
+/// Describes a luminaire of the texture. A plan has no texels yet, so its luminaires are described as the exemplar
+/// shows them, cut at the edges of the texture; only lights that cross their whole exemplar are described as in the
+/// texture. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
@@ -481,12 +488,13 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
     })
 }
 
-/// Tells a corner of a luminaire's outline, in texels. Any thread.
+/// Gets a corner of a luminaire's outline, in texels. Any thread.
 ///
-/// The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is: within a quarter
-/// of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one. Of lamps up to two texels wide,
-/// of a mask that is all or nothing and of lights of a plan that follow its patches it follows the sides of texels.
-/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
+/// The outline is where the lamp would cover half of a texel. If the confidence of the lights has values between 0 and
+/// 1, it is accurate to a quarter of a texel (or of an unwarped pixel, if that is larger), at corners of the lamp to
+/// 0.71. It follows the sides of texels for lamps up to two texels wide, for masks of only 0 and 1, and for lights of a
+/// plan that follow its patches. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such
+/// luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(
     emission: *mut luxfer_emission,
@@ -512,7 +520,7 @@ pub unsafe extern "C" fn luxfer_emission_retain(emission: *mut luxfer_emission) 
     handle::retain(emission)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_release(emission: *mut luxfer_emission) -> luxfer_status {
     handle::release(emission)

@@ -1,8 +1,8 @@
 //! Styles and tiles
 //!
-//! Several exemplars in one texture, and textures that are too large to be made as a whole: luxfer_emission_start_plan decides
-//! where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds a place for each
-//! lamp and the outlines of the patches, but no texel.
+//! Textures from several exemplars, and textures that are too large to make as a whole: luxfer_emission_start_plan
+//! decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of the texture. A plan holds
+//! the exemplars, the place of each lamp and the outlines of the patches, but no texels.
 
 use super::emission::{
     Exemplar, Further, Made, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
@@ -19,13 +19,14 @@ use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 use crate::job::Monitor;
 
-/// Adds an exemplar, whose lights take the place of the first one's as its weights say. unwarped, light and valid are as for
-/// luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo as for luxfer_emission_set_photo. scale is its unwarped
-/// pixels per texel, in [1e-3, 1e3]. weights has 1 channel and values in [0, 1], and is stretched over the texture; where several
-/// exemplars are added their weights are images of one size and add up to 1 at most. What they leave is the first exemplar's.
+/// Adds an exemplar whose lights replace those of the first exemplar according to weights. unwarped, light and valid
+/// are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
+/// luxfer_emission_set_photo. scale is the number of its unwarped pixels per texel, in [1e-3, 1e3]. weights has 1
+/// channel with values in [0, 1] and is stretched over the texture. The weights of several added exemplars are images
+/// of one size whose sum is at most 1; the first exemplar has the rest of the weight.
 ///
-/// No lamp is a mixture: each is taken from an exemplar with the probability of its weight there, so that light per area blends
-/// linearly. Lattices keep their own period and phase. Any thread.
+/// Each lamp comes from one exemplar, chosen with the probability of its weight there, so that the light per area
+/// blends linearly. Each lattice keeps its own period and phase. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_add_style(
     emission: *mut luxfer_emission,
@@ -49,7 +50,7 @@ pub unsafe extern "C" fn luxfer_emission_add_style(
     })
 }
 
-/// Takes all exemplars that were added away; the first stays. Any thread.
+/// Removes all exemplars added by luxfer_emission_add_style; the first exemplar stays. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emission) -> luxfer_status {
     enter(emission, |stage| {
@@ -60,9 +61,10 @@ pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emis
     })
 }
 
-/// Starts a job that plans the texture, in the place of luxfer_emission_start, whose results go. params and what the call and
-/// the job return are the same. luxfer_emission_get_report and luxfer_emission_get_luminaire tell the lamps of the plan.
-/// The caller releases *job. Any thread.
+/// Starts a job that plans the texture instead of making it as luxfer_emission_start does, and removes the results of
+/// that function. params, and the statuses of the call and the job, are as for luxfer_emission_start.
+/// luxfer_emission_get_report and luxfer_emission_get_luminaire describe the lamps of the plan. The caller releases
+/// *job. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start_plan(
     emission: *mut luxfer_emission,
@@ -83,11 +85,12 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
     })
 }
 
-/// Renders the part of a planned texture that begins x texels right of and y below its corner: 4 channels, linear RGB, and 1 on
-/// lamps, else 0. The bits are those of the texture and mask that luxfer_emission_start makes, whatever the tiles and their
-/// order. Takes up to a second for each megapixel. The caller releases *tile. Any thread, several at once.
-/// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT for a part that is empty or
-/// reaches beyond the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// Renders the rectangle of width x height texels of a planned texture whose top-left texel is (x, y): 4 channels,
+/// linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the bit to the texture and mask of
+/// luxfer_emission_start, for any size and order of the tiles. Takes up to a second per megapixel. The caller releases
+/// *tile. Any thread; several threads may render tiles at the same time.
+/// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
+/// is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_render_tile(
     emission: *mut luxfer_emission,

@@ -1,6 +1,6 @@
 //! False colour
 //!
-//! A luminance or illuminance image as colours whose order the eye sees, with a scale bar.
+//! Shows a luminance or illuminance image in false colours of rising brightness, with a scale bar.
 
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
@@ -11,14 +11,14 @@ use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::photometry::false_colour::{self, Params, Scale, Unit};
 
-/// How values are spread over the colours: a LUXFER_SCALE_ value.
+/// The scale from values to colours: a LUXFER_SCALE_ value.
 pub type luxfer_scale = i32;
-/// Evenly.
+/// Linear: equal differences of the value have equal width.
 pub const LUXFER_SCALE_LINEAR: luxfer_scale = 0;
-/// Decades are equally wide.
+/// Logarithmic: decades have equal width.
 pub const LUXFER_SCALE_LOGARITHMIC: luxfer_scale = 1;
 
-/// What the values of an image are: a LUXFER_UNIT_ value.
+/// The quantity of an image's values: a LUXFER_UNIT_ value.
 pub type luxfer_unit = i32;
 /// Luminance in cd/m².
 pub const LUXFER_UNIT_LUMINANCE: luxfer_unit = 0;
@@ -35,11 +35,12 @@ pub struct luxfer_false_colour_params {
     pub scale: luxfer_scale,
     /// LUXFER_UNIT_ value, written above the bar; default LUXFER_UNIT_LUMINANCE.
     pub unit: luxfer_unit,
-    /// 1: draw the scale bar beside the image, which then is wider; 0: none; default 1.
+    /// 1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar.
     pub bar: u32,
-    /// Value of the darkest colour, >= 0; on a logarithmic scale 0 stands for a thousandth of the largest; default 0.
+    /// Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the lightest
+    /// colour; default 0.
     pub least: f64,
-    /// Value of the lightest colour, more than least; 0 stands for the largest value of the image; default 0.
+    /// Value of the lightest colour, greater than least; 0, the default, means the largest value of the image.
     pub most: f64,
 }
 
@@ -88,11 +89,11 @@ pub unsafe extern "C" fn luxfer_false_colour_params_init(
     guard(|| params::init(params, size))
 }
 
-/// Shows an image (1 channel, or linear RGB, of which the luminance counts) in false colour: linear RGB, grey where a value is
-/// NaN. params may be NULL for the defaults. Takes some milliseconds for each megapixel. The caller releases *shown. Any
-/// thread.
-/// LUXFER_INVALID_ARGUMENT if the range is none, or the image has no light to take it from; LUXFER_OUT_OF_MEMORY beyond the
-/// memory budget.
+/// Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: linear RGB, grey where a
+/// value is NaN. params may be NULL for the defaults. Takes a few milliseconds per megapixel. The caller releases
+/// *shown. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is black;
+/// LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_false_colour(
     image: *mut luxfer_image,

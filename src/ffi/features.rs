@@ -1,8 +1,9 @@
 //! Features
 //!
-//! What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
-//! normal x, y, z. Depth comes from the caller, or from a network that the caller has as an ONNX file, or is laid out as a
-//! room from the lines that luxfer_rectify has found and strokes on one of its planes, or is a neutral guess.
+//! Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
+//! position x, y, z and normal x, y, z. The depth is a depth map of the caller, or that of a network in an ONNX file of
+//! the caller, or that of a box-shaped room fitted to the lines of a luxfer_rectify and to strokes on one of its
+//! planes, or a neutral guess.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -38,7 +39,7 @@ pub struct luxfer_features {
     _opaque: [u8; 0],
 }
 
-/// What a depth map measures: a LUXFER_DEPTH_ value.
+/// Quantity that a depth map measures: a LUXFER_DEPTH_ value.
 pub type luxfer_depth_kind = i32;
 /// Distance along the viewing axis.
 pub const LUXFER_DEPTH_ALONG_Z: luxfer_depth_kind = 0;
@@ -47,32 +48,33 @@ pub const LUXFER_DEPTH_ALONG_RAY: luxfer_depth_kind = 1;
 
 /// An image of the features: a LUXFER_FEATURES_ value.
 pub type luxfer_features_image = i32;
-/// The ten channels; luxfer_image_read takes them apart.
+/// The ten channels; luxfer_image_read reads some of them.
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
-/// Trust in the depth of each pixel, in [0, 1]; 1 channel.
+/// Confidence of the depth of each pixel, in [0, 1]; 1 channel.
 pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
-/// The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as the depth map of a
-/// further run, or of luxfer_transfer, without running the network again.
+/// The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the depth map of
+/// later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// What the colours of a photo become before a network sees them: a LUXFER_NORMALISATION_ value. The file does not say it.
+/// Normalisation of the photo's colours for a network, which its file does not state: a LUXFER_NORMALISATION_ value.
 pub type luxfer_normalisation = i32;
-/// By the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else LUXFER_NORMALISATION_HALF.
+/// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
+/// LUXFER_NORMALISATION_HALF.
 pub const LUXFER_NORMALISATION_BY_SIZE: luxfer_normalisation = 0;
-/// sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small.
+/// (sRGB - (0.485, 0.456, 0.406)) / (0.229, 0.224, 0.225), for MiDaS 2.1, large and small.
 pub const LUXFER_NORMALISATION_IMAGENET: luxfer_normalisation = 1;
-/// sRGB less 0.5, over 0.5: DPT.
+/// (sRGB - 0.5) / 0.5, for DPT.
 pub const LUXFER_NORMALISATION_HALF: luxfer_normalisation = 2;
-/// sRGB in [0, 1].
+/// No normalisation: sRGB in [0, 1].
 pub const LUXFER_NORMALISATION_NONE: luxfer_normalisation = 3;
 
-/// Where the depth came from: a LUXFER_DEPTH_FROM_ value.
+/// Source of the depth: a LUXFER_DEPTH_FROM_ value.
 pub type luxfer_depth_source = i32;
 /// The caller's depth map.
 pub const LUXFER_DEPTH_FROM_CALLER: luxfer_depth_source = 0;
-/// A room laid out from the lines of the photo, and strokes.
+/// A box-shaped room fitted to the lines of the photo and to strokes.
 pub const LUXFER_DEPTH_FROM_LAYOUT: luxfer_depth_source = 1;
-/// A guess that knows nothing of the photo.
+/// A neutral guess that does not depend on the photo.
 pub const LUXFER_DEPTH_FROM_NOTHING: luxfer_depth_source = 2;
 /// The caller's network.
 pub const LUXFER_DEPTH_FROM_NETWORK: luxfer_depth_source = 3;
@@ -87,7 +89,8 @@ pub struct luxfer_features_params {
     pub near_plane: f32,
     /// Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10.
     pub far_plane: f32,
-    /// Half-width of the window the normals are fitted in, in pixels, in [0, 64]; default 0: from the photo's size.
+    /// Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the photo's
+    /// size.
     pub normal_radius: u32,
 }
 
@@ -107,7 +110,7 @@ impl luxfer_features_params {
     }
 }
 
-/// How good the features are. Set struct_size before the call.
+/// Quality of the features. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_features_report {
@@ -115,9 +118,10 @@ pub struct luxfer_features_report {
     pub struct_size: u32,
     /// LUXFER_DEPTH_FROM_ value.
     pub depth_source: luxfer_depth_source,
-    /// Mean trust in the depth, in [0, 1].
+    /// Mean confidence of the depth, in [0, 1].
     pub depth_confidence: f64,
-    /// Pixels of the photo that were NaN, infinite or negative and have been replaced from their neighbours.
+    /// Number of pixels of the photo that were NaN, infinite or negative and were replaced by values of their
+    /// neighbours.
     pub replaced_pixels: u64,
 }
 
@@ -187,7 +191,7 @@ pub unsafe extern "C" fn luxfer_features_create(
     })
 }
 
-/// Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread.
+/// Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_photo(
     features: *mut luxfer_features,
@@ -206,8 +210,8 @@ pub unsafe extern "C" fn luxfer_features_set_photo(
     })
 }
 
-/// Sets a depth map of the photo's size, 1 channel, in any unit; what is not positive and finite is a hole. kind is a
-/// LUXFER_DEPTH_ value. depth may be NULL: none. Any thread.
+/// Sets a depth map of the photo's size, 1 channel, in any unit; values that are not positive and finite are holes.
+/// kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_depth(
     features: *mut luxfer_features,
@@ -224,13 +228,13 @@ pub unsafe extern "C" fn luxfer_features_set_depth(
     })
 }
 
-/// Sets a network that estimates depth where there is no depth map: an ONNX file; path is UTF-8. Its one input is a photo, a float
-/// tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of relative inverse depth, as those of MiDaS
-/// and DPT are. The map is normalised by its extremes: the nearest pixel is on near_plane, the farthest on far_plane.
-/// normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: none. The file is read now and not needed afterwards.
-/// Any thread.
-/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs what the library does not
-/// do, or if the library was built without the Cargo feature onnx.
+/// Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
+/// input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of
+/// relative inverse depth, as of MiDaS and DPT. The map is normalised by its extremes: the nearest pixel lies on
+/// near_plane, the farthest on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
+/// The call reads the file, which is not needed afterwards. Any thread.
+/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
+/// that the library does not support, or if the library was built without the Cargo feature onnx.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_network(
     features: *mut luxfer_features,
@@ -294,9 +298,9 @@ fn compute(
     Ok(Outcome { features: Arc::new(features::run(input, params, job)?), network_depth: None })
 }
 
-/// Takes the lines and the camera that a luxfer_rectify has found in the same photo, as they are now. rectify may be NULL:
-/// none. Any thread.
-/// LUXFER_NOT_READY if it has found none yet.
+/// Sets the lines and the camera from the latest result of a luxfer_rectify of this photo. rectify may be NULL: no
+/// lines. Any thread.
+/// LUXFER_NOT_READY if it has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_view(
     features: *mut luxfer_features,
@@ -315,9 +319,10 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
-/// Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the ceiling that
-/// carries the lights, and 0 elsewhere. They are heard where the room is laid out from lines (luxfer_features_set_view): of its
-/// boxes those are preferred that have all positive strokes on one face, whichever it is, and no other there. Any thread.
+/// Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the
+/// ceiling that carries the lights, and 0 off this plane. Strokes affect only a room that is fitted to lines
+/// (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one face and all others off this
+/// face. Any thread.
 /// LUXFER_INVALID_OPERATION before the photo is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_add_stroke(
@@ -336,7 +341,7 @@ pub unsafe extern "C" fn luxfer_features_add_stroke(
     })
 }
 
-/// Adds the strokes of a drawing of the photo's size that concern the plane, as luxfer_segment_add_strokes_image does with
+/// Adds the strokes for the plane from a drawing of the photo's size, as luxfer_segment_add_strokes_image does with
 /// LUXFER_PHASE_PLANE. Any thread.
 /// LUXFER_INVALID_OPERATION before the photo is set; LUXFER_INVALID_ARGUMENT if the size differs.
 #[unsafe(no_mangle)]
@@ -355,8 +360,8 @@ pub unsafe extern "C" fn luxfer_features_add_strokes_image(
     })
 }
 
-/// Adds the strokes of a text in UTF-8 that concern the plane, as luxfer_segment_add_strokes_text does with LUXFER_PHASE_PLANE. Any
-/// thread.
+/// Adds the strokes for the plane from a text in UTF-8, as luxfer_segment_add_strokes_text does with
+/// LUXFER_PHASE_PLANE. Any thread.
 /// LUXFER_INVALID_OPERATION before the photo is set; LUXFER_FORMAT, naming the line, if the text is malformed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_add_strokes_text(
@@ -385,8 +390,8 @@ pub unsafe extern "C" fn luxfer_features_clear_strokes(features: *mut luxfer_fea
 }
 
 /// Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
-/// sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+/// if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_start(
     features: *mut luxfer_features,
@@ -416,7 +421,7 @@ pub unsafe extern "C" fn luxfer_features_start(
 }
 
 /// Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH where no network was run.
+/// LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a network.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_get_image(
     features: *mut luxfer_features,
@@ -443,7 +448,7 @@ pub unsafe extern "C" fn luxfer_features_get_image(
     })
 }
 
-/// Tells how good the features are. Any thread.
+/// Gets the quality of the features. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_get_report(
@@ -475,7 +480,7 @@ pub unsafe extern "C" fn luxfer_features_retain(features: *mut luxfer_features) 
     handle::retain(features)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_release(features: *mut luxfer_features) -> luxfer_status {
     handle::release(features)

@@ -1,9 +1,9 @@
-//! The host's floating-point mode: rounding, flush-to-zero, traps. Hosts change it for their own ends (audio and game
-//! engines flush denormals to zero), and it would change our results; so every call works in the mode that Rust's
-//! arithmetic is defined in, and hands the host's back. Threads inherit the mode of the thread that starts them, so ours
-//! have the same.
+//! The host's floating-point mode: rounding, flush-to-zero, traps. Some hosts change it (audio and game engines flush
+//! denormals to zero), which would change our results. So every call sets the mode for which Rust defines its
+//! arithmetic, and restores the mode of the host on return. A thread inherits the mode of the thread that starts it, so
+//! the worker threads have the standard mode too.
 
-/// Holds the host's mode while a call is under way.
+/// Stores the mode of the host during a call, and restores it when dropped.
 pub(super) struct FloatMode {
     host: Mode,
 }
@@ -12,7 +12,7 @@ impl FloatMode {
     #[inline]
     pub fn enter() -> Self {
         let host = read();
-        // Writing is slow, and hardly ever needed.
+        // Write only if needed: writing is slow.
         if host & !STATUS != DEFAULT {
             write(DEFAULT);
         }
@@ -34,9 +34,9 @@ mod register {
     use std::arch::asm;
 
     pub type Mode = u32;
-    /// Rounding to nearest, denormals as they are, no traps.
+    /// Round to nearest, keep denormals, no traps.
     pub const DEFAULT: Mode = 0x1f80;
-    /// What arithmetic leaves behind: flags of exceptions.
+    /// The status bits: exception flags that arithmetic sets.
     pub const STATUS: Mode = 0x3f;
 
     #[inline]
@@ -77,7 +77,7 @@ mod register {
     }
 }
 
-/// Elsewhere the mode is the host's to keep; Miri knows no registers.
+/// On other processors the mode is not changed. Miri does not support the registers.
 #[cfg(any(miri, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 mod register {
     pub type Mode = u32;

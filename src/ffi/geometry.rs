@@ -1,7 +1,8 @@
 //! Plane geometry
 //!
-//! Maps between two views of a plane, as 3 x 3 matrices of homogeneous points, row by row. Points are in pixels, x right,
-//! y down, the top-left pixel's centre at (0.5, 0.5). These calls return when they are done.
+//! Homographies: maps between two views of a plane, as 3 x 3 matrices of homogeneous points in row-major order. Points
+//! are in pixels, x to the right, y down; the centre of the top-left pixel is (0.5, 0.5). These calls return when their
+//! work is done.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -16,9 +17,9 @@ use crate::job::Monitor;
 use crate::rectify;
 use glam::{DMat3, DVec2};
 
-/// Finds the map that takes four points to four points: from and to hold x and y of each, homography receives its nine
-/// entries, of unit Frobenius norm. Any thread.
-/// LUXFER_DEGENERATE if three of the points lie on one line, coincide or are not finite.
+/// Computes the homography that maps four points to four points: from and to hold x and y of each point, homography
+/// receives the nine entries of the matrix, scaled to unit Frobenius norm. Any thread.
+/// LUXFER_DEGENERATE if three of the points lie on one line, or if points coincide or are not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_homography_from_corners(
     context: *mut luxfer_context,
@@ -36,10 +37,12 @@ pub unsafe extern "C" fn luxfer_homography_from_corners(
     })
 }
 
-/// Makes an image of width x height pixels, each in [1, 65536], whose pixel at p is that of the source at to_source(p), nine
-/// entries; 0 where that is outside the source. Interpolated where the source is magnified, averaged over the pixel's
-/// footprint where it is minified. Takes some milliseconds for each megapixel. The caller releases *warped. Any thread.
-/// LUXFER_INVALID_ARGUMENT if an entry is not finite or a size out of range; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// Warps an image by a homography into a new image of width x height pixels, each in [1, 65536]: the pixel at p takes
+/// the value of the source at to_source(p), where to_source holds the nine entries of the matrix. Pixels outside the
+/// source become 0. The source is interpolated where it is magnified, and averaged over the pixel's footprint where it
+/// is minified. Takes a few milliseconds per megapixel. The caller releases *warped. Any thread.
+/// LUXFER_INVALID_ARGUMENT if an entry is not finite or a size is out of range; LUXFER_OUT_OF_MEMORY beyond the memory
+/// budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_warp(
     source: *mut luxfer_image,
@@ -74,13 +77,13 @@ fn corners(place: *const f64, name: &str) -> Result<[DVec2; 4]> {
     }
 }
 
-/// `N` numbers of the caller's, at any alignment.
+/// Reads `N` numbers of the caller, at any alignment.
 pub(super) fn numbers<const N: usize>(place: *const f64, name: &str) -> Result<[f64; N]> {
     let list = list(place, N, name)?;
     Ok(std::array::from_fn(|i| list[i]))
 }
 
-/// `count` numbers of the caller's, at any alignment.
+/// Reads `count` numbers of the caller, at any alignment.
 pub(super) fn list(place: *const f64, count: usize, name: &str) -> Result<Vec<f64>> {
     let bytes = bytes(place.cast(), count.saturating_mul(size_of::<f64>()), name)?;
     let number = |raw: &[u8]| {

@@ -1,4 +1,4 @@
-//! What stands between an entry point and its host: no panic gets out, every error becomes a status.
+//! The guard of each entry point: no panic reaches the host, every error becomes a status.
 
 use super::float_mode::FloatMode;
 use super::handle::{self, Handle, Owned};
@@ -29,11 +29,12 @@ pub(super) fn enter<H: Handle>(handle: *const H, work: impl FnOnce(&Arc<H::Objec
     })
 }
 
-/// A panic becomes an error. What it left half-written is never read: results are stored only after success.
+/// Turns a panic into an error. Data that the panic left half-written is never read: results are stored only after
+/// success.
 pub(super) fn catch<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let message = format!("a defect in luxfer, please report it: {}", panic_text(&*panic));
-        // A payload may panic as it is dropped.
+        // Do not drop the payload: its destructor may panic.
         std::mem::forget(panic);
         Err(Error::new(ErrorKind::Internal, message))
     })
@@ -47,7 +48,7 @@ fn panic_text(panic: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// Locks whether or not a panic passed while it was held: every holder leaves the state whole.
+/// Locks a mutex, also after a panic of another holder: every holder leaves the state consistent.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }

@@ -1,7 +1,8 @@
 //! Guides
 //!
-//! What the light does in a scene, as images for a stylisation: rendered once for the exemplar, once for the target. Guides
-//! from another renderer need none of this: see luxfer_stylize_add_guide.
+//! Renders the guide images of a stylisation, which show different kinds of light in a scene: once for the exemplar
+//! scene and once for the target scene. Guides from another renderer do not need this object: see
+//! luxfer_stylize_add_guide.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -25,23 +26,23 @@ pub struct luxfer_guides {
 
 /// An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m².
 pub type luxfer_guides_image = i32;
-/// All light.
+/// All light, reflected any number of times.
 pub const LUXFER_GUIDES_FULL: luxfer_guides_image = 0;
-/// Light reflected once, by something matt (LDE).
+/// Light reflected once, by a diffuse surface (LDE).
 pub const LUXFER_GUIDES_DIRECT: luxfer_guides_image = 1;
-/// Light reflected once, by something glossy (LSE).
+/// Light reflected once, by a glossy surface (LSE).
 pub const LUXFER_GUIDES_SPECULAR: luxfer_guides_image = 2;
-/// Light whose last two reflections were matt (L.*DDE): where colours bleed.
+/// Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding.
 pub const LUXFER_GUIDES_INDIRECT: luxfer_guides_image = 3;
-/// Light reflected once or twice, by matt things (LD{1,2}E): what is in the shadow.
+/// Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows.
 pub const LUXFER_GUIDES_TWO_BOUNCES: luxfer_guides_image = 4;
-/// Normals as the camera has them: x right, y up, z towards it; 3 channels.
+/// Normals in camera space: x right, y up, z towards the camera; 3 channels.
 pub const LUXFER_GUIDES_NORMALS: luxfer_guides_image = 5;
 /// Edges of shapes, in [0, 1]; 1 channel.
 pub const LUXFER_GUIDES_EDGES: luxfer_guides_image = 6;
-/// A colour for each material, made from its name; 3 channels.
+/// A colour code for each material, derived from its name; 3 channels.
 pub const LUXFER_GUIDES_MATERIALS: luxfer_guides_image = 7;
-/// Light that glossy things throw onto matt ones (LS+DE).
+/// Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE).
 pub const LUXFER_GUIDES_CAUSTICS: luxfer_guides_image = 8;
 
 /// Settings of guides. Fill them with luxfer_guides_params_init.
@@ -58,7 +59,8 @@ pub struct luxfer_guides_params {
     pub samples: u32,
     /// Index of the scene's camera; default 0.
     pub camera: u32,
-    /// 1: smooth the light along surfaces, so that noise is not matched; default 1.
+    /// 1, the default: smooth the light along surfaces, so that the stylisation does not match noise; 0: keep the
+    /// noise.
     pub smooth: u32,
     /// Seed of the paths; default 1.
     pub seed: u64,
@@ -111,7 +113,7 @@ pub unsafe extern "C" fn luxfer_guides_create(
     })
 }
 
-/// Sets the scene; each start renders it as it is then. Any thread.
+/// Sets the scene; each job renders the scene as it is when the job starts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_set_scene(
     guides: *mut luxfer_guides,
@@ -185,9 +187,9 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
     })
 }
 
-/// Makes the motion between two frames of one scene seen by a camera that moves, for luxfer_stylize_set_motion: where each
-/// pixel of this frame was in the frame before, relative to where it is, x and y in pixels, NaN where it was not to be seen. The
-/// caller releases *motion. Any thread.
+/// Computes the motion between two frames of one scene under a moving camera, for luxfer_stylize_set_motion: for each
+/// pixel of this frame, the offset to its position in the frame before, x and y in pixels; NaN where it was not
+/// visible. The caller releases *motion. Any thread.
 /// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_motion(
@@ -211,7 +213,7 @@ pub unsafe extern "C" fn luxfer_guides_retain(guides: *mut luxfer_guides) -> lux
     handle::retain(guides)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_release(guides: *mut luxfer_guides) -> luxfer_status {
     handle::release(guides)

@@ -1,8 +1,8 @@
 //! Handles: pointers to a tagged shell that holds one reference to the object.
 //!
-//! The shell counts the references of the host, the object inside those of the library (a job keeps its stage, an image
-//! its context). So a host that releases once too often spoils its own count at worst, and its handle goes stale while
-//! the object may live on.
+//! The shell counts the references of the host; the object inside counts those of the library (a job keeps its stage,
+//! an image its context). So a host that releases once too often only damages its own count: its handle becomes
+//! invalid, and the object may live on.
 
 use super::context::Context;
 use super::guard::guard;
@@ -53,7 +53,7 @@ pub(super) fn give<H: Handle>(object: Arc<H::Object>) -> *mut H {
     Arc::into_raw(Arc::new(shell)).cast_mut().cast()
 }
 
-/// The shell behind a pointer, once its tag says that it is one.
+/// The shell behind a pointer, after a check of its tag.
 fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Object>> {
     if handle.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));

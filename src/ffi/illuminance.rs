@@ -1,7 +1,7 @@
 //! Illuminance
 //!
-//! Illuminance in lux on a calculation grid, or over a mesh by its texture coordinates, with the standard error of every
-//! point, and mean, extremes and their error for reports.
+//! Computes the illuminance in lux on a calculation grid, or on a mesh by its texture coordinates, with the standard
+//! error of every point, and with mean and extremes for reports.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -26,7 +26,7 @@ pub struct luxfer_illuminance {
 
 /// An image of the calculation: a LUXFER_ILLUMINANCE_ value.
 pub type luxfer_illuminance_image = i32;
-/// Illuminance in lux; 1 channel, NaN where a mesh has no point.
+/// Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover.
 pub const LUXFER_ILLUMINANCE_LUX: luxfer_illuminance_image = 0;
 /// Standard error of each value, in lux; 1 channel.
 pub const LUXFER_ILLUMINANCE_ERROR: luxfer_illuminance_image = 1;
@@ -57,20 +57,21 @@ unsafe impl Versioned for luxfer_illuminance_params {
     }
 }
 
-/// A calculation grid. Fill it with luxfer_illuminance_grid_init, then set what differs: the defaults are a square metre
-/// at the origin that faces up.
+/// A calculation grid. Fill it with luxfer_illuminance_grid_init; the default is a square metre at the origin that
+/// faces up.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_illuminance_grid {
     /// sizeof(luxfer_illuminance_grid), set by luxfer_illuminance_grid_init.
     pub struct_size: u32,
-    /// A corner, in metres; default (0, 0, 0).
+    /// Corner of the grid, in metres; default (0, 0, 0).
     pub origin: [f32; 3],
-    /// The edge along which columns count, in metres; default (1, 0, 0). Points are the centres of the cells.
+    /// Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the centres
+    /// of the cells.
     pub across: [f32; 3],
-    /// The edge along which rows count, in metres; default (0, 0, 1).
+    /// Edge of the grid along which the rows are counted, in metres; default (0, 0, 1).
     pub down: [f32; 3],
-    /// The side from which light counts, of any length but 0; default (0, 1, 0).
+    /// Normal of the side that receives the light; any length but 0; default (0, 1, 0).
     pub normal: [f32; 3],
     /// Must be 0.
     pub reserved: u32,
@@ -102,13 +103,13 @@ impl luxfer_illuminance_grid {
     }
 }
 
-/// The illuminance on the whole, in lux. Set struct_size before the call.
+/// Summary of the illuminance, in lux. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_illuminance_report {
     /// sizeof(luxfer_illuminance_report), set by the caller.
     pub struct_size: u32,
-    /// Points that there are: of a mesh, the texels with a surface.
+    /// Number of points; on a mesh, the texels that the surface covers.
     pub points: u32,
     /// Smallest illuminance; least / mean is the uniformity U0.
     pub least: f64,
@@ -171,7 +172,7 @@ pub unsafe extern "C" fn luxfer_illuminance_create(
     })
 }
 
-/// Sets the scene; each start calculates with it as it is then. Any thread.
+/// Sets the scene; each job uses the scene as it is when the job starts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_set_scene(
     illuminance: *mut luxfer_illuminance,
@@ -186,8 +187,8 @@ pub unsafe extern "C" fn luxfer_illuminance_set_scene(
     })
 }
 
-/// Starts a job that calculates a grid. grid and params may be NULL for their defaults. The caller releases *job. Any
-/// thread.
+/// Starts a job that computes the illuminance on a grid. grid and params may be NULL for their defaults. The caller
+/// releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
 /// if the scene is not valid, the grid has no normal, or a setting is out of range.
 #[unsafe(no_mangle)]
@@ -203,11 +204,12 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
     })
 }
 
-/// Starts a job that maps a mesh by its first set of texture coordinates: columns along u, rows along v. back is 0 for the
-/// side that its triangles' winding faces, 1 for the other. params may be NULL for the defaults. The caller releases *job.
-/// Any thread.
+/// Starts a job that computes the illuminance on a mesh by its first set of texture coordinates: columns along u, rows
+/// along v. back is 0 for the front side of the triangles (by their winding), 1 for the back side. params may be NULL
+/// for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
-/// if the scene is not valid, has no such mesh, the mesh has no texture coordinates, or a setting is out of range.
+/// if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or if a setting is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_start_mesh(
     illuminance: *mut luxfer_illuminance,
@@ -261,7 +263,7 @@ pub unsafe extern "C" fn luxfer_illuminance_get_image(
     })
 }
 
-/// Tells the illuminance on the whole. Any thread.
+/// Gets the summary of the illuminance. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_get_report(
@@ -273,9 +275,9 @@ pub unsafe extern "C" fn luxfer_illuminance_get_report(
         let output = stage.output()?;
         out.set(luxfer_illuminance_report {
             points: output.points as u32,
-            least: output.least,
+            least: output.min,
             mean: output.mean,
-            largest: output.largest,
+            largest: output.max,
             mean_error: output.mean_error,
             ..luxfer_illuminance_report::defaults()
         });
@@ -289,7 +291,7 @@ pub unsafe extern "C" fn luxfer_illuminance_retain(illuminance: *mut luxfer_illu
     handle::retain(illuminance)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_release(illuminance: *mut luxfer_illuminance) -> luxfer_status {
     handle::release(illuminance)

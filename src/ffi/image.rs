@@ -1,8 +1,8 @@
 //! Image
 //!
-//! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run downwards.
-//! Images never change after they are made, so results are shared and not copied. The caller's pixels are described by a
-//! view; the library never keeps a pointer to them. Sides are at most 65536 pixels.
+//! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top to
+//! bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels in
+//! the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
 
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, guard};
@@ -22,7 +22,7 @@ pub struct luxfer_image {
     _opaque: [u8; 0],
 }
 
-/// How a sample is stored: a LUXFER_SAMPLE_ value, in the machine's byte order.
+/// Storage type of a sample, in the machine's byte order: a LUXFER_SAMPLE_ value.
 pub type luxfer_sample = i32;
 /// 8-bit unsigned integer that stands for [0, 1].
 pub const LUXFER_SAMPLE_U8: luxfer_sample = 0;
@@ -33,11 +33,11 @@ pub const LUXFER_SAMPLE_F16: luxfer_sample = 2;
 /// 32-bit floating point.
 pub const LUXFER_SAMPLE_F32: luxfer_sample = 3;
 
-/// What the numbers mean: a LUXFER_COLOUR_ value.
+/// Encoding of the values: a LUXFER_COLOUR_ value.
 pub type luxfer_colour_space = i32;
-/// Scene-linear Rec.709, or data that is no colour.
+/// Scene-linear Rec.709, or data that is not colour.
 pub const LUXFER_COLOUR_LINEAR: luxfer_colour_space = 0;
-/// Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is linear.
+/// Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear.
 pub const LUXFER_COLOUR_SRGB: luxfer_colour_space = 1;
 
 /// Flag of a view: the first row in memory is the bottom one.
@@ -59,15 +59,15 @@ pub struct luxfer_image_view {
     pub width: u32,
     /// Rows, in [1, 65536]; default 0, to be set.
     pub height: u32,
-    /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags are refused.
+    /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error.
     pub flags: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed.
+    /// Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed.
     pub pixel_stride: usize,
-    /// Bytes from a row to the next; at least the row's size, or 0, the default: packed.
+    /// Bytes from one row to the next; at least the size of a row, or 0, the default: packed.
     pub row_stride: usize,
-    /// Bytes at data that may be accessed; what the layout needs beyond is LUXFER_INVALID_ARGUMENT. To be set.
+    /// Size of the memory at data in bytes; LUXFER_INVALID_ARGUMENT if the layout needs more. To be set.
     pub byte_size: usize,
     /// The pixels; any alignment. Bytes between pixels and rows are never touched. To be set.
     pub data: *mut c_void,
@@ -233,16 +233,16 @@ fn cost(width: usize, height: usize, channels: usize) -> u64 {
     (width as u64) * (height as u64) * (channels as u64) * size_of::<f32>() as u64
 }
 
-/// Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or size is not that of any
-/// version of the struct.
+/// Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or no version of the
+/// struct has this size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_view_init(view: *mut luxfer_image_view, size: usize) -> luxfer_status {
     guard(|| params::init(view, size))
 }
 
-/// Creates an image from a copy of the caller's pixels; integers and sRGB are decoded, NaN and infinities kept. The caller
-/// releases *image. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the view contradicts itself; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
+/// Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The
+/// caller releases *image. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_create(
     context: *mut luxfer_context,
@@ -261,9 +261,9 @@ pub unsafe extern "C" fn luxfer_image_create(
     })
 }
 
-/// Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space says how integer samples are encoded:
-/// LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; files with floating-point
-/// samples are linear. The caller releases *image. Any thread.
+/// Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space is the encoding of integer samples:
+/// LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; floating-point samples are
+/// always linear. The caller releases *image. Any thread.
 /// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if an
 /// OpenEXR file has neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
@@ -284,7 +284,7 @@ pub unsafe extern "C" fn luxfer_image_load(
     })
 }
 
-/// Loads an image from the size bytes of a file held in memory, otherwise as luxfer_image_load.
+/// Loads an image from a file in memory of size bytes; otherwise as luxfer_image_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_load_memory(
     context: *mut luxfer_context,
@@ -316,9 +316,9 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
 }
 
 /// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
-/// (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels as
-/// they are, in 32-bit floating point; exposure is not used. An existing file is replaced only by a complete one. Any
-/// thread.
+/// (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels,
+/// unchanged, in 32-bit floating point; exposure is not used. An existing file is replaced only once the new one is
+/// complete. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_save(
@@ -351,7 +351,7 @@ fn encode_exr(image: &Image) -> Result<Vec<u8>> {
     io::encode_exr(&[io::Layer { name: "", image, channels: &names }], &[])
 }
 
-/// Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread.
+/// Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_size(
     image: *mut luxfer_image,
@@ -368,10 +368,10 @@ pub unsafe extern "C" fn luxfer_image_size(
     })
 }
 
-/// Writes an image into the caller's pixels. The view must have the image's size; if the image has more channels than the
-/// view, those from first_channel on are written. Integers are clamped to their range and rounded, NaN becomes 0 in them.
+/// Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
+/// of the image, starting at first_channel. Integers are clamped to their range and rounded; NaN becomes 0 in integers.
 /// Any thread.
-/// LUXFER_INVALID_ARGUMENT if the view contradicts itself or the image.
+/// LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_read(
     image: *mut luxfer_image,
@@ -407,7 +407,7 @@ pub unsafe extern "C" fn luxfer_image_retain(image: *mut luxfer_image) -> luxfer
     handle::retain(image)
 }
 
-/// Gives a reference back. Any thread.
+/// Removes a reference. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_release(image: *mut luxfer_image) -> luxfer_status {
     handle::release(image)

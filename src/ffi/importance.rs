@@ -1,7 +1,8 @@
 //! Importance
 //!
-//! What each point of an emission's surface means to a target: traced once, after which the light of any texture there,
-//! however it is scaled, turned and shifted, is told at once, with a confidence interval.
+//! A map of the light that each point of an emitting surface would send to a target. It is traced once; then it gives
+//! the light of any emissive texture on that surface, at any scale, rotation and offset, within milliseconds and with a
+//! confidence interval.
 
 use super::context::luxfer_context;
 use super::geometry::numbers;
@@ -39,11 +40,12 @@ pub struct luxfer_importance_params {
     pub height: u32,
     /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
     pub quantity: luxfer_quantity,
-    /// Most paths to trace, in [1024, 2^30]; default 2^20.
+    /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the response to an even emission is known to this share, in [0, 1]; default 0.01; 0 = never.
+    /// Stop when the relative error of the response to a uniform emission is below this value, in [0, 1]; default 0.01;
+    /// 0: no target.
     pub target_error: f32,
-    /// Stop after this many milliseconds; default 0: never.
+    /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -71,19 +73,20 @@ unsafe impl Versioned for luxfer_importance_params {
     }
 }
 
-/// What a texture means to the target. Set struct_size before the call.
+/// The light that the target receives from a texture. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_importance_report {
     /// sizeof(luxfer_importance_report), set by the caller.
     pub struct_size: u32,
-    /// Paths behind the map.
+    /// Number of paths of the map.
     pub paths: u32,
-    /// Mean radiance of the target under the texture, in cd/m² per channel as the texture's values are.
+    /// Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture.
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// What cells of twice the side change, noise included; the cells themselves are off by about a third of it.
+    /// Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
+    /// cells is about a third of it.
     pub band_error: [f64; 3],
 }
 
@@ -135,8 +138,8 @@ pub unsafe extern "C" fn luxfer_importance_create(
     })
 }
 
-/// Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is the
-/// target; what of it emits in the scene as it is is left out. Any thread.
+/// Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is
+/// the target. The current emission of the material does not count. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_set_scene(
@@ -154,9 +157,10 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
     })
 }
 
-/// Starts a job that traces the map; a placement that was found is forgotten. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
-/// the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
+/// Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
+/// releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+/// if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start(
     importance: *mut luxfer_importance,
@@ -196,8 +200,8 @@ pub unsafe extern "C" fn luxfer_importance_start(
     })
 }
 
-/// Gets the map: what the target's mean radiance would be, per channel, if a cell emitted 1 cd/m² and nothing else did. The
-/// caller releases *image. Any thread.
+/// Gets the map: for each cell, the mean radiance of the target, per channel, if only this cell emitted, with 1 cd/m².
+/// The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_get_image(
@@ -213,9 +217,9 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
     })
 }
 
-/// Tells what a texture (linear, in cd/m²; it repeats) means to the target. placement leads from the surface's texture
-/// coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for where they are the same. Takes some
-/// milliseconds. Any thread.
+/// Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps the
+/// surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the identity.
+/// Takes a few milliseconds. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_respond(
@@ -238,8 +242,8 @@ pub unsafe extern "C" fn luxfer_importance_respond(
     })
 }
 
-/// Solves for what to multiply a texture with, so that the target has a mean radiance, in cd/m² per channel, each finite and
-/// >= 0, as luxfer_relight does it by tracing; texture and placement as above. Any thread.
+/// Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each finite
+/// and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_solve(
@@ -284,7 +288,7 @@ pub unsafe extern "C" fn luxfer_importance_retain(importance: *mut luxfer_import
     handle::retain(importance)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_release(importance: *mut luxfer_importance) -> luxfer_status {
     handle::release(importance)

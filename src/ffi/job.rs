@@ -1,9 +1,9 @@
 //! Job
 //!
-//! Long work is started with X_start, which returns a job at once; it runs on threads of the library. Inputs are taken as
-//! they are at the start: changing or releasing them later does not affect the job. While a job runs its object refuses
-//! changes and further jobs (LUXFER_INVALID_OPERATION). Results are read from the object after the job has succeeded.
-//! Releasing the last reference to a job that runs cancels it and waits for it to end.
+//! X_start starts long work and returns a job at once; the job runs on threads of the library. It works on the inputs
+//! as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
+//! refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
+//! succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};
@@ -23,23 +23,24 @@ pub struct luxfer_job {
     _opaque: [u8; 0],
 }
 
-/// Told how far a job is: fraction rises from 0, never falls, and is exactly 1 once, last, and only after success. Returns
-/// 0 to go on, anything else to cancel the job. Called about 50 times a second, only on the thread that is inside
-/// luxfer_job_wait and with no lock held, so any luxfer function may be called from it. Must not throw or jump out.
+/// Receives the progress of a job: fraction starts at 0 and never falls. Only after success it is exactly 1, once, in
+/// the last call. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the function about 50
+/// times a second, on the waiting thread and with no lock held, so it may call any luxfer function. It must not throw
+/// an exception or leave by longjmp.
 pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
 /// How often a waiting thread reports.
 const REPORT_INTERVAL: Duration = Duration::from_millis(20);
 
-/// What a `luxfer_job` refers to. It holds the context until its thread has ended, so neither that thread nor a worker of
-/// the pool ever drops the last reference to the pool, which would have it wait for itself.
+/// The object of a `luxfer_job`. It holds the context until its thread has ended. So neither that thread nor a worker
+/// of the pool drops the last reference to the pool, which would make it wait for itself.
 pub(super) struct Job {
     context: Arc<Context>,
     shared: Arc<Shared>,
     thread: Mutex<Option<JoinHandle<()>>>,
 }
 
-/// What the working and the waiting threads share.
+/// State shared by the working and the waiting threads.
 struct Shared {
     monitor: Monitor,
     result: Mutex<Option<Result<()>>>,
@@ -79,7 +80,7 @@ impl Job {
         Ok(Self { context: context.clone(), shared, thread: Mutex::new(Some(thread)) })
     }
 
-    /// The result, or `None` if there is none within `time`.
+    /// The result, or `None` if the job has not ended within `time`.
     fn wait(&self, time: Duration) -> Option<Result<()>> {
         let result = lock(&self.shared.result);
         let waited = self.shared.finished.wait_timeout_while(result, time, |r| r.is_none());
@@ -101,11 +102,11 @@ impl Drop for Job {
     }
 }
 
-/// Waits until a job has ended, or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. progress
-/// may be NULL; user is handed to it. Any thread, several at once.
+/// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
+/// progress may be NULL; it receives user. Any thread; several threads may wait for one job.
 ///
-/// Returns LUXFER_OK if the job has succeeded, else why it has not, with its message: LUXFER_CANCELLED after a cancel
-/// request that came in time, LUXFER_NOT_READY only if it still runs (it goes on running).
+/// Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
+/// request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
     job: *mut luxfer_job,
@@ -121,7 +122,7 @@ pub unsafe extern "C" fn luxfer_job_wait(
             let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
             let result = job.wait(left.min(REPORT_INTERVAL));
 
-            // Report; 1 is kept for the end, whatever the work has announced.
+            // Report the progress; 1 is reserved for the end.
             let fraction = match &result {
                 Some(Ok(())) => Some(1.0),
                 Some(Err(_)) => None,
@@ -143,8 +144,8 @@ pub unsafe extern "C" fn luxfer_job_wait(
     })
 }
 
-/// Asks how far a job is, without waiting. *fraction becomes its progress in [0, 1], *finished 1 if it has ended, well or
-/// not, else 0; either may be NULL. Any thread.
+/// Gets the progress of a job without waiting. *fraction receives the progress in [0, 1]; *finished receives 1 if the
+/// job has ended, with or without success, else 0. Either may be NULL. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_poll(
     job: *mut luxfer_job,
@@ -160,14 +161,15 @@ pub unsafe extern "C" fn luxfer_job_poll(
     })
 }
 
-/// How a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any thread.
+/// Gets the status with which a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_status(job: *mut luxfer_job) -> luxfer_status {
     enter(job, |job| job.wait(Duration::ZERO).unwrap_or_else(|| Err(Job::is_running())))
 }
 
-/// Asks a job to end early, and returns at once; the work ends within about 100 ms. A request cannot be taken back; one
-/// that comes after the end has no effect. Any thread.
+/// Asks a job to end early and returns at once; the work ends within about 100 ms. A request cannot be withdrawn; a
+/// request after the end has no effect. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_cancel(job: *mut luxfer_job) -> luxfer_status {
     enter(job, |job| {
@@ -182,7 +184,7 @@ pub unsafe extern "C" fn luxfer_job_retain(job: *mut luxfer_job) -> luxfer_statu
     handle::retain(job)
 }
 
-/// Gives a reference back; the last one cancels a running job and waits for it to end. Any thread.
+/// Removes a reference. Removing the last reference cancels a running job and waits until it has ended. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_release(job: *mut luxfer_job) -> luxfer_status {
     handle::release(job)

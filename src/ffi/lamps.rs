@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and calculation grids
-//! that should have a given light. One set of paths per goal measures its response to every lamp, thousands of them at
-//! once.
+//! Solves for the powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and
+//! calculation grids that should receive a given light. One set of paths per goal measures its response to all lamps at
+//! once, even to thousands.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -21,25 +21,26 @@ use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// A calculation of lamps. See luxfer_lamps_create.
+/// A solver for the powers of lamps. See luxfer_lamps_create.
 pub struct luxfer_lamps {
     _opaque: [u8; 0],
 }
 
-/// Which lamps share their power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission's texture, or, where it
-/// has none, a connected piece of its meshes.
+/// Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission texture, or a
+/// connected piece of the meshes if the emission has no texture.
 pub type luxfer_group = i32;
-/// All lamps.
+/// All lamps form one group.
 pub const LUXFER_GROUP_ALL: luxfer_group = 0;
-/// Every lamp for itself.
+/// Each lamp is a group of its own.
 pub const LUXFER_GROUP_EACH: luxfer_group = 1;
-/// Those whose centres agree in their first coordinate: u of a texture, x of meshes.
+/// Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes.
 pub const LUXFER_GROUP_FIRST: luxfer_group = 2;
-/// Those whose centres agree in their second coordinate: v of a texture, y of meshes.
+/// Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes.
 pub const LUXFER_GROUP_SECOND: luxfer_group = 3;
-/// Those whose centres agree in their third coordinate: z of meshes.
+/// Lamps whose centres agree in their third coordinate form a group: z of meshes.
 pub const LUXFER_GROUP_THIRD: luxfer_group = 4;
-/// Those of a type: of about the same area; of lights without a surface points, spots, and luminaires by their distribution.
+/// Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
+/// luminaires of one distribution.
 pub const LUXFER_GROUP_TYPE: luxfer_group = 5;
 
 /// Settings of the calculation. Fill them with luxfer_lamps_params_init.
@@ -50,21 +51,26 @@ pub struct luxfer_lamps_params {
     pub struct_size: u32,
     /// LUXFER_GROUP_ value; default LUXFER_GROUP_EACH.
     pub group: luxfer_group,
-    /// Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01.
+    /// Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a new
+    /// row; default 0.01.
     pub row_tolerance: f32,
-    /// 1: each channel of a group is solved for itself, for goals of colour only; 0: its power alone; default 0.
+    /// 1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default: solve
+    /// for the power only.
     pub free_colour: u32,
-    /// Largest multiplier of a group, >= 0; default infinity.
+    /// Largest factor for the emission of a group, >= 0; default infinity.
     pub most: f64,
-    /// How much lamps that differ weigh against missing the goals, in [1e-9, 1e3]; default 1e-6.
+    /// Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
+    /// powers equal; default 1e-6.
     pub evenness: f64,
-    /// A goal is met when it is missed by no more than this share of itself, in [1e-6, 1], or its noise; default 0.01.
+    /// A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise; default
+    /// 0.01.
     pub tolerance: f64,
-    /// Most paths to trace for a goal, in [1024, 2^30]; default 2^20.
+    /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when a goal's response to all lamps together is known to this share, in [0, 1]; default 0.01; 0 = never.
+    /// Stop tracing a goal when the relative error of its response to all lamps together is below this value, in [0,
+    /// 1]; default 0.01; 0: no target.
     pub target_error: f32,
-    /// Stop after this many milliseconds; default 0: never.
+    /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -99,13 +105,13 @@ unsafe impl Versioned for luxfer_lamps_params {
 pub(super) struct Inputs {
     pub emission: Option<(Arc<SceneObject>, Option<u32>)>,
     pub goals: Vec<Aim>,
-    /// Multipliers that the drivers have; empty for all.
+    /// Dimming levels of the drivers; empty for drivers without steps.
     pub levels: Vec<f64>,
 }
 
 pub(super) struct Output {
     pub scene: Arc<Scene>,
-    /// None where lights without a surface are the lamps.
+    /// `None` if the punctual lights are the lamps.
     pub material: Option<usize>,
     pub lamps: Lamps,
     pub group_of: Vec<u32>,
@@ -138,9 +144,9 @@ pub unsafe extern "C" fn luxfer_lamps_create(
     })
 }
 
-/// Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply, or
-/// LUXFER_NONE: then the lamps are the scene's lights without a surface, by their index, as luxfer_scene_add_luminaire hangs
-/// them. Forgets the goals. Any thread.
+/// Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
+/// they have in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
+/// luxfer_scene_add_light and luxfer_scene_add_luminaire add them. Removes all goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_scene(
@@ -163,11 +169,12 @@ pub unsafe extern "C" fn luxfer_lamps_set_scene(
     })
 }
 
-/// Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
-/// error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
-/// light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
-/// range.
+/// Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
+/// with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
+/// Any thread.
+/// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. The job may end with
+/// LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
+/// emission has no lamp, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_start(
     lamps: *mut luxfer_lamps,
@@ -252,7 +259,7 @@ impl luxfer_lamps_params {
     fn solving(&self, groups: usize, levels: Vec<f64>) -> GroupParams {
         GroupParams {
             colour: if self.free_colour == 1 { Colour::Free } else { Colour::Kept },
-            most: vec![self.most; groups],
+            max_scale: vec![self.most; groups],
             levels,
             evenness: self.evenness,
             tolerance: self.tolerance,
@@ -266,7 +273,7 @@ pub unsafe extern "C" fn luxfer_lamps_retain(lamps: *mut luxfer_lamps) -> luxfer
     handle::retain(lamps)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_release(lamps: *mut luxfer_lamps) -> luxfer_status {
     handle::release(lamps)

@@ -1,7 +1,7 @@
 //! Goals of lamps
 //!
-//! What lamps are for: surfaces and calculation grids that should have a given light, just that or as a limit, and the steps that
-//! their drivers have.
+//! Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit, and
+//! the dimming levels of the lamps' drivers.
 
 use super::geometry::list;
 use super::guard::enter;
@@ -35,8 +35,8 @@ enum Where {
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 
-/// Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
-/// LUXFER_QUANTITY_ value; weight, >= 0, is what missing it weighs beside the other goals. Any thread.
+/// Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
+/// LUXFER_QUANTITY_ value; weight, >= 0, is relative to the other goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_add_mesh(
@@ -55,9 +55,9 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
     })
 }
 
-/// Adds a goal: the mean illuminance in lux that a calculation grid should have, of whatever colour; weight as above. grid may
-/// be NULL for its default. Any thread.
-/// LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+/// Adds a goal: the mean illuminance in lux that a calculation grid should have, for light of any colour; weight, >= 0,
+/// is relative to the other goals. grid may be NULL for its default. Any thread.
+/// LUXFER_INVALID_ARGUMENT if lux is negative or not finite, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_add_grid(
     lamps: *mut luxfer_lamps,
@@ -91,8 +91,9 @@ fn add(stage: &Stage<Inputs, Output>, aim: Aim) -> Result<()> {
     })
 }
 
-/// Makes a goal a limit, in each channel for itself: LUXFER_SENSE_ values; those of a goal in lux must be the same. Goals are
-/// counted from 0 as they were added, and ask for just their value until then. Any thread.
+/// Makes a goal a limit, separately in each channel: LUXFER_SENSE_ values. The three values of a goal in lux must be
+/// equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_SENSE_EXACTLY. Any
+/// thread.
 /// LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_sense(
@@ -116,10 +117,10 @@ pub unsafe extern "C" fn luxfer_lamps_set_sense(
     })
 }
 
-/// Sets the multipliers that the lamps' drivers can be dimmed to, each finite and >= 0, in any order; count is at most 4096, 0
-/// for drivers that have no steps. The groups then get the levels that together are best for the goals, and half-widths
-/// stay those of powers without steps. Any thread.
-/// LUXFER_INVALID_ARGUMENT if a level is not finite or negative, or there are too many.
+/// Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
+/// count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group one of the levels,
+/// so that together they are best for the goals; the half-widths remain those of powers without steps. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_levels(
     lamps: *mut luxfer_lamps,
@@ -143,7 +144,7 @@ pub unsafe extern "C" fn luxfer_lamps_set_levels(
     })
 }
 
-/// Forgets the goals. Any thread.
+/// Removes all goals. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_clear_goals(lamps: *mut luxfer_lamps) -> luxfer_status {
     enter(lamps, |stage| {

@@ -1,6 +1,6 @@
 //! Results of lamps
 //!
-//! The powers found, what each goal gets, and what each lamp means to it.
+//! The powers found, the light that each goal receives, and the contribution of each lamp to each goal.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -15,7 +15,7 @@ use crate::error::{Error, ErrorKind};
 use glam::DVec3;
 use std::ffi::c_char;
 
-/// The result on the whole. Set struct_size before the call.
+/// Summary of the result. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_report {
@@ -27,9 +27,9 @@ pub struct luxfer_lamps_report {
     pub groups: u32,
     /// Number of goals.
     pub goals: u32,
-    /// Paths traced for each goal.
+    /// Number of paths traced for each goal.
     pub paths: u32,
-    /// 1 if all goals are met; 0 if not: luxfer_lamps_get_reason tells why.
+    /// 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason.
     pub met: u32,
 }
 
@@ -48,11 +48,11 @@ unsafe impl Versioned for luxfer_lamps_report {
 pub struct luxfer_lamp {
     /// sizeof(luxfer_lamp), set by the caller.
     pub struct_size: u32,
-    /// The group it is in.
+    /// Index of its group.
     pub group: u32,
-    /// Its centre: texture coordinates and 0, or metres.
+    /// Centre: texture coordinates and 0, or, without a texture, the position in metres.
     pub centre: [f64; 3],
-    /// What to multiply its emission with, per channel, >= 0.
+    /// Factor for its emission, per channel, >= 0.
     pub scale: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of scale.
     pub half_width: [f64; 3],
@@ -67,7 +67,7 @@ unsafe impl Versioned for luxfer_lamp {
     }
 }
 
-/// What a goal gets. Set struct_size before the call.
+/// The light that a goal receives. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_goal {
@@ -75,13 +75,13 @@ pub struct luxfer_lamps_goal {
     pub struct_size: u32,
     /// LUXFER_REACH_ value of each channel.
     pub reach: [luxfer_reach; 3],
-    /// Mean radiance asked for, in cd/m²; illuminance / pi for a grid.
+    /// Mean radiance of the goal, in cd/m²; illuminance / pi for a grid.
     pub target: [f64; 3],
-    /// Mean radiance under the powers found.
+    /// Mean radiance with the powers found, in cd/m².
     pub achieved: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of achieved.
     pub half_width: [f64; 3],
-    /// Mean radiance under all other light.
+    /// Mean radiance from all other light, in cd/m².
     pub background: [f64; 3],
 }
 
@@ -95,7 +95,7 @@ unsafe impl Versioned for luxfer_lamps_goal {
     }
 }
 
-/// What one lamp means to one goal. Set struct_size before the call.
+/// The light that one goal receives from one lamp. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_response {
@@ -103,7 +103,7 @@ pub struct luxfer_lamps_response {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// Mean radiance of the goal under the lamp as it is, in cd/m² per channel.
+    /// Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel.
     pub mean: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of mean.
     pub half_width: [f64; 3],
@@ -118,7 +118,7 @@ unsafe impl Versioned for luxfer_lamps_response {
     }
 }
 
-/// Tells the result on the whole. Any thread.
+/// Gets the summary of the result. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_report(
@@ -140,7 +140,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_report(
     })
 }
 
-/// Tells the power of a lamp. Any thread.
+/// Gets the power of a lamp. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_lamp(
@@ -163,7 +163,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_lamp(
     })
 }
 
-/// Tells what a goal gets. Any thread.
+/// Gets the light that a goal receives. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_goal(
@@ -177,7 +177,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
         let i = index as usize;
         let outcome = o.solution.outcomes.get(i).ok_or_else(|| missing("goal", index, o.targets.len()))?;
         out.set(luxfer_lamps_goal {
-            reach: outcome.reach.map(reach_value),
+            reach: outcome.status.map(reach_value),
             target: o.targets[i].as_dvec3().to_array(),
             achieved: outcome.achieved.to_array(),
             half_width: outcome.half_width.to_array(),
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
     })
 }
 
-/// Tells what a lamp means to a goal, for hosts that mix the light themselves. Any thread.
+/// Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_response(
@@ -216,8 +216,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_response(
     })
 }
 
-/// Copies the reason why the goals are not all met, zero-terminated, into buffer of capacity bytes, cut if it is longer;
-/// empty if they are. *needed, unless NULL, receives the capacity for all of it. Any thread.
+/// Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes; the text
+/// is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text needs. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_reason(
@@ -232,7 +232,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_reason(
     })
 }
 
-/// Gets the emission's texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
+/// Gets the emission texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
 /// thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
 #[unsafe(no_mangle)]

@@ -1,11 +1,12 @@
-//! Versioned structs, told apart by the size the caller's compiler gave them.
+//! Versioned structs, distinguished by the size that the caller's compiler gave them.
 //!
-//! A struct starts with `uint32_t struct_size` and grows only at its end, never into padding. An older caller's struct is
-//! shorter: what it lacks keeps its default. A newer caller's is longer: it is taken if all we do not know is zero.
+//! A struct starts with `uint32_t struct_size` and grows only at its end, never into padding. The struct of an older
+//! caller is shorter: its missing fields keep their defaults. The struct of a newer caller is longer: it is accepted if
+//! all unknown fields are zero.
 
 use crate::error::{Error, Result};
 
-/// No struct of this library will ever be longer; a larger size is an uninitialised one.
+/// Largest size of any struct, now and later; a larger `struct_size` is not initialised.
 const LARGEST: usize = 4096;
 
 /// A versioned C struct.
@@ -71,7 +72,7 @@ pub(super) fn read_required<P: Versioned>(place: *const P) -> Result<P> {
     Ok(params)
 }
 
-/// A switch from outside.
+/// A boolean of the caller: 0 or 1.
 pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
     match value {
         0 | 1 => Ok(value == 1),
@@ -90,7 +91,7 @@ impl<P: Versioned> Report<P> {
         Ok(Self { place, size: size_at(place)? })
     }
 
-    /// Writes as much of the report as the caller knows; what we do not know becomes zero.
+    /// Writes the fields of the report that the caller's version has; fields unknown to this version become zero.
     pub(super) fn set(self, report: P) {
         write(self.place, report, self.size);
     }

@@ -1,6 +1,6 @@
 //! Pattern
 //!
-//! How the lights of a transfer lie on the surface: how large, how turned, from where on, and where not.
+//! Size, rotation and offset of the light pattern of a transfer on the surface, and the areas without lamps.
 
 use super::guard::guard;
 use super::params::{self, Versioned};
@@ -9,19 +9,20 @@ use crate::error::{Error, Result};
 use crate::transfer::{Pattern, Scale};
 use glam::DVec2;
 
-/// What sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
+/// The length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
 pub type luxfer_pattern_scale = i32;
-/// The distance of the photo's camera from the lit plane: plane_distance of luxfer_transfer_params.
+/// The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params.
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
-/// The length of a lamp: the longer side of the photo's, of which the median counts.
+/// The length of a lamp: the median of the longer sides of the photo's lamps.
 pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;
-/// The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to the nearest other.
+/// The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to its nearest
+/// neighbour.
 pub const LUXFER_PATTERN_SPACING: luxfer_pattern_scale = 2;
-/// The width of the surface: it becomes as many lamps wide as the photo's plane.
+/// The width of the surface: it shows as many lamps across as the plane in the photo.
 pub const LUXFER_PATTERN_ACROSS: luxfer_pattern_scale = 3;
 
-/// How the pattern lies on the surface, whose axes u and v and corner are those of luxfer_surface. Fill it with
-/// luxfer_pattern_params_init.
+/// Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of luxfer_surface.
+/// Fill it with luxfer_pattern_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_pattern_params {
@@ -29,19 +30,20 @@ pub struct luxfer_pattern_params {
     pub struct_size: u32,
     /// LUXFER_PATTERN_ value; default LUXFER_PATTERN_DISTANCE.
     pub scale: luxfer_pattern_scale,
-    /// What the lamp or the spacing measures, in metres, in [1e-6, 1e6]; default 1. The other scales do not read it.
+    /// Length of the lamp or the spacing, in metres, in [1e-6, 1e6]; default 1. Only LUXFER_PATTERN_LAMP and
+    /// LUXFER_PATTERN_SPACING use it.
     pub length: f64,
-    /// Metres per texel, in [0, 1e6]; 0, the default, is as fine as the unwarped photo, where max_texels of
-    /// luxfer_transfer_params allows it.
+    /// Size of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, as far as max_texels of
+    /// luxfer_transfer_params allows.
     pub texel_size: f64,
-    /// Turn of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
+    /// Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
     pub rotation: f64,
-    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice go anywhere,
-    /// and are not shifted.
+    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices only: lamps
+    /// without a lattice have no fixed places and are not shifted.
     pub offset: [f64; 2],
-    /// Distance in metres that lamps keep from the edge of the surface and from the zones of luxfer_transfer_set_zones, in
-    /// [-1, 1e6]; those that do not are left
-    /// out. Below 0 the edge of the surface cuts lamps; default -1.
+    /// Minimum distance in metres of lamps from the edge of the surface and from the zones of
+    /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
+    /// default -1, keeps the lamps at the edge of the surface, which cuts them.
     pub margin: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Photometry
 //!
-//! What lighting design calls a light: its correlated colour temperature, and the glare of a view. These calls return when
-//! they are done.
+//! Photometric quantities of lighting design: the correlated colour temperature of a light, and the glare of a view.
+//! These calls return when their work is done.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -11,7 +11,7 @@ use super::pointer::Out;
 use super::status::luxfer_status;
 use crate::error::{Error, check_range};
 use crate::photometry::glare;
-use crate::photometry::temperature::{self, LEAST_KELVIN, MOST_KELVIN, Temperature};
+use crate::photometry::temperature::{self, MAX_KELVIN, MIN_KELVIN, Temperature};
 use glam::DVec3;
 
 /// The glare of a view. Set struct_size before the call.
@@ -20,15 +20,16 @@ use glam::DVec3;
 pub struct luxfer_glare_report {
     /// sizeof(luxfer_glare_report), set by the caller.
     pub struct_size: u32,
-    /// Sources of glare.
+    /// Number of glare sources.
     pub sources: u32,
-    /// Unified glare rating (CIE 117): below 10 means none, 19 is what offices may have; -infinity without sources.
+    /// Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity without
+    /// sources.
     pub ugr: f64,
     /// Luminance of the background in cd/m².
     pub background: f64,
-    /// Luminance from which on a pixel counted as glare, in cd/m².
+    /// Luminance in cd/m² above which a pixel counted as a glare source.
     pub threshold: f64,
-    /// Solid angle of all sources in steradian.
+    /// Solid angle of all sources in steradians.
     pub solid_angle: f64,
 }
 
@@ -41,8 +42,9 @@ unsafe impl Versioned for luxfer_glare_report {
     }
 }
 
-/// Names a linear colour by the blackbody nearest to it: *kelvin receives the correlated colour temperature, in [1000, 20000],
-/// *duv the distance from it in the CIE 1960 diagram, positive where it is greenish. Any thread.
+/// Gets the correlated colour temperature of a linear colour: *kelvin receives the temperature of the nearest
+/// blackbody, in [1000, 20000], *duv the distance from the blackbody in the CIE 1960 diagram, positive for greenish
+/// colours. Any thread.
 /// LUXFER_DEGENERATE if the colour is black or not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_colour_temperature(
@@ -65,8 +67,9 @@ pub unsafe extern "C" fn luxfer_colour_temperature(
     })
 }
 
-/// Fills rgb, three numbers, with the linear colour of luminance 1 of a temperature in [1000, 20000] kelvin, at a distance
-/// duv, in [-0.05, 0.05], from the blackbody; a channel is negative where the colour is out of gamut. Any thread.
+/// Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
+/// 20000], duv, the distance from the blackbody, in [-0.05, 0.05]. A channel is negative if the colour is out of gamut.
+/// Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_colour_of_temperature(
@@ -77,16 +80,17 @@ pub unsafe extern "C" fn luxfer_colour_of_temperature(
 ) -> luxfer_status {
     enter(context, |_| {
         let out = Out::new(rgb.cast::<[f64; 3]>(), "rgb")?;
-        check_range("kelvin", kelvin, LEAST_KELVIN, MOST_KELVIN)?;
+        check_range("kelvin", kelvin, MIN_KELVIN, MAX_KELVIN)?;
         check_range("duv", duv, -0.05, 0.05)?;
         out.set(temperature::to_rgb(Temperature { kelvin, duv }).to_array());
         Ok(())
     })
 }
 
-/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB): what a level view sees whose vertical
-/// angle is fov_y, in radians. Sources are the connected patches from a luminance of threshold on; 0 = five times the mean.
-/// The wider the image, the truer its background. Any thread.
+/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with the
+/// vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
+/// threshold; 0: five times the mean luminance. A wider angle of view gives a better estimate of the background
+/// luminance. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_glare(

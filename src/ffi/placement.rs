@@ -1,7 +1,7 @@
 //! Placement
 //!
-//! Where a texture should lie on a surface, so that its target gets most light, least, or just as much as it should: found by
-//! gradient on the map of luxfer_importance, without tracing a path.
+//! Finds the position of a texture on a surface that gives a target the most light, the least light, or a given
+//! radiance, by gradient descent on the map of luxfer_importance, without tracing more paths.
 
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
@@ -14,17 +14,17 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{Aim, PlaceParams, Pose};
 use glam::{DVec2, Vec3};
 
-/// What a placement should do: a LUXFER_AIM_ value.
+/// Objective of a placement: a LUXFER_AIM_ value.
 pub type luxfer_aim = i32;
-/// As much luminance for the target as possible.
+/// The largest luminance of the target.
 pub const LUXFER_AIM_MOST: luxfer_aim = 0;
-/// As little.
+/// The smallest luminance of the target.
 pub const LUXFER_AIM_LEAST: luxfer_aim = 1;
-/// The mean radiance of the target that is given, all other light included.
+/// The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 
-/// What may be, and what is best. A texture is scaled and then turned about the centre of the surface's texture coordinates,
-/// and shifted. Fill it with luxfer_placement_params_init.
+/// Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated about their
+/// centre (0.5, 0.5), and then shifted. Fill it with luxfer_placement_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_placement_params {
@@ -32,23 +32,24 @@ pub struct luxfer_placement_params {
     pub struct_size: u32,
     /// LUXFER_AIM_ value; default LUXFER_AIM_MOST.
     pub aim: luxfer_aim,
-    /// The radiance to aim at, in cd/m² per channel, each finite and >= 0; default 0.
+    /// Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0.
     pub radiance: [f32; 3],
-    /// Places the search starts from, in [1, 4096]; default 64.
+    /// Number of placements at which the search starts, in [1, 4096]; default 64.
     pub starts: u32,
-    /// Smallest offset along u and v of the texture, which has period 1, in [-16, 16]; default -0.5.
+    /// Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5.
     pub least_offset: [f64; 2],
-    /// Largest; default 0.5. Where smallest and largest are the same, here and below, nothing changes.
+    /// Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value is
+    /// fixed.
     pub most_offset: [f64; 2],
-    /// How often the texture repeats along the surface's u and v, at least, in [1/64, 64]; default 1.
+    /// Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1.
     pub least_scale: [f64; 2],
-    /// At most; default 1.
+    /// Largest number of repetitions, in [1/64, 64]; default 1.
     pub most_scale: [f64; 2],
     /// Smallest rotation in radians, in [-2 pi, 2 pi]; default 0.
     pub least_rotation: f64,
-    /// Largest; default 0.
+    /// Largest rotation in radians, in [-2 pi, 2 pi]; default 0.
     pub most_rotation: f64,
-    /// Seed of the places; default 1.
+    /// Seed of the starting placements; default 1.
     pub seed: u64,
 }
 
@@ -63,12 +64,12 @@ unsafe impl Versioned for luxfer_placement_params {
             aim: LUXFER_AIM_MOST,
             radiance: [0.0; 3],
             starts: d.starts as u32,
-            least_offset: d.least.offset.to_array(),
-            most_offset: d.most.offset.to_array(),
-            least_scale: d.least.scale.to_array(),
-            most_scale: d.most.scale.to_array(),
-            least_rotation: d.least.rotation,
-            most_rotation: d.most.rotation,
+            least_offset: d.min.offset.to_array(),
+            most_offset: d.max.offset.to_array(),
+            least_scale: d.min.scale.to_array(),
+            most_scale: d.max.scale.to_array(),
+            least_rotation: d.min.rotation,
+            most_rotation: d.max.rotation,
             seed: d.seed,
         }
     }
@@ -83,20 +84,20 @@ impl luxfer_placement_params {
         };
         Ok(PlaceParams {
             aim: match self.aim {
-                LUXFER_AIM_MOST => Aim::Most,
-                LUXFER_AIM_LEAST => Aim::Least,
+                LUXFER_AIM_MOST => Aim::Brightest,
+                LUXFER_AIM_LEAST => Aim::Darkest,
                 LUXFER_AIM_RADIANCE => Aim::Radiance(Vec3::from_array(self.radiance)),
                 other => return Err(Error::argument(format!("aim is {other}; it must be a LUXFER_AIM_ value"))),
             },
-            least: pose(self.least_offset, self.least_scale, self.least_rotation),
-            most: pose(self.most_offset, self.most_scale, self.most_rotation),
+            min: pose(self.least_offset, self.least_scale, self.least_rotation),
+            max: pose(self.most_offset, self.most_scale, self.most_rotation),
             starts: self.starts as usize,
             seed: self.seed,
         })
     }
 }
 
-/// The best placement, and what it means to the target. Set struct_size before the call.
+/// The best placement, and the light that the target then receives. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_placement {
@@ -104,19 +105,20 @@ pub struct luxfer_placement {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// From the surface's texture coordinates to those of the texture, as luxfer_importance_respond takes it.
+    /// The map from the surface's texture coordinates to those of the texture, as for luxfer_importance_respond.
     pub placement: [f64; 9],
-    /// Its offset along u and v.
+    /// Offset along u and v.
     pub offset: [f64; 2],
-    /// Its scale along u and v.
+    /// Scale along u and v.
     pub scale: [f64; 2],
-    /// Its rotation in radians.
+    /// Rotation in radians.
     pub rotation: f64,
-    /// Mean radiance of the target under the texture alone, in cd/m² per channel.
+    /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// What cells of twice the side change, noise included; the cells themselves are off by about a third of it.
+    /// Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
+    /// cells is about a third of it.
     pub band_error: [f64; 3],
 }
 
@@ -139,7 +141,7 @@ unsafe impl Versioned for luxfer_placement {
     }
 }
 
-/// Fills *params with the defaults: any offset, at the scale and rotation there are; size is sizeof *params.
+/// Fills *params with the defaults: any offset, with fixed scale 1 and rotation 0; size is sizeof *params.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_placement_params_init(
@@ -149,8 +151,8 @@ pub unsafe extern "C" fn luxfer_placement_params_init(
     guard(|| params::init(params, size))
 }
 
-/// Starts a job that finds the placement of a texture (linear, in cd/m²; it repeats) that is best for the target. params may
-/// be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that finds the best placement of a texture (linear, in cd/m²; it repeats) for the target. params may be
+/// NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
 /// LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
@@ -173,7 +175,8 @@ pub unsafe extern "C" fn luxfer_importance_start_placement(
 }
 
 /// Gets the placement that was found. Any thread.
-/// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and again when another map is traced.
+/// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
+/// started.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_get_placement(
     importance: *mut luxfer_importance,

@@ -1,12 +1,13 @@
 //! Planning
 //!
-//! Settings for an error or a time, before anything is rendered: state either, and a plan tells with which settings
-//! relighting and rendering, or a stylisation, come to it, how long each should take, and what error should be left. What a
-//! path costs and how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which
-//! takes some tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
+//! Chooses settings for a given error or a given time before anything is rendered: of relighting and rendering, or of a
+//! stylisation. A plan also predicts the time and the error of each. The cost of a path and the noise depend on the
+//! scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a second, besides the
+//! preparation of the scene. It assumes that the load of the machine by other programs does not change.
 //!
-//! Errors are those of a picture: the root mean square over its pixels, relative to its mean, of noise and of what the
-//! solution of the emission makes too bright or too dark; that of a stylisation is told by luxfer_plan_start_stylize.
+//! The error of a picture is the root mean square error over its pixels, divided by its mean; it includes the noise and
+//! the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the error of
+//! a stylisation.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -31,15 +32,16 @@ pub struct luxfer_plan {
     _opaque: [u8; 0],
 }
 
-/// What a plan is made for: one of its fields must be set. Fill it with luxfer_plan_params_init.
+/// Goal of a plan: set exactly one of time_budget_ms and target_error. Fill it with luxfer_plan_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_plan_params {
     /// sizeof(luxfer_plan_params), set by luxfer_plan_params_init.
     pub struct_size: u32,
-    /// Milliseconds for all that is planned; default 0: the error counts.
+    /// Time for all planned work in milliseconds; default 0: the goal is target_error.
     pub time_budget_ms: u32,
-    /// Error of the picture, root mean square over its pixels relative to its mean, in [1e-5, 1]; default 0: the time counts.
+    /// Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the goal is
+    /// time_budget_ms.
     pub target_error: f32,
     /// Must be 0.
     pub reserved: u32,
@@ -73,25 +75,27 @@ impl luxfer_plan_params {
     }
 }
 
-/// What a plan expects. Set struct_size before the call.
+/// Times and errors that a plan predicts. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_plan_report {
     /// sizeof(luxfer_plan_report), set by the caller.
     pub struct_size: u32,
-    /// 1 if the plan relights, as that of a transfer; 0 if it is of a rendering or a stylisation.
+    /// 1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation.
     pub relights: u32,
-    /// Seconds for all that is planned.
+    /// Seconds for all planned work.
     pub seconds: f64,
     /// Error of the picture.
     pub error: f64,
-    /// Seconds for relighting, which makes the scene ready first; 0 in other plans than that of a transfer.
+    /// Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer.
     pub relight_seconds: f64,
-    /// The error that luxfer_relight_report should state, half the width of its interval; 0 in other plans.
+    /// Predicted field error of luxfer_relight_report, half the width of its interval; 0 unless the plan is of a
+    /// transfer.
     pub relight_error: f64,
-    /// Seconds for rendering; in a plan of a transfer it makes the scene ready first; 0 in a plan of a stylisation.
+    /// Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
+    /// stylisation.
     pub render_seconds: f64,
-    /// The error that luxfer_render_report should state; 0 in a plan of a stylisation.
+    /// Predicted field error of luxfer_render_report; 0 in a plan of a stylisation.
     pub render_error: f64,
 }
 
@@ -113,7 +117,7 @@ unsafe impl Versioned for luxfer_plan_report {
     }
 }
 
-/// What a plan has come to: settings, and what each stage should take and leave.
+/// The result of a plan: settings, and the predicted time and error of each stage.
 #[derive(Default)]
 pub(super) struct Made {
     whole: Expected,
@@ -136,7 +140,7 @@ impl From<plan::Lighting> for Made {
     }
 }
 
-/// Settings of a stylisation, and whether what an update needs is to be kept, which is the caller's matter.
+/// Settings of a stylisation, and the caller's choice to keep the data for updates.
 #[cfg(feature = "stylize")]
 pub(super) struct Stylisation {
     pub params: stylize::Params,
@@ -155,7 +159,7 @@ impl Made {
     }
 }
 
-/// What a plan has for a stage, which must be one that it is of.
+/// The part of a plan for a stage; an error if the plan does not cover the stage.
 fn planned<'a, T>(part: &'a Option<T>, does: &str) -> Result<&'a T> {
     part.as_ref().ok_or_else(|| Error::new(ErrorKind::NotFound, format!("the plan is of nothing that {does}")))
 }
@@ -184,10 +188,12 @@ pub unsafe extern "C" fn luxfer_plan_create(
     })
 }
 
-/// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture and
-/// all that is no matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
-/// LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such camera.
+/// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
+/// and the other settings that do not affect quality; NULL for the defaults. params gives the goal. The caller releases
+/// *job. Any thread.
+/// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+/// camera.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_render(
     plan: *mut luxfer_plan,
@@ -208,12 +214,13 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
     })
 }
 
-/// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has made.
-/// settings are those the transfer will be started with, of which luxfer_plan_get_relight_params and _get_render_params
-/// replace what is a matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
-/// LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+/// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
+/// made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
+/// its relight and render by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, which change the
+/// settings that affect quality. params gives the goal. The caller releases *job. Any thread.
+/// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the lamps comes back to their surface.
+/// LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_transfer(
     plan: *mut luxfer_plan,
@@ -231,7 +238,7 @@ pub unsafe extern "C" fn luxfer_plan_start_transfer(
     })
 }
 
-/// Tells what the plan expects. Any thread.
+/// Gets the predictions of the plan. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_report(
@@ -257,10 +264,11 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
     })
 }
 
-/// Gets the settings to render with: those given, with what the plan has chosen. With an error as goal rendering stops when it
-/// is reached; with a time the number of paths is chosen, and time_budget_ms is a quarter more than they should take, so
-/// that the picture is the same every time unless the machine is slower than it was. Set params->struct_size before. Any
-/// thread. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
+/// Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
+/// rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths and sets
+/// time_budget_ms to a quarter more than they should take, so that every run gives an equal picture unless the machine
+/// becomes slower. Set params->struct_size before the call. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(
     plan: *mut luxfer_plan,
@@ -274,8 +282,9 @@ pub unsafe extern "C" fn luxfer_plan_get_render_params(
     })
 }
 
-/// Gets the settings to relight with, likewise. Set params->struct_size before. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in other plans than that of a transfer.
+/// Gets the settings to relight with: the given settings with the choices of the plan. Set params->struct_size before
+/// the call. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_relight_params(
     plan: *mut luxfer_plan,
@@ -295,7 +304,7 @@ pub unsafe extern "C" fn luxfer_plan_retain(plan: *mut luxfer_plan) -> luxfer_st
     handle::retain(plan)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_release(plan: *mut luxfer_plan) -> luxfer_status {
     handle::release(plan)

@@ -1,7 +1,8 @@
 //! Planning of stylisations
 //!
-//! How careful a stylisation can be in a time, or has to be for an error. A plan tries settings from quick to careful on the very
-//! input at a part of its resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL, less of larger targets.
+//! Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
+//! actual input at reduced resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
+//! target, the smaller the part.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -13,14 +14,14 @@ use super::stylize::luxfer_stylize;
 use super::stylize_params::luxfer_stylize_params;
 use crate::plan;
 
-/// Starts a job that plans a stylisation, of all of the target, with the artwork, guides and masks that stylize has now.
-/// settings give all that is kept, the preset's resolution with it: only numbers of rounds and sweeps are chosen; NULL for the
-/// defaults. params says what for; the error is the root of luxfer_stylize_report.energy: how far matched patches differ,
-/// root mean square, in colours and guides in [0, 1]. A goal out of reach gives the settings nearest to it. The caller
-/// releases *job. Any thread.
+/// Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize. The
+/// plan chooses only the numbers of rounds and sweeps; all other values, also the resolution, come from settings, or
+/// the defaults if it is NULL. params gives the goal; the error is the square root of luxfer_stylize_report.energy: the
+/// root mean square difference of matched patches in colours and guides, whose values are in [0, 1]. If the goal cannot
+/// be reached, the plan gives the settings that come nearest. The caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
-/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end as that of
-/// luxfer_stylize_start.
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end with the statuses
+/// of luxfer_stylize_start's job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_stylize(
     plan: *mut luxfer_plan,
@@ -43,8 +44,9 @@ pub unsafe extern "C" fn luxfer_plan_start_stylize(
     })
 }
 
-/// Gets the settings to stylise with: those given, with what the plan has chosen. Set params->struct_size before. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of something else.
+/// Gets the settings to stylise with: the given settings with the choices of the plan. Set params->struct_size before
+/// the call. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_stylize_params(
     plan: *mut luxfer_plan,

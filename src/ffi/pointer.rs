@@ -1,9 +1,9 @@
-//! The caller's other pointers: places for results, strings and arrays. Nothing is assumed to be aligned.
+//! The caller's other pointers: results, strings and arrays, at any alignment.
 
 use crate::error::{Error, Result};
 use std::ffi::{CStr, c_char};
 
-/// A place for a result, known not to be null before any work is done, written once on success.
+/// A pointer for a result: checked not to be null before the work, written once on success.
 #[derive(Clone, Copy)]
 pub(super) struct Out<T>(*mut T);
 
@@ -22,7 +22,7 @@ impl<T> Out<T> {
     }
 }
 
-/// Writes a result the caller may not want.
+/// Writes a result unless the caller passed null.
 pub(super) fn set_optional<T>(place: *mut T, value: T) {
     if !place.is_null() {
         // SAFETY: not null, and the caller says it is writable for the length of the call.
@@ -42,13 +42,13 @@ pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
     })
 }
 
-/// Copies a text into the caller's `capacity` bytes with a zero at its end, cut if need be; tells the capacity for all of
-/// it, unless `needed` is null.
+/// Copies a text into the caller's buffer, zero-terminated and truncated to `capacity` bytes; writes the capacity that
+/// the whole text needs, unless `needed` is null.
 pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed: *mut usize) -> Result<()> {
     if buffer.is_null() && capacity > 0 {
         return Err(Error::argument(format!("buffer is NULL; it must have capacity = {capacity} bytes")));
     }
-    // Cut between characters, never inside one.
+    // Truncate between characters.
     let mut len = text.len().min(capacity.saturating_sub(1));
     while !text.is_char_boundary(len) {
         len -= 1;

@@ -1,6 +1,7 @@
 //! Scene queries
 //!
-//! What the library itself sees in a scene: the nearest hits of rays. These calls return when they are done.
+//! Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls return
+//! when their work is done.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -14,22 +15,22 @@ use crate::render::World;
 use crate::scene::accel::Ray;
 use glam::Vec3;
 
-/// No mesh, no texture.
+/// No index: no mesh, no triangle, no texture.
 pub const LUXFER_NONE: u32 = 0xFFFF_FFFF;
 
-/// A half-line. An element of arrays, so it will never change.
+/// A ray. An element of arrays, so this struct never changes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_ray {
-    /// Where it starts, in metres.
+    /// Start of the ray, in metres.
     pub origin: [f32; 3],
-    /// Where it goes; need not be of unit length, but not 0.
+    /// Direction; any length but 0.
     pub direction: [f32; 3],
     /// Hits lie at distances in (0, t_max), in units of direction; may be infinite.
     pub t_max: f32,
 }
 
-/// Where a ray meets a scene. An element of arrays, so it will never change.
+/// The nearest hit of a ray. An element of arrays, so this struct never changes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_hit {
@@ -45,13 +46,13 @@ pub struct luxfer_hit {
     pub v: f32,
 }
 
-/// Rays that are one piece of work.
+/// Rays per parallel task.
 const BLOCK: usize = 4096;
 
-/// Finds the nearest hits of count rays, all surfaces taken as opaque and two-sided; equal distances are decided by the
-/// lower mesh and triangle. Rays that are not finite or have no direction hit nothing. The first call after a change of the
-/// scene, and after it was loaded, makes it ready for tracing. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the message tells where.
+/// Finds the nearest hits of count rays; all surfaces count as opaque and two-sided. Of hits at equal distance, the hit
+/// with the lower index of mesh, then of triangle, is returned. Rays that are not finite or whose direction is 0 hit
+/// nothing. The first call after a scene is loaded or changed prepares it for tracing, which takes longer. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the place.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_intersect(
     scene: *mut luxfer_scene,
@@ -88,7 +89,7 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
         *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
     }
     let [ox, oy, oz, dx, dy, dz, t_max] = fields;
-    // Directions of any length: distances are counted in the power of two below theirs.
+    // Scale the direction by a power of two near its length, so that any length works.
     let direction = Vec3::new(dx, dy, dz);
     let unit = f64::from_bits(f64::from(direction.abs().max_element()).to_bits() & f64::INFINITY.to_bits());
     let ray = world.ray(Vec3::new(ox, oy, oz), (direction.as_dvec3() / unit).as_vec3());

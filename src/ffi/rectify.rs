@@ -1,8 +1,8 @@
 //! Rectification
 //!
-//! From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
-//! seen straight on. Image points are in pixels, x right, y down, the top-left pixel's centre at (0.5, 0.5). Room axes 0 and
-//! 2 are horizontal, axis 1 is vertical; camera space is x right, y down, z forward.
+//! Finds vanishing points and the camera from the straight lines of a photo and, if a mask marks a plane, unwarps that
+//! plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel is
+//! (0.5, 0.5). Room axes 0 and 2 are horizontal, axis 1 is vertical; camera space is x to the right, y down, z forward.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -26,39 +26,39 @@ pub struct luxfer_rectify {
     _opaque: [u8; 0],
 }
 
-/// How lines are found: a LUXFER_LINES_ value.
+/// Detector of lines: a LUXFER_LINES_ value.
 pub type luxfer_lines = i32;
-/// Regions of like gradient direction, with sub-pixel end points.
+/// Segments from regions of similar gradient direction, with sub-pixel end points.
 pub const LUXFER_LINES_REGIONS: luxfer_lines = 0;
-/// The paper's: gradient-restricted Hough transform of Canny edges.
+/// The paper's method: gradient-restricted Hough transform of Canny edges.
 pub const LUXFER_LINES_HOUGH: luxfer_lines = 1;
 
-/// How vanishing points are found: a LUXFER_SEARCH_ value.
+/// Search for vanishing points: a LUXFER_SEARCH_ value.
 pub type luxfer_search = i32;
-/// Three orthogonal directions and the focal length at once, then each refined freely.
+/// Searches three orthogonal directions and the focal length together, then refines each direction freely.
 pub const LUXFER_SEARCH_MANHATTAN: luxfer_search = 0;
-/// The paper's: one group of lines after the other.
+/// The paper's method: one group of lines after the other.
 pub const LUXFER_SEARCH_SUCCESSIVE: luxfer_search = 1;
 
-/// How far a vanishing point is from a line, in LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
+/// Distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
 pub type luxfer_metric = i32;
-/// The paper's measure on the segment that was detected, finite for vanishing points at infinity.
+/// The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
-/// As printed in the paper (Eq. 2), on the whole visible line.
+/// The measure as printed in the paper (Eq. 2), evaluated on the whole visible line.
 pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
 
 /// Where a focal length came from: a LUXFER_FOCAL_ value.
 pub type luxfer_focal_source = i32;
-/// The caller gave it.
+/// Set by the caller.
 pub const LUXFER_FOCAL_GIVEN: luxfer_focal_source = 0;
-/// From vanishing points of orthogonal directions.
+/// Estimated from vanishing points of orthogonal directions.
 pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
-/// A guess, 0.85 of the image's width.
+/// Assumed: 0.85 times the width of the photo.
 pub const LUXFER_FOCAL_ASSUMED: luxfer_focal_source = 2;
 
 /// An image of a rectification: a LUXFER_RECTIFY_ value.
 pub type luxfer_rectify_image = i32;
-/// The plane seen straight on, linear RGB.
+/// The plane in frontal view, linear RGB.
 pub const LUXFER_RECTIFY_UNWARPED: luxfer_rectify_image = 0;
 /// 1 where the photo shows the plane, else 0; 1 channel.
 pub const LUXFER_RECTIFY_VALID: luxfer_rectify_image = 1;
@@ -75,20 +75,22 @@ pub struct luxfer_rectify_params {
     pub search: luxfer_search,
     /// LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT.
     pub metric: luxfer_metric,
-    /// Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2]; default
-    /// 0.0436, which is 2.5 degrees.
+    /// Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2], for
+    /// LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
     pub hough_band: f64,
-    /// Focal length in pixels, > 0, or 0, the default: unknown.
+    /// Focal length in pixels, > 0; 0, the default: unknown.
     pub focal: f64,
     /// Principal point in pixels; NaN, the default: the image's centre.
     pub principal: [f64; 2],
-    /// The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it.
+    /// The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the plane.
     pub plane_axes: [i32; 2],
-    /// Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density decides below.
+    /// Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
+    /// resolution of the photo does not support this size.
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Largest magnification of the photo, > 0; default 16. What is further away is cut off.
+    /// Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are cut
+    /// off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -158,7 +160,7 @@ impl luxfer_rectify_params {
     }
 }
 
-/// What the lines of a photo say about its camera, and how the plane was unwarped. Set struct_size before the call.
+/// The camera found from the lines of a photo, and the unwarping of the plane. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_rectify_report {
@@ -166,11 +168,12 @@ pub struct luxfer_rectify_report {
     pub struct_size: u32,
     /// Number of line segments found.
     pub segments: u32,
-    /// Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at infinity.
+    /// Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0 at
+    /// infinity.
     pub vanishing_points: [[f64; 3]; 3],
-    /// Standard deviation of their directions in camera space, in radians.
+    /// Standard deviations of their directions in camera space, in radians.
     pub vanishing_errors: [f64; 3],
-    /// Number of segments that agree with each; 0 = derived from the other two.
+    /// Number of segments that agree with each vanishing point; 0: derived from the other two.
     pub vanishing_support: [u32; 3],
     /// LUXFER_FOCAL_ value.
     pub focal_source: luxfer_focal_source,
@@ -180,31 +183,31 @@ pub struct luxfer_rectify_report {
     pub principal: [f64; 2],
     /// Room axes as unit vectors in camera space.
     pub axes: [[f64; 3]; 3],
-    /// 1 if the plane has been unwarped, else 0, and what follows is 0.
+    /// 1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0.
     pub is_unwarped: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// The map from unwarped pixels to photo pixels, row by row.
+    /// Homography from unwarped pixels to photo pixels, row by row.
     pub to_photo: [f64; 9],
-    /// Corners of the unwarped rectangle in the photo, x and y.
+    /// Corners of the unwarped rectangle in the photo, x and y in pixels.
     pub corners: [[f64; 2]; 4],
     /// Expected error of each corner, in unwarped pixels.
     pub corner_errors: [f64; 4],
-    /// Size of an unwarped pixel as a share of the camera's distance from the plane.
+    /// Size of an unwarped pixel, divided by the camera's distance from the plane.
     pub pixel_size: f64,
-    /// Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed.
+    /// Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed.
     pub aspect_confidence: f64,
-    /// How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance from its centre:
-    /// below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent, and not undone. NaN where the
-    /// photo has too few lines to tell.
+    /// Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
+    /// below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of straight edges,
+    /// and not corrected. NaN if the photo has too few lines.
     pub distortion: f64,
-    /// Its standard deviation; NaN where it is.
+    /// Standard deviation of distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
-    /// For each axis how far the angle between the two others is from a right one, in radians, by the lines of these two alone:
-    /// walls that meet at other angles, pixels that are not square and a principal point elsewhere show here. The axes are made
-    /// orthogonal all the same. NaN where an axis has no lines.
+    /// For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
+    /// estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point show
+    /// here; axes is orthogonal in any case. NaN if one of the two axes has no lines.
     pub squareness: [f64; 3],
-    /// Standard deviation of each; NaN where it is.
+    /// Standard deviations of squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
 }
 
@@ -335,8 +338,8 @@ pub unsafe extern "C" fn luxfer_rectify_set_photo(
     })
 }
 
-/// Sets the mask of the plane to unwarp, 1 on it and 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then only
-/// lines and vanishing points are found. Any thread.
+/// Sets the mask of the plane to unwarp: 1 on it, 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then the
+/// job finds only lines and vanishing points. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_set_mask(
     rectify: *mut luxfer_rectify,
@@ -351,10 +354,12 @@ pub unsafe extern "C" fn luxfer_rectify_set_mask(
     })
 }
 
-/// Starts a job that finds lines, vanishing points and the camera, unless the same photo's are known from before, and
-/// unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if there
-/// are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+/// Starts a job that finds lines, vanishing points and the camera, unless they are known for this photo from an earlier
+/// job, and unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any
+/// thread.
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
+/// there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_start(
     rectify: *mut luxfer_rectify,
@@ -407,9 +412,9 @@ pub unsafe extern "C" fn luxfer_rectify_get_image(
     })
 }
 
-/// Unwarps another image of the photo's size, such as the confidence of the lights, as the plane was; outside the photo it
-/// becomes 0. Returns when it is done, which takes some milliseconds for each megapixel. The caller releases *warped. Any
-/// thread.
+/// Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
+/// pixels outside the photo become 0. Returns when its work is done, after a few milliseconds per megapixel. The caller
+/// releases *warped. Any thread.
 /// LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_warp(
@@ -432,7 +437,7 @@ pub unsafe extern "C" fn luxfer_rectify_warp(
     })
 }
 
-/// Tells what was found and how sure it is. Any thread.
+/// Gets the results and their errors. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_report(
@@ -453,7 +458,7 @@ pub unsafe extern "C" fn luxfer_rectify_retain(rectify: *mut luxfer_rectify) -> 
     handle::retain(rectify)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_release(rectify: *mut luxfer_rectify) -> luxfer_status {
     handle::release(rectify)

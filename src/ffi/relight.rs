@@ -1,7 +1,7 @@
 //! Relighting
 //!
-//! Solves for the colour and intensity of an emission, so that a surface of the scene gets the colour it has in the photo:
-//! what to multiply the emission with, per channel, with a confidence interval.
+//! Solves for the colour and intensity of an emission so that a surface of the scene has the same colour as in the
+//! photo. The solution is a factor for the emission, per channel, with a confidence interval.
 
 use super::context::{Context, luxfer_context};
 use super::guard::{enter, guard};
@@ -14,7 +14,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::try_collect;
-use crate::relight::{self, Fit, Quantity, Reach, Sense, Solution};
+use crate::relight::{self, Fit, Quantity, Sense, Solution, TargetStatus};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -24,40 +24,40 @@ pub struct luxfer_relight {
     _opaque: [u8; 0],
 }
 
-/// What should match the photo: a LUXFER_QUANTITY_ value.
+/// Quantity that should match the photo: a LUXFER_QUANTITY_ value.
 pub type luxfer_quantity = i32;
-/// The light the target surface sends back, its albedo included: what a photo shows of it.
+/// Light that the target surface reflects, its albedo included: the radiance that a photo shows.
 pub const LUXFER_QUANTITY_OUTGOING: luxfer_quantity = 0;
-/// The light that arrives at it, as if it were white.
+/// Light that arrives at the target surface, as if the surface were white.
 pub const LUXFER_QUANTITY_INCIDENT: luxfer_quantity = 1;
 
-/// What of the target counts: a LUXFER_FIT_ value.
+/// How the target surface is compared: a LUXFER_FIT_ value.
 pub type luxfer_fit = i32;
-/// Its mean.
+/// The mean over the target surface.
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
-/// Every point of it, by least squares: what gradient descent on texels comes to. Bright points count more, so the answer is
-/// dimmer than that of the mean, by 1 / (1 + CV²) without other light, where CV is the spread of the response over the target
-/// relative to its mean.
+/// Every point of the target surface, by least squares, as gradient descent on texels does. Bright points count more,
+/// so the emission is dimmer than with LUXFER_FIT_MEAN: by the factor 1 / (1 + CV²) without other light, where CV is
+/// the coefficient of variation of the response over the target.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
-/// On which side of its value light should be: a LUXFER_SENSE_ value.
+/// Whether light should equal its target value, or stay above or below it: a LUXFER_SENSE_ value.
 pub type luxfer_sense = i32;
-/// At it.
+/// The light should equal the value.
 pub const LUXFER_SENSE_EXACTLY: luxfer_sense = 0;
-/// At it or above: what a standard asks of a desk, or what a clipped channel of a photo says.
+/// The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a photo shows.
 pub const LUXFER_SENSE_AT_LEAST: luxfer_sense = 1;
-/// At it or below: a limit against glare.
+/// The light should be at most the value, as a limit against glare.
 pub const LUXFER_SENSE_AT_MOST: luxfer_sense = 2;
 
-/// How far the answer goes to meet the target in one colour channel: a LUXFER_REACH_ value.
+/// Whether the target is met in a colour channel, and if not, the reason: a LUXFER_REACH_ value.
 pub type luxfer_reach = i32;
 /// The target is met.
 pub const LUXFER_REACH_MET: luxfer_reach = 0;
-/// Other lights alone exceed the target: the emission is off in this channel.
+/// The other lights alone exceed the target: the emission is 0 in this channel.
 pub const LUXFER_REACH_TOO_BRIGHT: luxfer_reach = 1;
-/// No light of this channel reaches the target: the emission keeps the mean scale of the other channels.
+/// No light of this channel reaches the target: the emission uses the mean scale of the other channels.
 pub const LUXFER_REACH_DARK: luxfer_reach = 2;
-/// All lamps at their largest power do not suffice, or one goal asks for what another forbids.
+/// All lamps at their largest power are too weak, or two goals contradict each other.
 pub const LUXFER_REACH_TOO_DIM: luxfer_reach = 3;
 
 /// Settings of a relighting. Fill them with luxfer_relight_params_init.
@@ -68,12 +68,12 @@ pub struct luxfer_relight_params {
     pub struct_size: u32,
     /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
     pub quantity: luxfer_quantity,
-    /// Most paths to trace, in [1024, 2^30]; default 2^20.
+    /// Maximum number of paths, in [1024, 2^30]; default 2^20.
     pub paths: u32,
-    /// Stop when the half-width of the widest 95 % interval is below this share of its answer, in [0, 1]; default 0.01; 0 =
-    /// never.
+    /// Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in [0, 1];
+    /// default 0.01; 0: no target.
     pub target_error: f32,
-    /// Stop after this many milliseconds; default 0: never.
+    /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
     /// LUXFER_FIT_ value; default LUXFER_FIT_MEAN.
     pub fit: luxfer_fit,
@@ -126,30 +126,30 @@ impl luxfer_relight_params {
     }
 }
 
-/// The solution and how sure it is. Set struct_size before the call.
+/// The solution and its confidence. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_relight_report {
     /// sizeof(luxfer_relight_report), set by the caller.
     pub struct_size: u32,
-    /// Paths traced.
+    /// Number of traced paths.
     pub paths: u32,
-    /// What to multiply the emission with, per channel, >= 0.
+    /// Factor for the emission, per channel, >= 0.
     pub scale: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of scale.
     pub half_width: [f64; 3],
-    /// Mean radiance of the target under the emission at scale 1, in cd/m².
+    /// Mean radiance of the target from the emission at scale 1, in cd/m².
     pub response: [f64; 3],
-    /// Mean radiance of the target under all other light, in cd/m².
+    /// Mean radiance of the target from all other light, in cd/m².
     pub background: [f64; 3],
     /// LUXFER_REACH_ value of each channel.
     pub reach: [luxfer_reach; 3],
     /// 0.
     pub reserved: u32,
-    /// The widest relative half-width among the channels that met their target.
+    /// The largest relative half-width among the channels that meet their target.
     pub error: f64,
-    /// How far the target's colour may be off: 95 % of errors are below this CIEDE2000 difference, seen at the exposure
-    /// that shows the target as a middle grey.
+    /// Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this value, at
+    /// the exposure that shows the target as middle grey.
     pub delta_e: f64,
 }
 
@@ -190,12 +190,12 @@ pub(super) fn sense(value: luxfer_sense) -> Result<Sense> {
     }
 }
 
-pub(super) fn reach_value(reach: Reach) -> luxfer_reach {
-    match reach {
-        Reach::Met => LUXFER_REACH_MET,
-        Reach::TooBright => LUXFER_REACH_TOO_BRIGHT,
-        Reach::Dark => LUXFER_REACH_DARK,
-        Reach::TooDim => LUXFER_REACH_TOO_DIM,
+pub(super) fn reach_value(status: TargetStatus) -> luxfer_reach {
+    match status {
+        TargetStatus::Met => LUXFER_REACH_MET,
+        TargetStatus::TooBright => LUXFER_REACH_TOO_BRIGHT,
+        TargetStatus::Dark => LUXFER_REACH_DARK,
+        TargetStatus::TooDim => LUXFER_REACH_TOO_DIM,
     }
 }
 
@@ -207,7 +207,7 @@ impl luxfer_relight_report {
             half_width: solution.half_width.to_array(),
             response: solution.response.to_array(),
             background: solution.background.to_array(),
-            reach: solution.reach.map(reach_value),
+            reach: solution.status.map(reach_value),
             error: solution.error(),
             delta_e: solution.delta_e,
             ..Self::defaults()
@@ -254,8 +254,9 @@ pub unsafe extern "C" fn luxfer_relight_create(
     })
 }
 
-/// Sets the scene, the emitting material to solve for, and the mesh whose mean colour is to match: both as
-/// luxfer_scene_place_emission has told them. The emission has the strength that the solution will multiply. Any thread.
+/// Sets the scene, the emitting material to solve for, and the mesh whose mean colour should match;
+/// luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has in
+/// the scene. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(
@@ -273,8 +274,8 @@ pub unsafe extern "C" fn luxfer_relight_set_scene(
     })
 }
 
-/// Sets the mean radiance the mesh should have, in cd/m² per channel, each finite and >= 0; for LUXFER_QUANTITY_INCIDENT
-/// that of a white surface in the same light, illuminance / pi. Any thread.
+/// Sets the mean radiance that the mesh should have, in cd/m² per channel, each finite and >= 0; for
+/// LUXFER_QUANTITY_INCIDENT the radiance of a white surface in the same light, illuminance / pi. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_target(
     relight: *mut luxfer_relight,
@@ -291,9 +292,10 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
     })
 }
 
-/// Makes the target a limit, in each channel for itself: LUXFER_SENSE_ values. What a photo clips is "at least". A limited
-/// channel keeps the mean scale of those that are to be at their target, as far as that is on its side, and goes to its
-/// limit if not. Any thread. LUXFER_INVALID_ARGUMENT if a value is none of them.
+/// Makes the target a limit, separately in each channel: LUXFER_SENSE_ values. A channel that the photo clips should be
+/// LUXFER_SENSE_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
+/// respects the limit, else the scale that reaches the limit. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_SENSE_ value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_sense(
     relight: *mut luxfer_relight,
@@ -331,8 +333,8 @@ impl Emitter {
 
 /// Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or
-/// a setting is out of range.
+/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
+/// valid or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,
@@ -359,7 +361,7 @@ pub unsafe extern "C" fn luxfer_relight_start(
     })
 }
 
-/// Tells the solution and how sure it is. Any thread.
+/// Gets the solution and its confidence. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_get_report(
@@ -379,7 +381,7 @@ pub unsafe extern "C" fn luxfer_relight_retain(relight: *mut luxfer_relight) -> 
     handle::retain(relight)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_release(relight: *mut luxfer_relight) -> luxfer_status {
     handle::release(relight)

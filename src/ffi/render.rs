@@ -1,7 +1,7 @@
 //! Rendering
 //!
-//! A path tracer of a scene's light, in cd/m². It gets better pass by pass: while its job runs, and after a cancel, the
-//! image so far can be read with its own error estimate.
+//! A path tracer that renders a scene in cd/m². The image improves pass by pass: while the job runs, and after a
+//! cancel, the current image can be read with an estimate of its error.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -30,16 +30,17 @@ pub struct luxfer_render {
 pub type luxfer_render_image = i32;
 /// Mean radiance of each pixel, linear RGB in cd/m².
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
-/// Variance of that mean; 3 channels. Pixels in blocks of eight share what their paths find, so that the error of a mean over
-/// pixels is up to the root of eight times what their variances add up to.
+/// Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their errors are
+/// correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
 /// Number of paths of each pixel; 1 channel.
 pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
-/// Half the width of the interval around each pixel of the beauty that holds the true radiance with a probability of 95 %,
-/// in cd/m²; 3 channels; infinite where a pixel has less than two paths.
+/// Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite where a
+/// pixel has fewer than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
-/// The beauty with its noise filtered out, guided by surfaces: what it does not see, such as soft shadows, it blurs. How
-/// far, the report tells as preview_bias. Only if luxfer_render_params.preview is not 0.
+/// The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces do not
+/// show, such as soft shadows; preview_bias of the report estimates the error. Only if luxfer_render_params.preview is
+/// not 0.
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
@@ -52,28 +53,31 @@ pub struct luxfer_render_params {
     pub width: u32,
     /// Height of the image in pixels, in [1, 65536]; default 720.
     pub height: u32,
-    /// Paths per pixel, in [1, 1048576]; default 64. With a target this is the most on the average over the image.
+    /// Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the image.
     pub samples: u32,
-    /// Stop when the error of the report falls to this, >= 0, and give paths to where they lower it most; default 0: never.
+    /// Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they reduce the
+    /// error most. Default 0: no target.
     pub target_error: f32,
-    /// Stop after this many milliseconds; default 0: never.
+    /// Stop after this number of milliseconds; default 0: no limit.
     pub time_budget_ms: u32,
     /// Seed of the paths; default 1.
     pub seed: u64,
-    /// Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width of the 95 %
-    /// interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean, whichever is more.
-    /// 0.1 means within 10 % of its value, 19 times out of 20. A part gets at most 64 times samples, though it may miss the
-    /// target. Default 0: never.
+    /// Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is the root
+    /// mean square over its pixels of half the width of the 95 % confidence interval of the luminance, divided by that
+    /// luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of the value, 19 times
+    /// out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target. Default
+    /// 0: no target.
     pub pixel_error: f32,
-    /// End every path where what is left is at most this share of all light that surfaces scatter, in [0, 1): the image is
-    /// too dark by up to that share. After how many bounces, luxfer_scene_requirements tells. Default 0: never; paths end by
-    /// chance alone, and the image is right on the average.
+    /// Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light that
+    /// surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number of
+    /// bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased.
     pub bounce_error: f32,
-    /// Strength of the filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no preview, as
-    /// final images are made. The other images are the same with and without it.
+    /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default
+    /// 0: no preview, as for final images. It does not change the other images.
     pub preview: f32,
-    /// Stop when the relative_error of the report falls to this, >= 0, and give paths to where they lower it most: as noise is
-    /// seen, in the shade as in the light. Default 0: never. With several targets all are reached.
+    /// Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where they
+    /// reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no target. With
+    /// several targets, rendering stops when all are reached.
     pub relative_error: f32,
 }
 
@@ -120,25 +124,25 @@ impl luxfer_render_params {
     }
 }
 
-/// How good a rendering is. Set struct_size before the call.
+/// Quality of a rendering. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_render_report {
     /// sizeof(luxfer_render_report), set by the caller.
     pub struct_size: u32,
-    /// Paths per pixel so far, on the average.
+    /// Mean number of paths per pixel so far.
     pub samples: u32,
-    /// Root mean square over the pixels of the standard error, relative to the image's mean; infinite while a pixel has less
-    /// than two paths.
+    /// Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a pixel has
+    /// fewer than two paths.
     pub error: f64,
-    /// Paths that were left out because their radiance was no finite number.
+    /// Number of paths that were discarded because their radiance was not finite.
     pub discarded: u64,
-    /// How far the mean of such previews is from the truth: root mean square over squares of 8 x 8 pixels, relative to the
-    /// image's mean, estimated. 0 without a preview.
+    /// Estimated bias of the preview: the difference between its expected value and the true image, as root mean square
+    /// over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview.
     pub preview_bias: f64,
-    /// Root mean square over the pixels of the standard error, relative to the pixel itself (the mean of its channels, but at
-    /// least a hundredth of the image's mean); infinite while a pixel has less than two paths. Of few paths it states rather
-    /// too much, of 8 about a quarter.
+    /// Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its channels,
+    /// but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths. With few paths
+    /// it overestimates: with 8 by about a quarter.
     pub relative_error: f64,
 }
 
@@ -161,7 +165,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// What is to be rendered: the scene, as it is now, and the camera.
+    /// The current scene and the camera.
     pub(super) fn view(&self) -> Result<(Arc<SceneObject>, Arc<Scene>, Camera)> {
         let object = need(&self.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
@@ -183,7 +187,7 @@ impl Inputs {
     }
 }
 
-/// A rendering as it was asked for when its job started, whatever is changed while that runs.
+/// The inputs of a rendering at the start of its job; later changes do not affect them.
 pub(super) struct Shot {
     object: Arc<SceneObject>,
     scene: Arc<Scene>,
@@ -234,7 +238,7 @@ pub unsafe extern "C" fn luxfer_render_create(
     })
 }
 
-/// Sets the scene; each start renders it as it is then. Any thread.
+/// Sets the scene; each job renders the scene as it is when the job starts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_scene(
     render: *mut luxfer_render,
@@ -260,7 +264,8 @@ pub unsafe extern "C" fn luxfer_render_set_camera_index(render: *mut luxfer_rend
     })
 }
 
-/// Renders from a camera of its own. camera may be NULL for the defaults of luxfer_camera_params. Any thread.
+/// Renders from the given camera instead of one of the scene. camera may be NULL for the defaults of
+/// luxfer_camera_params. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_camera(
     render: *mut luxfer_render,
@@ -289,7 +294,7 @@ pub unsafe extern "C" fn luxfer_render_start(
         stage.start(job, move |_, stage, job| {
             let world = shot.world(job.part(0.0, 0.05))?;
             render::run(&world, &shot.camera, &shot.params, job.part(0.05, 1.0), &mut |film| {
-                // What is on the way can be done without.
+                // If memory is short, skip publishing this intermediate state.
                 if let Ok(copy) = film.try_clone() {
                     stage.publish(copy);
                 }
@@ -307,9 +312,10 @@ pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
     Ok(|film| film.preview.as_ref().map_or(&film.beauty, |preview| &preview.image))
 }
 
-/// Gets an image of the rendering, as far as it is; which is a LUXFER_RENDER_ value. The caller releases *image. Any
-/// thread.
-/// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview that was not asked for.
+/// Gets an image of the rendering in its current state; which is a LUXFER_RENDER_ value. The caller releases *image.
+/// Any thread.
+/// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview if luxfer_render_params.preview was
+/// 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_image(
     render: *mut luxfer_render,
@@ -337,7 +343,7 @@ pub unsafe extern "C" fn luxfer_render_get_image(
     })
 }
 
-/// Tells how good the rendering is so far. Any thread.
+/// Gets the current quality of the rendering. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_report(
@@ -365,7 +371,7 @@ pub unsafe extern "C" fn luxfer_render_retain(render: *mut luxfer_render) -> lux
     handle::retain(render)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_release(render: *mut luxfer_render) -> luxfer_status {
     handle::release(render)

@@ -1,18 +1,18 @@
 //! Outputs of a rendering
 //!
-//! Images beside the main one, made of the same paths: light that came by certain ways, chosen by light path expressions,
-//! and what the camera sees of surfaces. They are asked for before luxfer_render_start, and read as layers, while the job
-//! runs as well as after it: first those of the expressions in the order they were added, then those of surfaces in the
-//! order of their flags. The main image is the same bits with and without them.
+//! Additional images from the same paths as the main image: light selected by light path expressions, and properties of
+//! the visible surfaces (AOVs). Request them before luxfer_render_start, and read them as layers while the job runs or
+//! afterwards: first the layers of the expressions in the order in which they were added, then the AOVs in the order of
+//! their flags. The main image is equal to the bit with and without them.
 //!
-//! An expression is a regular expression over the events of a path, light first with L and E at its ends, as in
-//! "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (S is all that is not diffuse), or camera first with C, as in Open Shading
-//! Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Types are R T V, modes D G S s (a clear pane is both S and s), lights L O B;
-//! . [..] [^..] * + ? {n,m} | ( ) are what they are in regular expressions. Labels in quotes are names of meshes or of
-//! their materials; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
-//! light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's built-in names are
-//! known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or with _direct or
-//! _indirect.
+//! An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye (E),
+//! as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at the
+//! camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Event types are R T V, scattering modes D G
+//! S s (a clear pane is both S and s), lights L O B; . [..] [^..] * + ? {n,m} | ( ) have their usual meaning in regular
+//! expressions. A label in quotes is the name of a mesh or of its material; Name#0, Name#1, ... are the patches of its
+//! emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... are the scene's punctual lights in
+//! their order, environment is the scene's environment. Arnold's built-in names work too: direct, indirect, emission,
+//! background, and diffuse, specular, transmission, each alone or with _direct or _indirect.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -27,41 +27,44 @@ use crate::render::{Aov, Film, Layer};
 use std::ffi::c_char;
 use std::path::Path;
 
-/// Distance along the viewing direction, in metres; infinite where nothing is. Layer Depth, channel Z.
+/// Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel Z.
 pub const LUXFER_AOV_DEPTH: u32 = 1;
-/// Distance along the ray, in metres; infinite where nothing is. Layer Distance, channel Z.
+/// Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z.
 pub const LUXFER_AOV_DISTANCE: u32 = 2;
-/// Place in the world, in metres. Layer Position, channels X Y Z.
+/// Position in world space, in metres. Layer Position, channels X Y Z.
 pub const LUXFER_AOV_POSITION: u32 = 4;
-/// Shading normal in the world, towards the viewer; 0 where nothing is. Layer Normal, channels X Y Z.
+/// Shading normal in world space, towards the camera; 0 where there is no surface. Layer Normal, channels X Y Z.
 pub const LUXFER_AOV_NORMAL: u32 = 8;
-/// Normal of the triangle itself, likewise. Layer GeometricNormal, channels X Y Z.
+/// Normal of the triangle in world space, towards the camera; 0 where there is no surface. Layer GeometricNormal,
+/// channels X Y Z.
 pub const LUXFER_AOV_GEOMETRIC_NORMAL: u32 = 16;
-/// Colour at normal incidence. Layer Albedo, channels R G B.
+/// Albedo at normal incidence. Layer Albedo, channels R G B.
 pub const LUXFER_AOV_ALBEDO: u32 = 32;
-/// Index of the mesh plus 1, 0 where nothing is; of what most samples met. Layer IndexOB, channel X.
+/// Index of the mesh plus 1, or 0 where there is no surface; the mesh that most samples of the pixel hit. Layer
+/// IndexOB, channel X.
 pub const LUXFER_AOV_OBJECT: u32 = 64;
-/// Index of the material plus 1, likewise. Layer IndexMA, channel X.
+/// Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel hit. Layer
+/// IndexMA, channel X.
 pub const LUXFER_AOV_MATERIAL: u32 = 128;
-/// Share of the pixel that is covered by surfaces. Layer Alpha, channel A.
+/// Share of the pixel that surfaces cover. Layer Alpha, channel A.
 pub const LUXFER_AOV_ALPHA: u32 = 256;
 /// Luminance of the main image, in cd/m². Layer Luminance, channel Y.
 pub const LUXFER_AOV_LUMINANCE: u32 = 512;
 
-/// How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_AS_ value.
+/// Letters that match emissive surfaces and the environment in camera-first expressions: a LUXFER_EMITTER_AS_ value.
 pub type luxfer_emitter_as = i32;
-/// Surfaces are both L and O, the environment is both L and B: C<RD>L is all direct light. The default.
+/// Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default.
 pub const LUXFER_EMITTER_AS_BOTH: luxfer_emitter_as = 0;
-/// Every light is L only.
+/// Every light matches L only.
 pub const LUXFER_EMITTER_AS_LIGHT: luxfer_emitter_as = 1;
-/// As in Open Shading Language: surfaces are O, the environment is B.
+/// As in Open Shading Language: surfaces match O, the environment matches B.
 pub const LUXFER_EMITTER_AS_OBJECT: luxfer_emitter_as = 2;
 
-/// Adds a layer of the light that an expression describes. name is what the layer is called: 1 to 64 bytes in UTF-8
-/// without dots, quotes or control characters, and not the name of another layer. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the name is not such a name, or the expression is none: the message tells the column. A label
-/// that nothing in the scene bears ends the job with LUXFER_NOT_FOUND, an expression that no path can match ends it with
-/// LUXFER_INVALID_ARGUMENT. LUXFER_INVALID_OPERATION while a job runs.
+/// Adds a layer with the light that an expression selects. name is the name of the layer: 1 to 64 bytes in UTF-8,
+/// without dots, quotes or control characters, and different from the names of the other layers. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the name is not valid, or if the expression is malformed: the message gives the column.
+/// LUXFER_INVALID_OPERATION while a job runs. The job ends with LUXFER_NOT_FOUND if no object in the scene has a label
+/// of the expression, and with LUXFER_INVALID_ARGUMENT if no path can match the expression.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_add_expression(
     render: *mut luxfer_render,
@@ -74,7 +77,7 @@ pub unsafe extern "C" fn luxfer_render_add_expression(
     })
 }
 
-/// Forgets all expressions. Any thread.
+/// Removes all expressions. Any thread.
 /// LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_clear_expressions(render: *mut luxfer_render) -> luxfer_status {
@@ -86,7 +89,7 @@ pub unsafe extern "C" fn luxfer_render_clear_expressions(render: *mut luxfer_ren
     })
 }
 
-/// Says which letters emissive surfaces and the environment answer to; a LUXFER_EMITTER_AS_ value. Any thread.
+/// Sets the letters that match emissive surfaces and the environment; a LUXFER_EMITTER_AS_ value. Any thread.
 /// LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_emitter_as(
@@ -111,7 +114,7 @@ pub unsafe extern "C" fn luxfer_render_set_emitter_as(
     })
 }
 
-/// Says which layers of surfaces are made: LUXFER_AOV_ flags together, or 0, the default. Any thread.
+/// Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for none. Any thread.
 /// LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_aovs(render: *mut luxfer_render, flags: u32) -> luxfer_status {
@@ -127,7 +130,7 @@ pub unsafe extern "C" fn luxfer_render_set_aovs(render: *mut luxfer_render, flag
     })
 }
 
-/// Tells how many layers the rendering has. Any thread.
+/// Gets the number of layers of the rendering. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_layer_count(render: *mut luxfer_render, count: *mut u32) -> luxfer_status {
@@ -138,8 +141,8 @@ pub unsafe extern "C" fn luxfer_render_get_layer_count(render: *mut luxfer_rende
     })
 }
 
-/// Copies a layer's name into capacity bytes with a zero at its end, cut if need be; *needed receives the capacity for all
-/// of it, unless NULL. Any thread.
+/// Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
+/// receives the capacity that the whole name needs. Any thread.
 /// LUXFER_NOT_FOUND if there is no such layer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_layer_name(
@@ -156,7 +159,7 @@ pub unsafe extern "C" fn luxfer_render_get_layer_name(
 }
 
 /// Finds a layer by its name. Any thread.
-/// LUXFER_NOT_FOUND if there is none of that name.
+/// LUXFER_NOT_FOUND if no layer has that name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_find_layer(
     render: *mut luxfer_render,
@@ -175,8 +178,8 @@ pub unsafe extern "C" fn luxfer_render_find_layer(
     })
 }
 
-/// Gets a layer as far as it is: 3 channels of light in cd/m², or those of a surface's output. The caller releases *image.
-/// Any thread.
+/// Gets a layer in its current state: 3 channels of light in cd/m², or the channels of an AOV. The caller releases
+/// *image. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_layer(
@@ -193,10 +196,10 @@ pub unsafe extern "C" fn luxfer_render_get_layer(
     })
 }
 
-/// Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if its
-/// coverage was asked for, and layer.channel of each layer, as Blender and Nuke read them; Depth.Z also as plain Z. The
-/// header tells the expression of each layer of light as luxfer.lpe.NAME. path is UTF-8; an existing file is replaced only
-/// by a complete one. Any thread.
+/// Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if
+/// LUXFER_AOV_ALPHA is set, and layer.channel for each layer, as Blender and Nuke read them; Depth.Z also as plain Z.
+/// The header holds the expression of each layer of light in the attribute luxfer.lpe.NAME. path is UTF-8; an existing
+/// file is replaced only once the new one is complete. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_write_exr(render: *mut luxfer_render, path: *const c_char) -> luxfer_status {
@@ -217,7 +220,7 @@ fn encode(film: &Film) -> Result<Vec<u8>> {
     let mut layers = vec![io::Layer { name: "", image: &film.beauty, channels: &["R", "G", "B"] }];
     let mut notes = vec![("luxfer.unit".to_string(), "cd/m^2".to_string())];
     for layer in &film.layers {
-        // Coverage belongs to the image itself; its depth is where programs without layers look for it.
+        // Alpha and Z also go into the main image, where programs without layers look for them.
         if layer.name == Aov::Alpha.name() || layer.name == Aov::Depth.name() {
             layers.push(io::Layer { name: "", image: &layer.image, channels: layer.channels });
         }

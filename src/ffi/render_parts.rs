@@ -1,13 +1,14 @@
 //! Renderings in parts
 //!
-//! A rendering on many machines: each renders parts, rectangles of the image and ranges of its paths, into files, and one
-//! merges the files. The image is that of one machine which renders all of it in a single part, but for the rounding of sums in
-//! double precision, whatever the parts and their order. A part that was lost is rendered again, to the same bits.
+//! Renders an image on several machines: each machine renders parts, rectangles of the image and ranges of its paths,
+//! into files, and one machine merges the files. The result equals the image that one machine renders as a single part,
+//! for any parts in any order, except for the rounding of sums in double precision. A lost part can be rendered again
+//! and is equal to the bit.
 //!
-//! Parts have a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. The scene,
-//! the camera, the layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
+//! Parts have a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. All
+//! parts and the merge must use the same scene, camera, layers and luxfer_render_params; the merge checks this.
 //!
-//! The files are OpenEXR: R, G, B show the part in its place in the image, and integer channels keep its sums.
+//! The files are OpenEXR: R, G, B show the part at its place in the image, and integer channels store its sums.
 
 use super::guard::{enter, guard};
 use super::job::luxfer_job;
@@ -21,23 +22,24 @@ use crate::render::{Film, Params};
 use std::ffi::c_char;
 use std::path::{Path, PathBuf};
 
-/// A part of a rendering. Fill it with luxfer_render_part_init, which makes it the whole, or with luxfer_render_split.
+/// A part of a rendering. Fill it with luxfer_render_part_init, which sets it to the whole rendering, or with
+/// luxfer_render_split.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_render_part {
     /// sizeof(luxfer_render_part), set by luxfer_render_part_init.
     pub struct_size: u32,
-    /// Column of its first pixel; default 0.
+    /// Column of the first pixel; default 0.
     pub x: u32,
-    /// Row of its first pixel, from the top; default 0.
+    /// Row of the first pixel, from the top; default 0.
     pub y: u32,
-    /// Width in pixels; default 0: as far as the image goes.
+    /// Width in pixels; default 0: up to the right edge of the image.
     pub width: u32,
-    /// Height in pixels; default 0: as far as the image goes.
+    /// Height in pixels; default 0: up to the bottom edge of the image.
     pub height: u32,
-    /// Number of its first path in each pixel; default 0.
+    /// Index of the first path of each pixel; default 0.
     pub first_sample: u32,
-    /// Paths per pixel; default 0: all that follow, of luxfer_render_params.samples.
+    /// Paths per pixel; default 0: all paths from first_sample up to luxfer_render_params.samples.
     pub samples: u32,
 }
 
@@ -70,10 +72,12 @@ pub unsafe extern "C" fn luxfer_render_part_init(part: *mut luxfer_render_part, 
     guard(|| params::init(part, size))
 }
 
-/// Tells what part number index is if a rendering with these params is split into columns x rows rectangles and ranges of
-/// its paths, all of about the same size; columns * rows * ranges are all of it. Rectangles go on row by row, and all of one
-/// range come before the next. params may be NULL for the defaults; set part->struct_size before the call. Any thread.
-/// LUXFER_INVALID_ARGUMENT if there is no such part, or parts without a pixel or a path would have to be made.
+/// Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of about
+/// equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all rectangles
+/// of one range come before the next range. params may be NULL for the defaults; set part->struct_size before the call.
+/// Any thread.
+/// LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
+/// would be empty.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_split(
     render: *mut luxfer_render,
@@ -100,12 +104,12 @@ pub unsafe extern "C" fn luxfer_render_split(
     })
 }
 
-/// Starts a job that renders a part, NULL for the whole, and writes it into a file; path is UTF-8, and an existing file is
-/// replaced only by a complete one. Then the images of the rendering are those of the part alone. params may be NULL for the
-/// defaults. The caller releases *job. Any thread.
+/// Starts a job that renders a part, or the whole if part is NULL, and writes it into a file; path is UTF-8, and an
+/// existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this part
+/// alone. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range or would not fix the paths, or the part
-/// is none of the image's; LUXFER_IO if the file cannot be written.
+/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if a setting leaves the number of
+/// paths open, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start_part(
     render: *mut luxfer_render,
@@ -127,9 +131,10 @@ pub unsafe extern "C" fn luxfer_render_start_part(
     })
 }
 
-/// Adds a file of luxfer_render_start_part to those to be merged; path is UTF-8. It is read when they are merged, its header
-/// also now. Any thread.
-/// LUXFER_IO if it cannot be read; LUXFER_FORMAT if it is no part of a rendering; LUXFER_INVALID_OPERATION while a job runs.
+/// Adds a file of luxfer_render_start_part to the files to merge; path is UTF-8. The call reads only the header of the
+/// file; the merge reads the rest. Any thread.
+/// LUXFER_IO if it cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION while a
+/// job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_add_part(render: *mut luxfer_render, path: *const c_char) -> luxfer_status {
     enter(render, |stage| {
@@ -141,7 +146,7 @@ pub unsafe extern "C" fn luxfer_render_add_part(render: *mut luxfer_render, path
     })
 }
 
-/// Forgets all files to be merged. Any thread.
+/// Removes all files to merge. Any thread.
 /// LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_clear_parts(render: *mut luxfer_render) -> luxfer_status {
@@ -153,11 +158,11 @@ pub unsafe extern "C" fn luxfer_render_clear_parts(render: *mut luxfer_render) -
     })
 }
 
-/// Starts a job that merges the files that were added, in any order; then the rendering has its images and layers as after
+/// Starts a job that merges the files, added in any order; afterwards the rendering has its images and layers as after
 /// luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a file is of another rendering, or of another scene, if parts
-/// overlap, or if some are missing: the message tells which; LUXFER_IO or LUXFER_FORMAT if a file cannot be read.
+/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene, if
+/// parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start_merge(
     render: *mut luxfer_render,

@@ -1,8 +1,8 @@
 //! Scene requirements
 //!
-//! What the renderer finds out about a scene before the first ray: which ways of scattering and which lights can occur, and
-//! how much light a bounce can leave. What cannot occur is left out of tracing, which changes no image. Nothing here has to
-//! be called: it tells what is done anyway.
+//! The renderer analyses a scene before the first ray: which kinds of scattering and which lights can occur, and how
+//! much light can remain after a bounce. It skips the code for everything that cannot occur, which does not change any
+//! image. You need not call these functions: they only report what the renderer does by itself.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -17,51 +17,52 @@ use crate::render::World;
 use std::ffi::c_char;
 use std::sync::Arc;
 
-/// Some surface scatters diffusely.
+/// At least one surface scatters diffusely.
 pub const LUXFER_SCATTERING_DIFFUSE: u32 = 1;
-/// Some surface has a rough reflecting layer.
+/// At least one surface has a rough specular reflection.
 pub const LUXFER_SCATTERING_GLOSSY: u32 = 2;
-/// Some surface reflects as a mirror.
+/// At least one surface is a mirror.
 pub const LUXFER_SCATTERING_MIRROR: u32 = 4;
-/// Some surface is a clear pane.
+/// At least one surface is a clear pane of glass.
 pub const LUXFER_SCATTERING_GLASS: u32 = 8;
-/// Some surface is partly not there.
+/// At least one surface is partly transparent by its alpha.
 pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
 
-/// Some surface emits.
+/// At least one surface emits.
 pub const LUXFER_LIGHTS_SURFACE: u32 = 1;
-/// Some surface emits by a texture.
+/// At least one surface emits by a texture.
 pub const LUXFER_LIGHTS_TEXTURE: u32 = 2;
-/// There is a point light that shines.
+/// At least one point light has an intensity above 0.
 pub const LUXFER_LIGHTS_POINT: u32 = 4;
-/// There is a spot light that shines.
+/// At least one spot light has an intensity above 0.
 pub const LUXFER_LIGHTS_SPOT: u32 = 8;
-/// There is a directional light that shines.
+/// At least one directional light has an illuminance above 0.
 pub const LUXFER_LIGHTS_DIRECTIONAL: u32 = 16;
-/// The environment shines.
+/// The environment emits.
 pub const LUXFER_LIGHTS_ENVIRONMENT: u32 = 32;
 
-/// What a scene requires of the renderer. Set struct_size before the call.
+/// Features that a scene requires of the renderer. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_requirements {
     /// sizeof(luxfer_requirements), set by the caller.
     pub struct_size: u32,
-    /// Ways of scattering that can occur: LUXFER_SCATTERING_ flags.
+    /// Kinds of scattering that can occur: LUXFER_SCATTERING_ flags.
     pub scattering: u32,
-    /// Lights that can shine: LUXFER_LIGHTS_ flags.
+    /// Kinds of lights that emit: LUXFER_LIGHTS_ flags.
     pub lights: u32,
-    /// Textures that vary what surfaces scatter, emit, or how they are bent.
+    /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// How many times light can scatter and still matter: light that was scattered more often is at most the share error,
-    /// given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Rendering ends paths there only if
-    /// luxfer_render_params.bounce_error asks for it.
+    /// Number of bounces that matter: light that is scattered more often is at most the share error, given in the call,
+    /// of all light that surfaces scatter. 0 if the albedos give no bound. The renderer ends paths there only if
+    /// luxfer_render_params.bounce_error is set.
     pub bounces: u32,
-    /// Index of the material that sends on most of the light it receives; LUXFER_NONE if there are no surfaces.
+    /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,
-    /// The most that any surface sends on, per channel, in [0, 1].
+    /// Largest albedo of any surface, per channel, in [0, 1]: the share of the received light that it reflects and
+    /// transmits.
     pub albedo: [f32; 3],
-    /// Triangles without an area, which are left out.
+    /// Number of triangles with zero area, which are skipped.
     pub flat_triangles: u32,
 }
 
@@ -83,8 +84,8 @@ unsafe impl Versioned for luxfer_requirements {
     }
 }
 
-/// Tells what a scene requires of the renderer; error, in [0, 1), is the share of light for *requirements' bounces. The
-/// first call after a change of the scene makes it ready for tracing. Any thread.
+/// Gets the features that a scene requires of the renderer; error, in [0, 1), is the share of light for the field
+/// bounces. The first call after a change of the scene prepares it for tracing. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_requirements(
@@ -121,9 +122,9 @@ pub unsafe extern "C" fn luxfer_scene_requirements(
     })
 }
 
-/// Tells in words what rendering a scene leaves out: one sentence per line, as UTF-8 that ends with a zero, cut if it does
-/// not fit into capacity bytes. *needed, unless NULL, becomes the capacity for all of it. buffer may be NULL if capacity is
-/// 0. Any thread.
+/// Describes in words what the renderer skips in a scene: one sentence per line, as zero-terminated UTF-8, truncated to
+/// capacity bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
+/// capacity is 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_requirements_text(

@@ -1,8 +1,9 @@
 //! Scene
 //!
-//! A scene is what the host describes: meshes, materials, textures, lights, cameras. Metres, right-handed, Y up, all in
-//! world space. Emission is in cd/m², punctual lights in candela and lux as in glTF 2.0. A job works on the scene as it
-//! was at the start of the job. Calls that change a scene take turns; each either succeeds or leaves it as it was.
+//! A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
+//! world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
+//! as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
+//! unchanged.
 
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, lock};
@@ -27,27 +28,28 @@ pub struct luxfer_scene {
     _opaque: [u8; 0],
 }
 
-/// Takes size bytes of a file that is being written; called one or more times, in order, on the calling thread with no
-/// lock held. Returns 0 to go on, anything else to give up: the export then returns LUXFER_IO. Must not throw or jump out.
+/// Receives the next size bytes of a file. The export calls it one or more times, in order, on the calling thread and
+/// with no lock held. Return 0 to continue, any other value to stop: the export then returns LUXFER_IO. It must not
+/// throw an exception or leave by longjmp.
 pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
-/// How much there is in a scene. Set struct_size before the call.
+/// Numbers of the objects in a scene. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_scene_counts {
     /// sizeof(luxfer_scene_counts), set by the caller.
     pub struct_size: u32,
-    /// Number of meshes, whose indices are 0 to meshes - 1; so with what follows.
+    /// Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below.
     pub meshes: u32,
     /// Number of materials.
     pub materials: u32,
     /// Number of textures.
     pub textures: u32,
-    /// Number of lights without a surface.
+    /// Number of punctual lights: points, spots, directional lights and luminaires.
     pub lights: u32,
     /// Number of cameras.
     pub cameras: u32,
-    /// Triangles of all meshes.
+    /// Number of triangles in all meshes.
     pub triangles: u64,
 }
 
@@ -66,21 +68,22 @@ unsafe impl Versioned for luxfer_scene_counts {
 pub struct luxfer_surface {
     /// sizeof(luxfer_surface), set by the caller.
     pub struct_size: u32,
-    /// Number of its triangles.
+    /// Number of triangles.
     pub triangles: u32,
-    /// Corner of its bounding rectangle where u = v = 0, in metres.
+    /// Corner of the bounding rectangle where u = v = 0, in metres.
     pub origin: [f32; 3],
-    /// Unit direction of u, along the first side of the rectangle.
+    /// Unit vector of u, along the first side of the rectangle.
     pub u_axis: [f32; 3],
-    /// Unit direction of v, along the second side.
+    /// Unit vector of v, along the second side.
     pub v_axis: [f32; 3],
-    /// Unit normal on the side that will emit: into the room.
+    /// Unit normal on the side that will emit; it points into the room.
     pub normal: [f32; 3],
     /// Lengths of the sides along u and v, in metres.
     pub size: [f32; 2],
     /// Area of the triangles in m².
     pub area: f32,
-    /// Area of what was named besides and slopes from this plane by 5 to 75 degrees, in m²: as of a vault, which gets no light.
+    /// Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, as
+    /// those of a vault; they receive no emission.
     pub bent: f32,
 }
 
@@ -161,7 +164,7 @@ impl SceneObject {
     pub(super) fn change<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
         let charge = self.context.charge(bytes)?;
         let state = &mut *lock(&self.state);
-        // The scene inside a world is shared, and would be copied to be changed.
+        // Drop the world, which shares the scene: otherwise the change would copy the scene.
         state.world = None;
         let result = change(Arc::make_mut(&mut state.scene))?;
         if bytes > 0 {
@@ -178,7 +181,7 @@ impl SceneObject {
             job.report(1.0);
             return Ok(world);
         }
-        // Not under the lock: it takes its time, and the host may ask for other things meanwhile.
+        // Build without the lock, as it takes long and other calls should not wait.
         let world = Arc::new(World::build(scene.clone(), job)?);
         let state = &mut *lock(&self.state);
         if Arc::ptr_eq(&state.scene, scene) {
@@ -212,8 +215,9 @@ pub unsafe extern "C" fn luxfer_scene_create(
 }
 
 /// Loads a glTF 2.0 file, .glb or .gltf with the files it names; path is UTF-8. The caller releases *scene. Any thread.
-/// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if one is damaged or refers to what is not there, LUXFER_UNSUPPORTED
-/// for a required extension this library does not know, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
+/// LUXFER_UNSUPPORTED for a required extension that this library does not know, LUXFER_OUT_OF_MEMORY beyond the memory
+/// budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load(
     context: *mut luxfer_context,
@@ -228,8 +232,8 @@ pub unsafe extern "C" fn luxfer_scene_load(
     })
 }
 
-/// Loads a scene from the size bytes of a GLB or glTF file held in memory. Other files that it names are looked up in the
-/// folder base_path (UTF-8); NULL allows none. Otherwise as luxfer_scene_load.
+/// Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
+/// base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(
     context: *mut luxfer_context,
@@ -247,8 +251,8 @@ pub unsafe extern "C" fn luxfer_scene_load_memory(
     })
 }
 
-/// Saves a scene as a GLB file with all of its textures inside; path is UTF-8 and ends in .glb. An existing file is
-/// replaced only by a complete one. Any thread.
+/// Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is replaced
+/// only once the new one is complete. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *const c_char) -> luxfer_status {
@@ -261,8 +265,8 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB through the caller's function, which gets user. Any thread.
-/// LUXFER_IO if the function gives up.
+/// Writes a scene as GLB through the caller's function, which receives user. Any thread.
+/// LUXFER_IO if the function returns anything but 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export_memory(
     scene: *mut luxfer_scene,
@@ -282,7 +286,7 @@ pub unsafe extern "C" fn luxfer_scene_export_memory(
     })
 }
 
-/// Tells how much there is in a scene. Any thread.
+/// Gets the numbers of the objects in a scene. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_counts(
     scene: *mut luxfer_scene,
@@ -305,8 +309,8 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
     })
 }
 
-/// Surrounds a scene with light of one colour from all directions, red, green and blue in cd/m², each finite and >= 0;
-/// replaces any environment it had. Any thread.
+/// Sets an environment that emits the same radiance from all directions: red, green and blue in cd/m², each finite and
+/// >= 0. It replaces any earlier environment. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_environment(
     scene: *mut luxfer_scene,
@@ -323,10 +327,11 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
     })
 }
 
-/// Surrounds a scene with the light of an equirectangular image, linear, times (red, green, blue), each finite and >= 0:
-/// radiance in cd/m², chosen in proportion to its brightness while tracing. The image's centre lies towards -z, its top
-/// towards +y, its right quarter towards +x; it is copied, and replaces any environment there was. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the image has values that are negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
+/// Sets an environment from an equirectangular image in linear values, multiplied by (red, green, blue), each finite
+/// and >= 0: radiance in cd/m². The renderer samples it in proportion to its brightness. The centre of the image is
+/// towards -z, its top towards +y, the centre of its right half towards +x. The image is copied and replaces any
+/// earlier environment. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_environment_image(
@@ -357,8 +362,8 @@ pub unsafe extern "C" fn luxfer_scene_set_environment_image(
     })
 }
 
-/// Sets the emission of a material, which multiplies its emission texture if it has one: red, green and blue in cd/m², each
-/// finite and >= 0. Any thread.
+/// Sets the emission of a material: red, green and blue in cd/m², each finite and >= 0. An emission texture of the
+/// material is multiplied by it. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_emission(
@@ -379,8 +384,10 @@ pub unsafe extern "C" fn luxfer_scene_set_emission(
     })
 }
 
-/// Finds the planar surface, of the object or material of that name, that faces the room; name is UTF-8. Any thread.
-/// LUXFER_NOT_FOUND if nothing has that name, the message lists names that exist; LUXFER_DEGENERATE if it has no plane.
+/// Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. Any
+/// thread.
+/// LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
+/// there is no planar surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_find_surface(
     scene: *mut luxfer_scene,
@@ -405,9 +412,10 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
     })
 }
 
-/// Lays an emissive texture (linear, 1 or 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
-/// finds by name. The surface becomes a mesh of its own, *mesh, with a copy of its material, *material, that emits
-/// texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material may be NULL. Any thread.
+/// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
+/// luxfer_scene_find_surface finds by name. The surface becomes a separate mesh, index *mesh, with a copy of its
+/// material, index *material, that emits texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material
+/// may be NULL. Any thread.
 /// As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_place_emission(
@@ -442,7 +450,7 @@ pub unsafe extern "C" fn luxfer_scene_retain(scene: *mut luxfer_scene) -> luxfer
     handle::retain(scene)
 }
 
-/// Gives a reference back. Any thread.
+/// Removes a reference. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_release(scene: *mut luxfer_scene) -> luxfer_status {
     handle::release(scene)

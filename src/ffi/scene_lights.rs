@@ -1,7 +1,7 @@
 //! Lights of a scene
 //!
-//! Lights without a surface: points, spots, the parallel light of something far away, and luminaires that were measured.
-//! Lights with a surface are materials that emit.
+//! Punctual lights: points, spots, directional lights (parallel light from far away) and luminaires with a measured
+//! intensity distribution. Area lights are surfaces whose material emits.
 
 use super::distribution::luxfer_distribution;
 use super::guard::{enter, guard};
@@ -19,14 +19,14 @@ use std::sync::Arc;
 
 /// A kind of light: a LUXFER_LIGHT_ value.
 pub type luxfer_light_kind = i32;
-/// Shines the same in every direction.
+/// A point light: equal intensity in every direction.
 pub const LUXFER_LIGHT_POINT: luxfer_light_kind = 0;
-/// Shines in a cone.
+/// A spot light: shines into a cone.
 pub const LUXFER_LIGHT_SPOT: luxfer_light_kind = 1;
-/// Shines from infinitely far away.
+/// A directional light: shines from infinitely far away.
 pub const LUXFER_LIGHT_DIRECTIONAL: luxfer_light_kind = 2;
 
-/// A light without a surface. Fill it with luxfer_light_params_init.
+/// A punctual light. Fill it with luxfer_light_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_light_params {
@@ -34,16 +34,16 @@ pub struct luxfer_light_params {
     pub struct_size: u32,
     /// LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT.
     pub kind: luxfer_light_kind,
-    /// Where a point or a spot stands, in metres, in [-1e15, 1e15]; default (0, 0, 0).
+    /// Position of a point or a spot, in metres, in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
-    /// Where a spot or a directional light shines; any length but 0; default (0, -1, 0).
+    /// Direction in which a spot or a directional light shines; any length but 0; default (0, -1, 0).
     pub direction: [f32; 3],
-    /// Luminous intensity per channel in cd, on the axis of a spot; of a directional light the illuminance in lux on a
-    /// surface that faces it. Each >= 0; default (1, 1, 1).
+    /// Luminous intensity per channel in cd, of a spot on its axis; for a directional light, the illuminance in lux on
+    /// a surface that faces it. Each channel >= 0; default (1, 1, 1).
     pub intensity: [f32; 3],
-    /// Half the angle of a spot's cone of full intensity, in radians, in [0, outer_angle]; default 0.
+    /// Half angle of the cone in which a spot has its full intensity, in radians, in [0, outer_angle]; default 0.
     pub inner_angle: f32,
-    /// Half the angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4.
+    /// Half angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4.
     pub outer_angle: f32,
     /// Must be 0.
     pub reserved: u32,
@@ -96,7 +96,7 @@ pub unsafe extern "C" fn luxfer_light_params_init(params: *mut luxfer_light_para
     guard(|| params::init(params, size))
 }
 
-/// Adds a light; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+/// Adds a light; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_light(
@@ -115,7 +115,7 @@ pub unsafe extern "C" fn luxfer_scene_add_light(
     })
 }
 
-/// How a luminaire hangs. Fill it with luxfer_luminaire_params_init.
+/// Flux, position, orientation and colour of a luminaire. Fill it with luxfer_luminaire_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_luminaire_params {
@@ -123,16 +123,17 @@ pub struct luxfer_luminaire_params {
     pub struct_size: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Luminous flux in lumens, finite and >= 0; default 0: that of the distribution.
+    /// Luminous flux in lumens, finite and >= 0; default 0: the flux of the distribution.
     pub flux: f64,
-    /// Where it hangs, in metres, in [-1e15, 1e15]; default (0, 0, 0).
+    /// Position in metres, in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
-    /// The direction of its axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down.
+    /// Direction of the axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down.
     pub axis: [f32; 3],
-    /// About where C is 0: what of it is at right angles to the axis counts, which must not be 0; default (1, 0, 0). C grows
-    /// anticlockwise as seen from above a luminaire that shines down.
+    /// Direction of the plane C = 0. Only its component perpendicular to axis counts, which must not be 0; default (1,
+    /// 0, 0). Seen from above a luminaire that shines down, C grows anticlockwise.
     pub c0: [f32; 3],
-    /// Linear colour of its light, each >= 0 and not all 0; its brightness does not count; default (1, 1, 1).
+    /// Linear colour of the light, each channel >= 0 and not all 0; only the ratio of the channels counts; default (1,
+    /// 1, 1).
     pub colour: [f32; 3],
 }
 
@@ -197,9 +198,9 @@ pub unsafe extern "C" fn luxfer_luminaire_params_init(
     guard(|| params::init(params, size))
 }
 
-/// Adds a luminaire: a light at a point, as strong in each direction as a distribution says; *index, unless NULL, becomes its
-/// index among the lights. A luminaire must be small beside how far it is from what it lights: a fifth of that at most. params
-/// may be NULL for the defaults. Any thread.
+/// Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
+/// index among the lights. It is a good model only if the luminaire is at most a fifth as large as its distance from
+/// the surfaces that it lights. params may be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

@@ -1,7 +1,8 @@
 //! Materials
 //!
-//! What surfaces are made of, as in glTF 2.0: metallic-roughness, with clear glass, cut-outs, emission, and textures that
-//! multiply these. All can be read back and replaced; textures stay with the material when its numbers change.
+//! Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
+//! textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when its
+//! values change.
 
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
@@ -19,13 +20,13 @@ use glam::{Mat3, Vec3};
 use std::ffi::c_char;
 use std::sync::Arc;
 
-/// What the alpha of a surface means: a LUXFER_ALPHA_ value.
+/// Meaning of a surface's alpha: a LUXFER_ALPHA_ value.
 pub type luxfer_alpha_mode = i32;
-/// Nothing: it is there everywhere.
+/// The alpha is ignored: the surface is opaque.
 pub const LUXFER_ALPHA_OPAQUE: luxfer_alpha_mode = 0;
-/// It is there where alpha is at least alpha_cutoff.
+/// The surface is opaque where alpha is at least alpha_cutoff, and absent elsewhere.
 pub const LUXFER_ALPHA_MASK: luxfer_alpha_mode = 1;
-/// That share of light meets it, the rest finds nothing in its way.
+/// The surface stops the share alpha of the light; the rest passes straight through.
 pub const LUXFER_ALPHA_BLEND: luxfer_alpha_mode = 2;
 
 /// A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init.
@@ -34,29 +35,29 @@ pub const LUXFER_ALPHA_BLEND: luxfer_alpha_mode = 2;
 pub struct luxfer_material_params {
     /// sizeof(luxfer_material_params), set by luxfer_material_params_init.
     pub struct_size: u32,
-    /// Whether back faces reflect and emit as front faces do: 0 or 1, the default.
+    /// 1, the default: back faces reflect and emit as front faces do; 0: only front faces do.
     pub double_sided: u32,
-    /// Name in UTF-8, copied; NULL, the default, is none.
+    /// Name in UTF-8, copied; NULL, the default: no name.
     pub name: *const c_char,
-    /// Linear colour of the surface, each in [0, 1]; default 0.8.
+    /// Linear colour of the surface, each channel in [0, 1]; default 0.8.
     pub base_color: [f32; 3],
-    /// In [0, 1]; default 0.
+    /// Share of the surface that is metal, in [0, 1]; default 0.
     pub metallic: f32,
     /// Perceptual roughness in [0, 1]; default 1.
     pub roughness: f32,
     /// Emitted luminance per channel in cd/m², >= 0; default 0.
     pub emission: [f32; 3],
-    /// Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0.
+    /// Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1]; default 0.
     pub transmission: f32,
     /// Index of refraction in [1, 4]; default 1.5.
     pub ior: f32,
-    /// In [0, 1], multiplies the alpha of the base colour's texture; default 1.
+    /// Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1.
     pub alpha: f32,
     /// LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE.
     pub alpha_mode: luxfer_alpha_mode,
-    /// For LUXFER_ALPHA_MASK, >= 0; default 0.5.
+    /// Threshold of alpha for LUXFER_ALPHA_MASK, >= 0; default 0.5.
     pub alpha_cutoff: f32,
-    /// How far the normal texture bends: multiplies its x and y; finite; default 1.
+    /// Strength of the normal texture: multiplies its x and y; finite; default 1.
     pub normal_scale: f32,
 }
 
@@ -85,41 +86,41 @@ unsafe impl Versioned for luxfer_material_params {
     }
 }
 
-/// What a material uses a texture for: a LUXFER_TEXTURE_ value.
+/// Purpose of a material's texture: a LUXFER_TEXTURE_ value.
 pub type luxfer_texture_role = i32;
 /// Multiplies the base colour; its alpha multiplies the material's.
 pub const LUXFER_TEXTURE_BASE_COLOR: luxfer_texture_role = 0;
-/// Green multiplies the roughness, blue the metallic share.
+/// The green channel multiplies the roughness, the blue channel the metallic value.
 pub const LUXFER_TEXTURE_METALLIC_ROUGHNESS: luxfer_texture_role = 1;
 /// Normals in tangent space.
 pub const LUXFER_TEXTURE_NORMAL: luxfer_texture_role = 2;
 /// Multiplies the emission; looked up without interpolation.
 pub const LUXFER_TEXTURE_EMISSION: luxfer_texture_role = 3;
 
-/// How a texture continues beyond its edges: a LUXFER_WRAP_ value.
+/// Continuation of a texture beyond its edges: a LUXFER_WRAP_ value.
 pub type luxfer_wrap = i32;
-/// It repeats.
+/// The texture repeats.
 pub const LUXFER_WRAP_REPEAT: luxfer_wrap = 0;
-/// Its border goes on.
+/// The texels at the edge continue.
 pub const LUXFER_WRAP_CLAMP: luxfer_wrap = 1;
-/// It repeats, every other one mirrored.
+/// The texture repeats, mirrored every second time.
 pub const LUXFER_WRAP_MIRROR: luxfer_wrap = 2;
 
-/// A texture as a material uses it. Set struct_size before the call.
+/// The texture that a material uses for one purpose. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_texture_use {
     /// sizeof(luxfer_texture_use), set by the caller.
     pub struct_size: u32,
-    /// Index of the texture; LUXFER_NONE if there is none, and what follows is 0.
+    /// Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0.
     pub texture: u32,
-    /// Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1.
+    /// Set of the mesh's texture coordinates that it uses, 0 or 1.
     pub uv_set: u32,
-    /// LUXFER_WRAP_ value, along u.
+    /// LUXFER_WRAP_ value along u.
     pub wrap_u: luxfer_wrap,
-    /// LUXFER_WRAP_ value, along v.
+    /// LUXFER_WRAP_ value along v.
     pub wrap_v: luxfer_wrap,
-    /// Two rows of three, applied to (u, v, 1) before the look-up.
+    /// Affine map of the texture coordinates: two rows of three, applied to (u, v, 1) before the look-up.
     pub transform: [f32; 6],
 }
 
@@ -141,7 +142,7 @@ pub unsafe extern "C" fn luxfer_material_params_init(
     guard(|| params::init(params, size))
 }
 
-/// Adds a material; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+/// Adds a material; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_material(
@@ -157,8 +158,8 @@ pub unsafe extern "C" fn luxfer_scene_add_material(
     })
 }
 
-/// Replaces the numbers of a material; its textures stay, and so does its name if params->name is NULL. params may be NULL
-/// for the defaults. To change some of them, read the material first. Any thread.
+/// Replaces the values of a material. It keeps its textures, and its name if params->name is NULL. params may be NULL
+/// for the defaults. To change single values, read the material first. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_material(
@@ -184,7 +185,7 @@ pub unsafe extern "C" fn luxfer_scene_set_material(
     })
 }
 
-/// Reads a material; set params->struct_size before the call. Its name becomes NULL. Any thread.
+/// Reads a material; set params->struct_size before the call. params->name becomes NULL. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_material(
@@ -220,9 +221,9 @@ pub unsafe extern "C" fn luxfer_scene_get_material(
     })
 }
 
-/// Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth alpha; wrap_u and wrap_v are LUXFER_WRAP_
-/// values. It is copied. *index, unless NULL, becomes its index. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the image has 2 channels or values that are not finite; LUXFER_OUT_OF_MEMORY beyond the
+/// Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth is alpha; wrap_u and wrap_v are
+/// LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the image has 2 channels or a value that is not finite; LUXFER_OUT_OF_MEMORY beyond the
 /// memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_texture(
@@ -255,11 +256,11 @@ pub unsafe extern "C" fn luxfer_scene_add_texture(
     })
 }
 
-/// Makes a material use a texture for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or LUXFER_NONE for no
-/// texture. uv_set is 0 or 1: which of the mesh's sets of texture coordinates. transform is two rows of three, finite,
-/// applied to (u, v, 1) before the look-up; NULL changes nothing. Any thread.
-/// LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if a
-/// texture of emission has negative values.
+/// Sets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or
+/// LUXFER_NONE for no texture. uv_set, 0 or 1, chooses the mesh's set of texture coordinates. transform is two rows of
+/// three, finite, applied to (u, v, 1) before the look-up; NULL is the identity. Any thread.
+/// LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if an
+/// emission texture has negative values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_material_texture(
     scene: *mut luxfer_scene,
@@ -293,7 +294,7 @@ pub unsafe extern "C" fn luxfer_scene_set_material_texture(
     })
 }
 
-/// Tells which texture a material uses for a purpose, and how; role is a LUXFER_TEXTURE_ value. Any thread.
+/// Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_material_texture(
@@ -311,7 +312,7 @@ pub unsafe extern "C" fn luxfer_scene_get_material_texture(
     })
 }
 
-/// Gets a texture as an image, linear. The caller releases *image. Any thread.
+/// Gets a texture as an image in linear values. The caller releases *image. Any thread.
 /// LUXFER_NOT_FOUND if there is no such texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_texture(
@@ -405,7 +406,7 @@ fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     Ok(Some(values))
 }
 
-/// What a caller is told of a texture's use.
+/// The report of a texture's use.
 fn told(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
     let wrap = scene.textures.get(used.texture).map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
         Wrap::Repeat => LUXFER_WRAP_REPEAT,

@@ -1,7 +1,7 @@
 //! Scene description
 //!
-//! Scenes can be described by the host's own arrays: materials first, then the meshes that use them, then cameras. Arrays
-//! are copied during the call, from any alignment and with any stride.
+//! Describes a scene by arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
+//! copy the arrays, which may have any alignment and stride.
 
 use super::guard::{enter, guard};
 use super::params::{self, Report, Versioned};
@@ -20,29 +20,30 @@ use std::ffi::{c_char, c_void};
 pub struct luxfer_mesh_params {
     /// sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init.
     pub struct_size: u32,
-    /// Index of its material, as luxfer_scene_add_material has returned it; default 0.
+    /// Index of the mesh's material, from luxfer_scene_add_material; default 0.
     pub material: u32,
-    /// Name in UTF-8, copied; surfaces are found by it. NULL, the default, is none.
+    /// Name in UTF-8, copied; luxfer_scene_find_surface finds surfaces by it. NULL, the default: no name.
     pub name: *const c_char,
     /// Number of vertices in [3, 2^32 - 1]; to be set.
     pub vertex_count: usize,
-    /// Three floats for each vertex, in metres, in [-1e15, 1e15]; to be set.
+    /// Three floats per vertex, in metres, each in [-1e15, 1e15]; to be set.
     pub positions: *const c_void,
-    /// Bytes from a position to the next; at least 12, or 0, the default: packed.
+    /// Bytes from one position to the next; at least 12, or 0, the default: packed.
     pub position_stride: usize,
-    /// Three floats for each vertex, finite; NULL, the default: faces are flat.
+    /// Three floats per vertex, finite; NULL, the default: flat faces.
     pub normals: *const c_void,
-    /// Bytes from a normal to the next; at least 12, or 0, the default: packed.
+    /// Bytes from one normal to the next; at least 12, or 0, the default: packed.
     pub normal_stride: usize,
-    /// Two floats for each vertex, finite, (0, 0) the top-left corner of a texture; NULL, the default: none.
+    /// Texture coordinates: two floats per vertex, finite; (0, 0) is the top-left corner of a texture. NULL, the
+    /// default: no texture coordinates.
     pub uvs: *const c_void,
-    /// Bytes from a pair of texture coordinates to the next; at least 8, or 0, the default: packed.
+    /// Bytes from one pair of texture coordinates to the next; at least 8, or 0, the default: packed.
     pub uv_stride: usize,
     /// Number of triangles, at least 1; to be set.
     pub triangle_count: usize,
-    /// Three uint32_t for each triangle, each below vertex_count, counter-clockwise seen from the front; to be set.
+    /// Three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the front; to be set.
     pub indices: *const c_void,
-    /// Bytes from a triangle to the next; at least 12, or 0, the default: packed.
+    /// Bytes from one triangle to the next; at least 12, or 0, the default: packed.
     pub index_stride: usize,
 }
 
@@ -79,11 +80,11 @@ pub struct luxfer_camera_params {
     pub struct_size: u32,
     /// Full vertical angle of view in radians, in [0.001, 3.1]; default 1.
     pub fov_y: f32,
-    /// Where it stands, in metres, in [-1e15, 1e15]; default (0, 0, 0).
+    /// Position in metres, in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
-    /// What it looks at, another point, in [-1e15, 1e15]; default (0, 0, -1).
+    /// The point that it looks at, in metres, in [-1e15, 1e15], different from position; default (0, 0, -1).
     pub target: [f32; 3],
-    /// Direction that is up in the image, not along the view; default (0, 1, 0).
+    /// Up direction of the image, not parallel to the viewing direction; default (0, 1, 0).
     pub up: [f32; 3],
     /// Must be 0.
     pub reserved: u32,
@@ -137,9 +138,9 @@ pub unsafe extern "C" fn luxfer_camera_params_init(params: *mut luxfer_camera_pa
     guard(|| params::init(params, size))
 }
 
-/// Adds a mesh, copying its arrays; *index, unless NULL, becomes its index. Any thread.
-/// LUXFER_INVALID_ARGUMENT if an array is missing, a stride too small, a number not finite or an index out of range;
-/// LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// Adds a mesh and copies its arrays; *index, unless NULL, receives its index. Any thread.
+/// LUXFER_INVALID_ARGUMENT if an array is missing, a stride is too small, a number is not finite or an index is out of
+/// range; LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_mesh(
     scene: *mut luxfer_scene,
@@ -230,7 +231,7 @@ fn check_finite<const N: usize, V: From<[f32; N]>>(rows: Vec<[f32; N]>, name: &s
     }
 }
 
-/// Adds a camera; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+/// Adds a camera; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_camera(

@@ -1,7 +1,7 @@
 //! Scene read-back
 //!
-//! The meshes a scene holds, element by element. Together with the counts of luxfer_scene_get_counts, and with its
-//! materials, textures and cameras, a host can copy a whole scene.
+//! Reads the meshes of a scene. With luxfer_scene_get_counts and the functions that read materials, textures and
+//! cameras, a host can copy a whole scene.
 
 use super::guard::enter;
 use super::params::{Report, Versioned};
@@ -19,15 +19,15 @@ use std::ffi::c_char;
 pub struct luxfer_mesh_info {
     /// sizeof(luxfer_mesh_info), set by the caller.
     pub struct_size: u32,
-    /// Index of its material.
+    /// Index of the mesh's material.
     pub material: u32,
     /// Number of vertices.
     pub vertex_count: usize,
     /// Number of triangles.
     pub triangle_count: usize,
-    /// 1 if it has a normal for each vertex, 0 if its faces are flat.
+    /// 1 if each vertex has a normal, 0 if the faces are flat.
     pub has_normals: u32,
-    /// Sum of 1 if it has the first set of texture coordinates and 2 if it has the second.
+    /// Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second.
     pub uv_sets: u32,
 }
 
@@ -43,7 +43,7 @@ unsafe impl Versioned for luxfer_mesh_info {
     }
 }
 
-/// Tells what a mesh has. Any thread.
+/// Gets the sizes and attributes of a mesh. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_mesh(
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh(
     })
 }
 
-/// Copies the name of a mesh into buffer, as luxfer_context_last_error does a message. Any thread.
+/// Copies the name of a mesh into buffer, as luxfer_context_last_error copies a message. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
@@ -80,10 +80,11 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
     enter(scene, |object| copy_text(&mesh(&object.snapshot(), index)?.name, buffer, capacity, needed))
 }
 
-/// Copies a mesh into the caller's packed arrays, of which any may be NULL: positions and normals, three floats for each
-/// vertex, and indices, three for each triangle. The capacities are in vertices and triangles. Any thread.
-/// LUXFER_NOT_FOUND if there is no such mesh, or it has no normals where they are asked for; LUXFER_INVALID_ARGUMENT if a
-/// capacity is too small.
+/// Copies a mesh into packed arrays of the caller: positions and normals with three floats per vertex, and indices with
+/// three per triangle. Any of the arrays may be NULL. The capacities are numbers of vertices and of triangles. Any
+/// thread.
+/// LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none; LUXFER_INVALID_ARGUMENT if
+/// a capacity is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_read_mesh(
     scene: *mut luxfer_scene,
@@ -110,9 +111,10 @@ pub unsafe extern "C" fn luxfer_scene_read_mesh(
     })
 }
 
-/// Copies a set of texture coordinates, 0 or 1, into the caller's packed array of two floats for each vertex; capacity is
-/// in vertices. Any thread.
-/// LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+/// Copies set uv_set, 0 or 1, of a mesh's texture coordinates into a packed array of the caller, two floats per vertex;
+/// capacity is a number of vertices. Any thread.
+/// LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too
+/// small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_read_mesh_uvs(
     scene: *mut luxfer_scene,
@@ -141,7 +143,7 @@ fn lacks(mesh: u32, what: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::NotFound, format!("mesh {mesh} has no {what}"))
 }
 
-/// The caller's array and the bytes that go there; nothing where the caller wants nothing.
+/// The caller's array and the bytes to copy there; `None` if the caller passed null.
 fn place<'a, T: bytemuck::NoUninit>(
     place: *mut u8,
     data: &'a [T],

@@ -1,7 +1,7 @@
 //! Segmentation
 //!
-//! From a few strokes on a photo to a mask with a confidence for each pixel. The transfer needs two: the plane that carries
-//! the lights, then the lights within it. Strokes may be added after a result, and the stage started again.
+//! Computes a mask, with a confidence for each pixel, from a few strokes on a photo. The lighting transfer needs two
+//! masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start again.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -14,7 +14,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::segment::{self, Segmentation, Stroke, StrokeSet, strokes};
+use crate::segment::{self, Segmentation, Stroke, StrokeSet, Subject, strokes};
 use glam::DVec2;
 use std::ffi::{c_char, c_void};
 use std::sync::Arc;
@@ -24,11 +24,11 @@ pub struct luxfer_segment {
     _opaque: [u8; 0],
 }
 
-/// What strokes are about: a LUXFER_PHASE_ value.
+/// The mask that strokes are for: a LUXFER_PHASE_ value.
 pub type luxfer_phase = i32;
-/// The plane that carries the lights; its positive strokes lie on the plane, those of lights count as well.
+/// The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too.
 pub const LUXFER_PHASE_PLANE: luxfer_phase = 0;
-/// The lights in the plane; its positive strokes lie on lights, the others on the plane beside them.
+/// The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them.
 pub const LUXFER_PHASE_LIGHTS: luxfer_phase = 1;
 
 /// An image of a segmentation: a LUXFER_SEGMENT_ value.
@@ -37,8 +37,19 @@ pub type luxfer_segment_image = i32;
 pub const LUXFER_SEGMENT_MASK: luxfer_segment_image = 0;
 /// Probability that a pixel is of the positive class, in [0, 1]; 1 channel.
 pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
-/// How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke helps; 1 channel.
+/// Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
 pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
+
+/// What is segmented: a LUXFER_SUBJECT_ value.
+pub type luxfer_subject = i32;
+/// Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a surface.
+pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
+/// A surface, such as the plane that carries the lamps: each pixel is judged by its features.
+pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
+/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
+/// without a stroke that look like them and lie in the mask of luxfer_segment_set_within are found as well. Negative strokes are
+/// not needed. The first three channels of the features must be CIELAB.
+pub const LUXFER_SUBJECT_LAMPS: luxfer_subject = 2;
 
 /// Settings of a segmentation. Fill them with luxfer_segment_params_init.
 #[repr(C)]
@@ -48,68 +59,89 @@ pub struct luxfer_segment_params {
     pub struct_size: u32,
     /// Samples drawn from the strokes of each class, in [1, 1000000]; default 1000.
     pub samples_per_class: u32,
-    /// Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features colour, colour
-    /// and position, colour and normal, or all, whichever does best on strokes held out; of any other number all. For lights
-    /// 7, colour only, is best: they share the plane's geometry.
+    /// Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of luxfer_features,
+    /// the best of colour, colour and position, colour and normal, or all, as measured on held-out strokes; for another
+    /// number of channels, all of them. For lights use 7, colour only, since lights and plane have one geometry.
     pub channels: u32,
-    /// Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the edges of
-    /// the photo: the guided filter, with the first three channels of the features as its guide. 0, the default: none.
+    /// Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the
+    /// edges of the photo: a guided filter with the first three channels of the features as guide. 0, the default: no
+    /// refinement.
     pub refine_radius: u32,
-    /// Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3.
+    /// Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3.
     pub ridge: f64,
     /// Seed of the samples; default 1.
     pub seed: u64,
-    /// Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours are taken for one
-    /// surface by the refinement, in [1e-3, 1e6]; default 8.
+    /// Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
+    /// neighbours as one surface, in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
+    /// What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. Of lamps the settings above do not
+    /// matter.
+    pub subject: luxfer_subject,
+    /// Must be 0.
+    pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_segment_params {
     const NAME: &'static str = "luxfer_segment_params";
-    const SIZES: &'static [usize] = &[40];
+    const SIZES: &'static [usize] = &[40, 48];
     fn defaults() -> Self {
         let defaults = segment::Params::default();
         Self {
-            struct_size: 40,
+            struct_size: 48,
             samples_per_class: defaults.samples_per_class as u32,
             channels: defaults.channels,
             refine_radius: defaults.refine_radius as u32,
             ridge: defaults.ridge,
             seed: defaults.seed,
             refine_tolerance: defaults.refine_tolerance,
+            subject: LUXFER_SUBJECT_AUTO,
+            reserved: 0,
         }
     }
 }
 
 impl luxfer_segment_params {
-    pub(super) fn params(&self) -> segment::Params {
-        segment::Params {
+    pub(super) fn params(&self) -> Result<segment::Params> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("segment.reserved is {}; it must be 0", self.reserved)));
+        }
+        Ok(segment::Params {
             samples_per_class: self.samples_per_class as usize,
             channels: self.channels,
             ridge: self.ridge,
             seed: self.seed,
             refine_radius: self.refine_radius as usize,
             refine_tolerance: self.refine_tolerance,
-        }
+            subject: subject(self.subject)?,
+        })
     }
 }
 
-/// How good a segmentation is. Set struct_size before the call.
+fn subject(value: luxfer_subject) -> Result<Subject> {
+    match value {
+        LUXFER_SUBJECT_AUTO => Ok(Subject::Auto),
+        LUXFER_SUBJECT_SURFACE => Ok(Subject::Surface),
+        LUXFER_SUBJECT_LAMPS => Ok(Subject::Lamps),
+        _ => Err(Error::argument(format!("segment.subject is {value}; it must be a LUXFER_SUBJECT_ value"))),
+    }
+}
+
+/// Quality of a segmentation. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_segment_report {
     /// sizeof(luxfer_segment_report), set by the caller.
     pub struct_size: u32,
-    /// The channels of the features that were used, bit i for channel i.
+    /// Channels of the features that were used, bit i for channel i.
     pub channels: u32,
-    /// Expected share of wrong pixels, in [0, 1], from strokes held out of the training.
+    /// Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training.
     pub error: f64,
-    /// Samples used of the negative class.
+    /// Number of samples of the negative class.
     pub negative_samples: u64,
-    /// Samples used of the positive class.
+    /// Number of samples of the positive class.
     pub positive_samples: u64,
-    /// Pixels that strokes of both classes cover; the later stroke counts.
+    /// Number of pixels that strokes of both classes cover; the later stroke counts.
     pub contradictory_pixels: u64,
 }
 
@@ -196,8 +228,8 @@ pub unsafe extern "C" fn luxfer_segment_create(
     })
 }
 
-/// Sets what is known of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes set for another
-/// size are dropped. Any thread.
+/// Sets the features of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes for another
+/// size are removed. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_features(
     segment: *mut luxfer_segment,
@@ -216,8 +248,8 @@ pub unsafe extern "C" fn luxfer_segment_set_features(
     })
 }
 
-/// Sets where to look, 1, and where not, 0, such as the mask of the plane when lights are sought; 1 channel, the size of
-/// the features. within may be NULL: everywhere. Any thread.
+/// Restricts the segmentation to the pixels where within is 1, such as the mask of the plane when you segment lights; 0
+/// elsewhere; 1 channel, the size of the features. within may be NULL: no restriction. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_within(
     segment: *mut luxfer_segment,
@@ -232,9 +264,9 @@ pub unsafe extern "C" fn luxfer_segment_set_within(
     })
 }
 
-/// Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the top-left pixel's
-/// centre is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for what is sought and 0 for what is not.
-/// One point makes a dot. Any thread.
+/// Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the centre of the
+/// top-left pixel is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for the class that is sought,
+/// 0 for the other. One point makes a dot. Any thread.
 /// LUXFER_INVALID_OPERATION before the features are set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_add_stroke(
@@ -253,9 +285,9 @@ pub unsafe extern "C" fn luxfer_segment_add_stroke(
     })
 }
 
-/// Adds the strokes of a drawing of the features' size, those that concern phase (a LUXFER_PHASE_ value): green (0, 255, 0)
-/// plane, red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
-/// pixels are unpainted. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
+/// Adds the strokes for phase, a LUXFER_PHASE_ value, from a drawing of the features' size: green (0, 255, 0) is plane,
+/// red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
+/// pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
 /// LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_add_strokes_image(
@@ -274,9 +306,9 @@ pub unsafe extern "C" fn luxfer_segment_add_strokes_image(
     })
 }
 
-/// Adds the strokes that a text in UTF-8 describes, those that concern phase (a LUXFER_PHASE_ value). Each line is a class,
-/// a radius and the points' x and y in pixels, as "light 3 310.5 30 320 31"; classes are plane, not-plane, light and
-/// not-light; from # on a line is a comment. Any thread.
+/// Adds the strokes for phase, a LUXFER_PHASE_ value, from a text in UTF-8. Each line has a class, a radius, and x and
+/// y of the points in pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light;
+/// # starts a comment. Any thread.
 /// LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_add_strokes_text(
@@ -306,9 +338,9 @@ pub unsafe extern "C" fn luxfer_segment_clear_strokes(segment: *mut luxfer_segme
 }
 
 /// Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE if
-/// there are no strokes of one class, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out
-/// of range.
+/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
+/// if one class has no strokes, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_start(
     segment: *mut luxfer_segment,
@@ -316,7 +348,7 @@ pub unsafe extern "C" fn luxfer_segment_start(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(segment, |stage| {
-        let params = params::read(params)?.params();
+        let params = params::read(params)?.params()?;
         need(&stage.inputs().features, "luxfer_segment_set_features")?;
         stage.start(job, move |inputs, _, job| {
             let input = segment::Input {
@@ -350,7 +382,7 @@ pub unsafe extern "C" fn luxfer_segment_get_image(
     })
 }
 
-/// Tells how good the segmentation is. Any thread.
+/// Gets the quality of the segmentation. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_report(
@@ -378,7 +410,7 @@ pub unsafe extern "C" fn luxfer_segment_retain(segment: *mut luxfer_segment) -> 
     handle::retain(segment)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_release(segment: *mut luxfer_segment) -> luxfer_status {
     handle::release(segment)

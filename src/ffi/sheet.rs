@@ -1,7 +1,7 @@
 //! Print sheets
 //!
-//! For artists who paint on paper: the exemplar printed pale between alignment marks, and a photo or scan of the painted sheet
-//! brought back onto the exemplar by its marks. These calls return when they are done.
+//! For artists who paint on paper: prints the exemplar in pale colours between alignment marks, and aligns a photo or
+//! scan of the painted sheet with the exemplar by these marks. These calls return when their work is done.
 
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
@@ -15,13 +15,14 @@ use crate::job::Monitor;
 use crate::sheet;
 use glam::DVec2;
 
-/// Settings of a print sheet. Fill them with luxfer_sheet_params_init; the same for printing and for aligning.
+/// Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and aligning.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_sheet_params {
     /// sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init.
     pub struct_size: u32,
-    /// 1: even out the light of the photo by the white of the marks, so that paper is 1; default 1.
+    /// 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper becomes 1; 0: no
+    /// correction.
     pub even_light: u32,
     /// Width of the paper in millimetres, in [60, 2000]; default 297.
     pub paper_width: f64,
@@ -31,7 +32,7 @@ pub struct luxfer_sheet_params {
     pub dpi: f64,
     /// Distance of the marks from the edge of the paper in millimetres, in [0, 50]; default 8.
     pub margin: f64,
-    /// Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints it as it is.
+    /// Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints the picture unchanged.
     pub contrast: f64,
 }
 
@@ -68,20 +69,20 @@ impl luxfer_sheet_params {
     }
 }
 
-/// How well a photo was aligned. Set struct_size before the call.
+/// Quality of the alignment of a photo. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_sheet_report {
     /// sizeof(luxfer_sheet_report), set by the caller.
     pub struct_size: u32,
-    /// Marks found, of 10; 6 are enough.
+    /// Number of marks found, of 10; at least 6 are needed.
     pub marks: u32,
-    /// Root mean square distance between marks and where the map puts them, in pixels of the photo; more than a pixel or two
-    /// means paper that is not flat, or a lens that bends lines.
+    /// Root mean square distance between the marks and their positions by to_photo, in pixels of the photo. More than
+    /// one or two pixels mean that the paper is not flat or that the lens distorts.
     pub residual: f64,
     /// Expected alignment error in pixels of the picture.
     pub error: f64,
-    /// From pixels of the picture to pixels of the photo, 3 x 3, row by row.
+    /// Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row.
     pub to_photo: [f64; 9],
 }
 
@@ -100,11 +101,11 @@ pub unsafe extern "C" fn luxfer_sheet_params_init(params: *mut luxfer_sheet_para
     guard(|| params::init(params, size))
 }
 
-/// Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): as large as fits on the paper, pale, with
-/// ten marks around it. params may be NULL for the defaults. Save it as PNG and print it at params->dpi without scaling. The
-/// caller releases *sheet. Any thread.
-/// LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper has no room; LUXFER_OUT_OF_MEMORY beyond the memory
-/// budget.
+/// Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): in pale colours, as large as the
+/// paper allows, with ten marks around it. Save it as PNG and print it at params->dpi without scaling. params may be
+/// NULL for the defaults. The caller releases *sheet. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper is too small; LUXFER_OUT_OF_MEMORY beyond the
+/// memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_sheet_print(
     picture: *mut luxfer_image,
@@ -124,10 +125,10 @@ pub unsafe extern "C" fn luxfer_sheet_print(
     })
 }
 
-/// Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with the same params for a picture of
-/// width x height pixels, whichever way up and in perspective, and resamples it onto that picture: the artwork, linear
-/// RGB. params may be NULL for the defaults, report may be NULL. Takes up to some seconds. The caller releases *artwork. Any
-/// thread.
+/// Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of width
+/// x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
+/// perspective. params may be NULL for the defaults, report may be NULL. Takes up to a few seconds. The caller releases
+/// *artwork. Any thread.
 /// LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_sheet_align(

@@ -1,4 +1,5 @@
-//! What all stages share: inputs that change only between jobs, one job at a time, results that appear on success.
+//! The base of all stages: inputs that change only between jobs, one job at a time, and a result that is stored on
+//! success.
 
 use super::context::Context;
 use super::guard::lock;
@@ -38,7 +39,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         change(&mut state.inputs)
     }
 
-    /// The inputs as they are.
+    /// A copy of the current inputs.
     pub(super) fn inputs(&self) -> I {
         lock(&self.state).inputs.clone()
     }
@@ -50,12 +51,12 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         })
     }
 
-    /// Replaces the result while a job runs, to show how far it is.
+    /// Publishes an intermediate result while a job runs.
     pub(super) fn publish(&self, output: O) {
         lock(&self.state).output = Some(Arc::new(output));
     }
 
-    /// Changes a part of the result for the caller's own, unless a job runs.
+    /// Replaces a part of the result by the caller's, unless a job runs.
     pub(super) fn replace(&self, change: impl FnOnce(&mut O)) -> Result<()>
     where
         O: Clone + Default,
@@ -79,7 +80,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
             state.busy = true;
             state.inputs.clone()
         };
-        // Ends the claim however the job ends, also if its thread cannot be started.
+        // The claim ends with the job, also if its thread cannot be started.
         let claim = Claim(self.clone());
         let job = Job::start(&self.context, move |job| {
             let output = work(&inputs, &claim.0, job)?;
@@ -111,7 +112,7 @@ impl<I, O> Drop for Claim<I, O> {
     }
 }
 
-/// An input that a job cannot do without.
+/// A required input of a job.
 pub(super) fn need<'a, T>(input: &'a Option<T>, setter: &str) -> Result<&'a T> {
     input
         .as_ref()

@@ -1,16 +1,17 @@
 //! Status
 //!
-//! Every function that can fail returns a luxfer_status. Values are never changed or reused; new ones may be added.
-//! Outputs are written only when LUXFER_OK is returned. luxfer_context_last_error says in words what went wrong.
+//! Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added. A
+//! function writes its outputs only when it returns LUXFER_OK. luxfer_context_last_error describes the failure in
+//! words.
 
 use std::ffi::c_char;
 
-/// The result of a call: LUXFER_OK, or why it failed.
+/// The result of a call: LUXFER_OK, or the reason for the failure.
 pub type luxfer_status = i32;
 
 /// Success.
 pub const LUXFER_OK: luxfer_status = 0;
-/// A cause that has no status of its own.
+/// An error that has no status value of its own.
 pub const LUXFER_UNKNOWN: luxfer_status = 1;
 /// A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another.
 pub const LUXFER_INVALID_ARGUMENT: luxfer_status = 2;
@@ -18,27 +19,28 @@ pub const LUXFER_INVALID_ARGUMENT: luxfer_status = 2;
 pub const LUXFER_INVALID_OPERATION: luxfer_status = 3;
 /// The memory budget of the context, or the machine, is used up.
 pub const LUXFER_OUT_OF_MEMORY: luxfer_status = 4;
-/// The file or the request is valid, but uses something this library does not do.
+/// The file or the request is valid, but uses a feature that this library does not support.
 pub const LUXFER_UNSUPPORTED: luxfer_status = 5;
 /// The job was cancelled by the caller.
 pub const LUXFER_CANCELLED: luxfer_status = 6;
-/// The operating system could not read or write a file, or the caller's writer refused.
+/// The operating system could not read or write a file, or the caller's write function returned an error.
 pub const LUXFER_IO: luxfer_status = 7;
 /// A file is truncated, corrupt, or not what it claims to be.
 pub const LUXFER_FORMAT: luxfer_status = 8;
-/// A result was asked for before the job that makes it has succeeded, or a wait timed out.
+/// A result was requested before its job has succeeded, or a wait timed out.
 pub const LUXFER_NOT_READY: luxfer_status = 9;
-/// A defect in this library: please report it.
+/// A bug in this library: please report it.
 pub const LUXFER_INTERNAL: luxfer_status = 10;
 /// The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only.
 pub const LUXFER_DEGENERATE: luxfer_status = 11;
 /// No surface, image or entry has the given name or index.
 pub const LUXFER_NOT_FOUND: luxfer_status = 12;
-/// No light can reach the target: no path, a channel fully absorbed, or negative light would be needed.
+/// No light can reach the target: there is no light path, a channel is fully absorbed, or negative light would be
+/// needed.
 pub const LUXFER_UNREACHABLE: luxfer_status = 13;
 
-/// The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is none. The string is static:
-/// never free it. Any thread.
+/// The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The string is
+/// static: never free it. Any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn luxfer_status_name(status: luxfer_status) -> *const c_char {
     let name = match status {

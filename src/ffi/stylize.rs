@@ -1,11 +1,12 @@
 //! Stylisation
 //!
-//! Paints a target scene as an artist has painted an exemplar scene (StyLit). Give the artwork, pairs of images that show
-//! what the light does in the exemplar and in the target (the guides), and start; or give a half-painted picture and have
-//! the rest painted. While its job runs, and after a cancel, the picture of the finest level done can be read.
+//! Paints a target scene in the style in which an artist has painted an exemplar scene (StyLit). Set the artwork, add
+//! the guides (pairs of images that show the light in the exemplar and in the target) and start. Or set a half-painted
+//! picture and let the library paint the rest. While the job runs, and after a cancel, the picture of the finest
+//! finished level can be read.
 //!
-//! Some of its methods are covered by patents in some countries, so a build of the library may leave it out: its
-//! functions are there all the same, and luxfer_stylize_create then returns LUXFER_UNSUPPORTED.
+//! Patents cover some of the methods in some countries, so a build of the library may leave stylisation out. Its
+//! functions still exist in such a build, but luxfer_stylize_create returns LUXFER_UNSUPPORTED.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -31,20 +32,20 @@ pub struct luxfer_stylize {
     _opaque: [u8; 0],
 }
 
-/// What the numbers of a guide mean: a LUXFER_GUIDE_ value.
+/// Meaning of the values of a guide: a LUXFER_GUIDE_ value.
 pub type luxfer_guide_range = i32;
-/// Linear light >= 0, such as renderings; compared as it would look on a screen.
+/// Linear light >= 0, such as renderings; it is compared as it would look on a screen.
 pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
-/// Numbers without a curve, such as normals, object codes and edges; the range of both images together becomes [0, 1].
+/// Data, such as normals, object codes and edges; the common range of both images is scaled to [0, 1].
 pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
 
-/// Flag of luxfer_stylize_add_guides: normals too.
+/// Flag of luxfer_stylize_add_guides: add the normals.
 pub const LUXFER_GUIDES_WITH_NORMALS: u32 = 1;
-/// Flag: edges too, for shapes finer than the strokes.
+/// Flag: add the edges, for shapes finer than the strokes.
 pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
-/// Flag: the colour code of materials too, so that things of one material are painted from things of the same.
+/// Flag: add the colour code of materials, so that objects of a material are painted from objects of that material.
 pub const LUXFER_GUIDES_WITH_MATERIALS: u32 = 4;
-/// Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto others.
+/// Flag: add the caustics, at the common exposure, for scenes in which glossy objects reflect light onto others.
 pub const LUXFER_GUIDES_WITH_CAUSTICS: u32 = 8;
 
 #[derive(Clone, Default)]
@@ -72,7 +73,7 @@ impl Pair {
     }
 }
 
-/// What is to be made of the target.
+/// The part of the target to paint.
 #[derive(Clone, Default)]
 enum Target {
     #[default]
@@ -81,14 +82,14 @@ enum Target {
 }
 
 impl Inputs {
-    /// Whether there is enough to start with.
+    /// Checks that the required inputs are set.
     pub(super) fn check(&self) -> Result<()> {
         need(&self.artwork, "luxfer_stylize_set_artwork")?;
         need(&self.guides.first(), "luxfer_stylize_add_guide")?;
         Ok(())
     }
 
-    /// Does what is to be done with the input, as of a first frame.
+    /// Calls `work` with the input, as for a first frame.
     pub(super) fn with_input<T>(&self, work: impl FnOnce(&stylize::Input) -> Result<T>) -> Result<T> {
         let guides: Vec<Guide> = self.guides.iter().map(Pair::guide).collect();
         let artwork = need(&self.artwork, "luxfer_stylize_set_artwork")?.image();
@@ -137,8 +138,8 @@ pub unsafe extern "C" fn luxfer_stylize_create(
     })
 }
 
-/// Sets the artwork: the exemplar scene as the artist has painted it, linear colour, 1, 3 or 4 channels, aligned with the
-/// sources of the guides and of their size. Any thread.
+/// Sets the artwork: the exemplar scene as painted by the artist, in linear colour, 1, 3 or 4 channels, of the size of
+/// the guides' sources and aligned with them. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     stylize: *mut luxfer_stylize,
@@ -153,11 +154,11 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     })
 }
 
-/// Adds a guide, or replaces the one of the same name: source shows the exemplar and target what is to be painted, with as
-/// many channels (60 at most in all guides). target may be NULL: the same image as source, for a picture that is
-/// half painted (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides'; range is a
-/// LUXFER_GUIDE_ value. All sources have one size, and all targets. Samples that are no numbers count as 0 in the target; the
-/// exemplar's pixels that have any are not used. Any thread.
+/// Adds a guide, or replaces the guide of that name. source shows the exemplar and target the scene to paint; both have
+/// the same number of channels, at most 60 in all guides together. target may be NULL to use source for both, for a
+/// half-painted picture (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a
+/// LUXFER_GUIDE_ value. All sources must have one size, and all targets one size. Values that are not finite count as 0
+/// in the target; pixels of the exemplar with such values are not used. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the channels differ, are too many, or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guide(
@@ -178,10 +179,10 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
     })
 }
 
-/// Adds the guides of two scenes, both rendered: the five of light at a common exposure, named after LUXFER_GUIDES_FULL to
-/// LUXFER_GUIDES_TWO_BOUNCES "full", "direct", "specular", "indirect" and "two bounces", each with weight 1; and for each of
-/// the LUXFER_GUIDES_WITH_ flags in extras the one it names ("caustics", "normals", "edges", "materials"), with weight
-/// extra_weight. Any thread.
+/// Adds the rendered guides of two scenes. It adds the five light guides LUXFER_GUIDES_FULL to
+/// LUXFER_GUIDES_TWO_BOUNCES at a common exposure, under the names "full", "direct", "specular", "indirect" and "two
+/// bounces", each with weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics",
+/// "normals", "edges" or "materials" with weight extra_weight. Any thread.
 /// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guides(
@@ -240,8 +241,8 @@ pub unsafe extern "C" fn luxfer_stylize_clear_guides(stylize: *mut luxfer_styliz
     })
 }
 
-/// Sets where the artwork may be copied from: above 0.5; 1 channel, the artwork's size. mask may be NULL: everywhere. Any
-/// thread.
+/// Sets the pixels of the artwork that may be copied: those where mask is above 0.5; 1 channel, the artwork's size.
+/// mask may be NULL: all pixels. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_source_mask(
     stylize: *mut luxfer_stylize,
@@ -256,9 +257,9 @@ pub unsafe extern "C" fn luxfer_stylize_set_source_mask(
     })
 }
 
-/// Sets which pixels of the target to paint: above 0.5; 1 channel, the size of the guides' targets. The others are those of
-/// known (linear, as many channels as the artwork), to which what is painted is joined, or black if known is NULL. mask
-/// may be NULL: everything is painted. Any thread.
+/// Sets the pixels of the target to paint: those where mask is above 0.5; 1 channel, the size of the guides' targets.
+/// The other pixels are taken from known (linear, with the number of channels of the artwork), and the new paint is
+/// fitted to them; if known is NULL they are black. mask may be NULL: all pixels are painted. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     stylize: *mut luxfer_stylize,
@@ -275,10 +276,10 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
     })
 }
 
-/// Makes each start go on from the result before, the last frame of a sequence: motion (2 channels, the size of the guides'
-/// targets) tells where each pixel was in that frame, relative to where it is now, x and y in pixels, NaN where it was not
-/// to be seen. What was painted there moves along and stays where it fits; see luxfer_stylize_params.coherence. motion may
-/// be NULL: each start begins anew. Any thread.
+/// Makes each job start from the previous result, for the frames of an animation. motion (2 channels, the size of the
+/// guides' targets) holds for each pixel the offset to its position in the previous frame, x and y in pixels; NaN where
+/// it was not visible. The paint of the previous frame moves along and stays where it fits; see
+/// luxfer_stylize_params.coherence. motion may be NULL: each job starts from nothing. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_motion(
     stylize: *mut luxfer_stylize,
@@ -294,9 +295,10 @@ pub unsafe extern "C" fn luxfer_stylize_set_motion(
 }
 
 /// Starts a job that stylises. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a setting is
-/// out of range; LUXFER_NOT_READY if motion is set and there is no result before. The job may end with LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels,
-/// LUXFER_DEGENERATE if a mask is empty or leaves no exemplar patch.
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a
+/// setting is out of range; LUXFER_NOT_READY if motion is set and there is no previous result. The job may end with
+/// LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels, LUXFER_DEGENERATE if a mask is empty or
+/// leaves no exemplar patch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_start(
     stylize: *mut luxfer_stylize,
@@ -327,11 +329,12 @@ pub unsafe extern "C" fn luxfer_stylize_start(
     })
 }
 
-/// Starts a job that follows a change of the artwork: where the 1-channel image changed is above 0.5, artwork (of the first
-/// one's size and channels) has new paint, and what was painted from there is painted anew. Takes a fraction of the time
-/// of luxfer_stylize_start. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION unless a job was started with keep_for_update = 1 and has succeeded, or if one runs. The job may
-/// end with LUXFER_INVALID_ARGUMENT if sizes differ; after a cancel the next update makes up for what was left.
+/// Starts a job that updates the picture after a change of the artwork. artwork has the size and channels of the first
+/// artwork, and new paint where the 1-channel image changed is above 0.5; the pixels of the picture that were painted
+/// from there are painted again. Takes a fraction of the time of luxfer_stylize_start. The caller releases *job. Any
+/// thread.
+/// LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end with
+/// LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work too.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_update(
     stylize: *mut luxfer_stylize,
@@ -358,10 +361,11 @@ pub unsafe extern "C" fn luxfer_stylize_update(
     })
 }
 
-/// Has the rest of a half-painted picture painted: the artwork is the picture, painted (1 channel, its size) is above 0.5
-/// where it is done, and the guides' sources show its scene, with NULL as target. Same as painted as the source mask, its
-/// opposite as the target mask and the artwork as known. Any thread.
-/// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted has not its size or not 1 channel.
+/// Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, its size)
+/// is above 0.5 where it is finished; the sources of the guides show its scene, and their targets are NULL. It is a
+/// shorthand for painted as the source mask, its inverse as the target mask, and the artwork as known. Any thread.
+/// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have its size or has
+/// more than 1 channel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_painted(
     stylize: *mut luxfer_stylize,
@@ -394,7 +398,7 @@ pub unsafe extern "C" fn luxfer_stylize_retain(stylize: *mut luxfer_stylize) -> 
     handle::retain(stylize)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_release(stylize: *mut luxfer_stylize) -> luxfer_status {
     handle::release(stylize)

@@ -1,6 +1,6 @@
-//! Stylisation left out of the build (the Cargo feature `stylize`): the same symbols, so that a program made for the whole
-//! library still starts and asks. No stylisation can be created, so no other call can be about one; releasing NULL is
-//! fine as ever.
+//! Builds without stylisation (the Cargo feature `stylize`) export its symbols too, so that a program made for the
+//! whole library still starts. No stylisation can be created, so all other calls fail; releasing NULL is allowed as
+//! always.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};

@@ -1,6 +1,6 @@
 //! Settings of a stylisation
 //!
-//! Presets, and every knob. The defaults are chosen on the curves of quality against time that benches/stylit.rs draws.
+//! Presets and settings. The defaults were chosen on the curves of quality against time that benches/stylit.rs draws.
 
 use super::guard::guard;
 use super::params::{self, Versioned};
@@ -9,53 +9,55 @@ use crate::error::{Error, Result};
 use crate::patch::Vote;
 use crate::stylize::{self, Finder, Mode};
 
-/// How good and how fast: a LUXFER_STYLIZE_ preset.
+/// Presets between quality and speed: a LUXFER_STYLIZE_ preset.
 pub type luxfer_stylize_preset = i32;
 /// Full quality, the default.
 pub const LUXFER_STYLIZE_FULL: luxfer_stylize_preset = 0;
-/// Nearly as good in half the time.
+/// Nearly the quality of LUXFER_STYLIZE_FULL in half the time.
 pub const LUXFER_STYLIZE_FAST: luxfer_stylize_preset = 1;
-/// Half resolution, guides compressed: for watching while painting.
+/// Half resolution with compressed guides, for feedback while painting.
 pub const LUXFER_STYLIZE_PREVIEW: luxfer_stylize_preset = 2;
 /// The settings of the paper, for comparison.
 pub const LUXFER_STYLIZE_PAPER: luxfer_stylize_preset = 3;
 
-/// How matches between exemplar and target are made: a LUXFER_STYLIZE_MODE_ value.
+/// How exemplar patches are assigned to the target: a LUXFER_STYLIZE_MODE_ value.
 pub type luxfer_stylize_mode = i32;
-/// Exemplar patches look for their places under an error budget (Fiser et al. 2016), the default.
+/// Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the default.
 pub const LUXFER_STYLIZE_MODE_BUDGET: luxfer_stylize_mode = 0;
 /// Every exemplar patch is used equally often (Jamriska et al. 2015).
 pub const LUXFER_STYLIZE_MODE_UNIFORM: luxfer_stylize_mode = 1;
-/// Each place takes its nearest exemplar patch (Wexler et al. 2007).
+/// Each target patch takes its nearest exemplar patch (Wexler et al. 2007).
 pub const LUXFER_STYLIZE_MODE_NEAREST: luxfer_stylize_mode = 2;
-/// One pass in scan order (Hertzmann et al. 2001); on one thread.
+/// One pass in scan order (Hertzmann et al. 2001); runs on one thread.
 pub const LUXFER_STYLIZE_MODE_GREEDY: luxfer_stylize_mode = 3;
-/// Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere (Sloan et al. 2001).
+/// Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan et
+/// al. 2001).
 pub const LUXFER_STYLIZE_MODE_LIT_SPHERE: luxfer_stylize_mode = 4;
-/// Each place takes its nearest exemplar patch, and one that is used often counts as farther (Kaspar et al. 2015): see
-/// occurrence. On one thread, and by LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
+/// Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar et al.
+/// 2015): see the field occurrence. Runs on one thread, and with LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
 pub const LUXFER_STYLIZE_MODE_OCCURRENCE: luxfer_stylize_mode = 5;
 
-/// How nearest patches are searched for: a LUXFER_STYLIZE_SEARCH_ value.
+/// Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value.
 pub type luxfer_stylize_search = i32;
 /// PatchMatch, the default.
 pub const LUXFER_STYLIZE_SEARCH_PATCHMATCH: luxfer_stylize_search = 0;
-/// A k-d tree over the means of patches: not PatchMatch.
+/// A k-d tree over the means of patches instead of PatchMatch.
 pub const LUXFER_STYLIZE_SEARCH_TABLE: luxfer_stylize_search = 1;
 
-/// How patches that overlap make a pixel: a LUXFER_STYLIZE_VOTE_ value.
+/// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value.
 pub type luxfer_stylize_vote = i32;
-/// Their mean.
+/// The mean of the overlapping patches.
 pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
-/// Their mean, closer matches counting more.
+/// The mean of the overlapping patches, weighted so that closer matches count more.
 pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
-/// The one nearest to their mean, so that no colour is made that is not in the artwork.
+/// The colour of the patch that is nearest to the mean, so that every colour occurs in the artwork.
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
-/// The one that most of them put there, so that pieces of the artwork stay whole up to their seams.
+/// The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay whole up to
+/// their seams.
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 
-/// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the defaults given
-/// here are those of LUXFER_STYLIZE_FULL.
+/// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
+/// stated here are those of LUXFER_STYLIZE_FULL.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_params {
@@ -67,51 +69,58 @@ pub struct luxfer_stylize_params {
     pub search: luxfer_stylize_search,
     /// Width of a patch in pixels, odd, in [1, 33]; default 5.
     pub patch: u32,
-    /// Weight of all guides together against the artwork's colours together, in [0, 1e6]; default 2.
+    /// Weight of all guides together, relative to the artwork's colours together, in [0, 1e6]; default 2.
     pub guide_weight: f32,
-    /// Most resolution levels, each half of the next, in [1, 16]; default 6.
+    /// Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6.
     pub levels: u32,
-    /// Rounds of matching and painting on the level before the finest, in [1, 100]; default 6.
+    /// Rounds of matching and painting on the second finest level, in [1, 100]; default 6.
     pub iterations: u32,
-    /// Rounds on the finest level, in [1, 100]; default 1.
+    /// Rounds of matching and painting on the finest level, in [1, 100]; default 1.
     pub finest_iterations: u32,
-    /// Rounds after those, without the budget, in which each place takes its nearest match, in [0, 100]; default 3; 0 is the
-    /// paper's. Modes without a budget do as many more of their own.
+    /// Additional rounds on the finest level without the error budget, in which each target patch takes its nearest
+    /// match, in [0, 100]; default 3; the paper has 0. In other modes than LUXFER_STYLIZE_MODE_BUDGET these are
+    /// additional rounds of that mode.
     pub polish: u32,
-    /// Sweeps of a search, in [1, 100]; default 1.
+    /// PatchMatch sweeps of a search, in [1, 100]; default 1.
     pub sweeps: u32,
-    /// Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.9.
+    /// Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
+    /// default 0.9.
     pub coverage: f32,
-    /// Most passes of matching under the budget in a round, in [1, 1000]; default 6.
+    /// Maximum number of matching passes under the error budget in a round, in [1, 1000]; default 6.
     pub passes: u32,
-    /// Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0 is the
-    /// paper's.
+    /// Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100]; default 2;
+    /// the paper has 0.
     pub settle: u32,
-    /// What a seam between neighbours costs in those sweeps, as a share of the mean error, in [0, 100]; default 0.2.
+    /// Cost of a seam between neighbouring patches in those sweeps, as a share of the mean error, in [0, 100]; default
+    /// 0.2.
     pub seam: f32,
     /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,
     /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST.
     pub final_vote: luxfer_stylize_vote,
-    /// 1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0.
+    /// 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
+    /// default: full resolution.
     pub preview: u32,
-    /// 1: keep what luxfer_stylize_update needs, about as much memory as all guides take; default 0.
+    /// 1: keep the data that luxfer_stylize_update needs, about as much memory as all guides; 0, the default: free it.
     pub keep_for_update: u32,
-    /// Share of the paint of the frame before that is kept where it fits, in [0, 1]; default 1. Below 1 it boils, as
-    /// hand-painted frames do, if each frame has its own seed. Without luxfer_stylize_set_motion it has no effect.
+    /// Share of the previous frame's paint that is kept where it fits, in [0, 1]; default 1. Below 1 the paint changes
+    /// from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It needs
+    /// luxfer_stylize_set_motion; without it, it has no effect.
     pub coherence: f32,
-    /// How far the exemplar's light is changed to the brightness and contrast of the target's, in [0, 1]; default 0.
+    /// How far the light guides of the exemplar are adapted to the brightness and contrast of the target's, in [0, 1];
+    /// default 0.
     pub match_appearance: f32,
     /// Seed of the search; default 1.
     pub seed: u64,
-    /// How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the paper's. More
-    /// follows the guides more closely, in smaller pieces.
+    /// Factor of guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. A larger factor
+    /// follows the guides more closely, with smaller connected pieces of the artwork.
     pub coarse_guides: f32,
-    /// Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the paper's.
+    /// Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
     pub coarse_iterations: u32,
-    /// Weight of usage in LUXFER_STYLIZE_MODE_OCCURRENCE, lambda, in [0, 10]; default 0.1, which Fiser et al. found best by
-    /// hand (Fig. 10n). What a match to a patch that is used as often as all on average costs beside its distance, both in the
-    /// unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is LUXFER_STYLIZE_MODE_NEAREST.
+    /// Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
+    /// al. found best by hand (Fig. 10n). It is the cost, in addition to the distance, of a match to a patch of average
+    /// usage. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
+    /// LUXFER_STYLIZE_MODE_NEAREST.
     pub occurrence: f32,
     /// Must be 0.
     pub reserved: u32,
@@ -128,7 +137,7 @@ unsafe impl Versioned for luxfer_stylize_params {
 
 const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
-const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most];
+const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
 
 /// The value that an integer from outside stands for.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {

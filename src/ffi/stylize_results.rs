@@ -1,6 +1,7 @@
 //! Results of a stylisation
 //!
-//! The picture, where it was copied from, how well it follows the guides, and what the run did level by level.
+//! The picture, the source of each pixel in the artwork, the error of the guides, and statistics of the run level by
+//! level.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -18,43 +19,44 @@ use std::sync::{Arc, Mutex};
 
 /// An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value.
 pub type luxfer_stylize_image = i32;
-/// The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel its sides
-/// are those of the target halved luxfer_stylize_report.halvings times, rounded down.
+/// The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it is
+/// smaller: the sides of the target are halved luxfer_stylize_report.halvings times, rounded down.
 pub const LUXFER_STYLIZE_IMAGE_PICTURE: luxfer_stylize_image = 0;
-/// How far the guides at each pixel are from those where its paint was taken, in [0, 1]; 1 channel. High where the exemplar
-/// has nothing that fits.
+/// Difference between the guides at each pixel and at the place in the exemplar from which it was painted, in [0, 1]; 1
+/// channel. It is high where nothing in the exemplar fits.
 pub const LUXFER_STYLIZE_IMAGE_GUIDE_ERROR: luxfer_stylize_image = 1;
-/// Where in the artwork the paint of each pixel was taken, x and y in pixels, -1 where nothing was painted; 2 channels.
+/// Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was painted; 2
+/// channels.
 pub const LUXFER_STYLIZE_IMAGE_SOURCES: luxfer_stylize_image = 2;
 
-/// How good a stylisation is. Set struct_size before the call.
+/// Quality of a stylisation. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_report {
     /// sizeof(luxfer_stylize_report), set by the caller.
     pub struct_size: u32,
-    /// 1 if the run ended, 0 if only `levels` levels are done: then the fields from `used` on are 0.
+    /// 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0.
     pub finished: u32,
-    /// Number of levels done; see luxfer_stylize_get_level.
+    /// Number of finished levels; see luxfer_stylize_get_level.
     pub levels: u32,
-    /// How often the sides of the picture are half those of the target.
+    /// Number of times that the sides of the target were halved to get the size of the picture.
     pub halvings: u32,
-    /// Width of patches that was used.
+    /// Width of the patches, in pixels.
     pub patch: u32,
-    /// Most uses of one exemplar patch.
+    /// Largest number of uses of an exemplar patch.
     pub most_used: u32,
-    /// Mean squared difference of the channels in [0, 1] of matched patches (Eq. 3), last round; the artwork's channels
-    /// count 1 together, the guides guide_weight.
+    /// Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
+    /// channels of the artwork have the weight 1 together, the guides guide_weight.
     pub energy: f64,
-    /// Share of the exemplar's patches that were used.
+    /// Share of the exemplar patches that were used, in [0, 1].
     pub used: f64,
-    /// Entropy of their usage in bits.
+    /// Entropy of the usage of exemplar patches, in bits.
     pub entropy: f64,
     /// Root mean square of LUXFER_STYLIZE_IMAGE_GUIDE_ERROR.
     pub guide_error: f64,
-    /// Exemplar pixels left out because they are no numbers.
+    /// Number of exemplar pixels that were not used because a value is not finite.
     pub broken_source: u64,
-    /// Pixels of the target's guides taken as 0 for it.
+    /// Number of target pixels with a guide value that is not finite and was taken as 0.
     pub broken_target: u64,
 }
 
@@ -86,9 +88,9 @@ unsafe impl Versioned for luxfer_stylize_report {
 pub struct luxfer_stylize_round {
     /// sizeof(luxfer_stylize_round), set by the caller.
     pub struct_size: u32,
-    /// Passes of matching under the budget; see luxfer_stylize_get_pass.
+    /// Number of matching passes under the error budget; see luxfer_stylize_get_pass.
     pub passes: u32,
-    /// As luxfer_stylize_report.energy, after this round.
+    /// Energy after this round, as luxfer_stylize_report.energy.
     pub energy: f64,
 }
 
@@ -101,7 +103,7 @@ unsafe impl Versioned for luxfer_stylize_round {
     }
 }
 
-/// One pass of matching under the budget. Set struct_size before the call.
+/// One matching pass under the error budget. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_pass {
@@ -109,11 +111,12 @@ pub struct luxfer_stylize_pass {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// Share of the exemplar's patches that fitted well enough, in [0, 1].
+    /// Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
+    /// the error curve.
     pub knee: f64,
     /// Share of the target with a match after this pass, in [0, 1].
     pub coverage: f64,
-    /// Target patches that were given a match in this pass.
+    /// Number of target patches that received a match in this pass.
     pub gained: u64,
 }
 
@@ -126,7 +129,7 @@ unsafe impl Versioned for luxfer_stylize_pass {
     }
 }
 
-/// What is known of a run, finished or not.
+/// The result of a run, finished or not.
 #[derive(Clone)]
 pub(super) struct Stylised {
     picture: Arc<Image>,
@@ -135,7 +138,7 @@ pub(super) struct Stylised {
     finished: Option<Finished>,
 }
 
-/// What only a finished run has.
+/// The result of a finished run only.
 #[derive(Clone)]
 struct Finished {
     guide_error: Arc<Image>,
@@ -161,7 +164,7 @@ impl Stylised {
         let numbers = luxfer_stylize_report {
             finished: 1,
             patch: report.patch as u32,
-            most_used: report.usage.most,
+            most_used: report.usage.max_uses,
             used: report.usage.used,
             entropy: report.usage.entropy,
             guide_error: (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt(),
@@ -183,7 +186,7 @@ impl Stylised {
         }
     }
 
-    /// The same run with the picture of an update.
+    /// This run with the picture of an update.
     pub(super) fn updated(&self, picture: Image, sources: Image) -> Self {
         let finished = self.finished.clone().map(|f| Finished { sources: Arc::new(sources), ..f });
         Self { picture: Arc::new(picture), finished, ..self.clone() }
@@ -209,9 +212,10 @@ impl Stylised {
     }
 }
 
-/// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. After an update (luxfer_stylize_update) picture and
-/// sources are its; the rest is that of the last full run. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before the first level of a job is done, and, but for the picture, before the last one is.
+/// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
+/// the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
+/// level is finished.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_image(
     stylize: *mut luxfer_stylize,
@@ -232,8 +236,8 @@ pub unsafe extern "C" fn luxfer_stylize_get_image(
     })
 }
 
-/// Tells how good the result is so far. Any thread.
-/// LUXFER_NOT_READY before the first level of a job is done.
+/// Gets the current quality of the result. Any thread.
+/// LUXFER_NOT_READY before the first level of a job is finished.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_report(
     stylize: *mut luxfer_stylize,
@@ -253,9 +257,9 @@ pub unsafe extern "C" fn luxfer_stylize_get_report(
     })
 }
 
-/// Tells the size of a level, the coarsest being level 0, and the number of its rounds; any of the three may be NULL. Any
-/// thread.
-/// LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level.
+/// Gets the size of a level and the number of its rounds; level 0 is the coarsest. width, height and rounds may be
+/// NULL. Any thread.
+/// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_level(
     stylize: *mut luxfer_stylize,
@@ -275,7 +279,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_level(
 }
 
 /// Describes a round of a level. Any thread.
-/// LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level or round.
+/// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_round(
     stylize: *mut luxfer_stylize,
@@ -295,7 +299,8 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
 }
 
 /// Describes a pass of a round. Any thread.
-/// LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level, round or pass.
+/// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
+/// pass.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_pass(
     stylize: *mut luxfer_stylize,

@@ -1,8 +1,8 @@
 //! Transfer
 //!
-//! The lighting transfer from end to end: from a photo, a few strokes and a scene to that scene lit as in the photo. It
-//! runs the stages in order. Every result can be read as soon as its stage has ended, replaced by the caller's own, and the
-//! run taken up again from any stage.
+//! The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs the
+//! stages in order. You can read every result as soon as its stage has ended, replace it by your own, and continue from
+//! any stage.
 
 use super::context::luxfer_context;
 use super::emission::luxfer_emission_params;
@@ -39,63 +39,64 @@ pub struct luxfer_transfer {
     _opaque: [u8; 0],
 }
 
-/// A stage of the transfer: a LUXFER_STAGE_ value, in the order they run.
+/// A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run.
 pub type luxfer_stage = i32;
-/// Lines, vanishing points and the photo's camera.
+/// Finds lines, vanishing points and the photo's camera.
 pub const LUXFER_STAGE_VIEW: luxfer_stage = 0;
-/// Ten channels for each pixel.
+/// Computes the ten channels of the features.
 pub const LUXFER_STAGE_FEATURES: luxfer_stage = 1;
-/// The mask of the plane that carries the lights.
+/// Segments the plane that carries the lights.
 pub const LUXFER_STAGE_PLANE: luxfer_stage = 2;
-/// The mask of the lights in it.
+/// Segments the lights on the plane.
 pub const LUXFER_STAGE_LIGHTS: luxfer_stage = 3;
-/// The plane seen straight on.
+/// Unwarps the plane to a frontal view.
 pub const LUXFER_STAGE_UNWARP: luxfer_stage = 4;
-/// The emissive texture, laid onto the scene's surface.
+/// Synthesises the emissive texture and maps it onto the scene's surface.
 pub const LUXFER_STAGE_EMISSION: luxfer_stage = 5;
-/// Its colour and intensity.
+/// Solves for the colour and intensity of the emission.
 pub const LUXFER_STAGE_RELIGHT: luxfer_stage = 6;
-/// The picture.
+/// Renders the picture.
 pub const LUXFER_STAGE_RENDER: luxfer_stage = 7;
 
-/// What part of the photo gives the colour to match: a LUXFER_TARGET_ value.
+/// The part of the photo that gives the colour to match: a LUXFER_TARGET_ value.
 pub type luxfer_target = i32;
-/// The plane that carries the lights, without them and their halo.
+/// The plane that carries the lights, without the lights and their halo.
 pub const LUXFER_TARGET_SURFACE: luxfer_target = 0;
 /// The whole photo.
 pub const LUXFER_TARGET_WHOLE_IMAGE: luxfer_target = 1;
 
-/// Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs pointed to are read during the call.
+/// Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs behind the pointers are read during
+/// the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_transfer_params {
     /// sizeof(luxfer_transfer_params), set by luxfer_transfer_params_init.
     pub struct_size: u32,
-    /// Longest side of the emissive texture in texels, in [1, 16384]; default 2048.
+    /// Maximum side of the emissive texture in texels, in [1, 16384]; default 2048.
     pub max_texels: u32,
-    /// Distance of the photo's camera from the lit plane in metres, in [0.01, 1e4]; default 1.2. It sets the scale of the
-    /// pattern.
+    /// Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It sets
+    /// the scale of the pattern.
     pub plane_distance: f64,
-    /// Luminance that the photo's white stands for, in cd/m², in [1e-6, 1e9]; default 100.
+    /// Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100.
     pub white_luminance: f32,
     /// LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE.
     pub target: luxfer_target,
-    /// Settings of the stages VIEW and UNWARP; NULL, the default, for their defaults.
+    /// Settings of the stages VIEW and UNWARP; NULL, the default: their defaults.
     pub rectify: *const luxfer_rectify_params,
-    /// Settings of the stage FEATURES; NULL, the default, for their defaults.
+    /// Settings of the stage FEATURES; NULL, the default: their defaults.
     pub features: *const luxfer_features_params,
-    /// Settings of the stage PLANE; NULL, the default, for their defaults.
+    /// Settings of the stage PLANE; NULL, the default: their defaults.
     pub plane: *const luxfer_segment_params,
-    /// Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only.
+    /// Settings of the stage LIGHTS; NULL, the default: the defaults with channels = 7, colour only.
     pub lights: *const luxfer_segment_params,
-    /// Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; NULL, the default, for their
-    /// defaults.
+    /// Settings of the stage EMISSION; NULL, the default: their defaults. The transfer sets width, height, scale and
+    /// offset itself.
     pub emission: *const luxfer_emission_params,
-    /// Settings of the stage RELIGHT; NULL, the default, for their defaults.
+    /// Settings of the stage RELIGHT; NULL, the default: their defaults.
     pub relight: *const luxfer_relight_params,
-    /// Settings of the stage RENDER; NULL, the default, for their defaults.
+    /// Settings of the stage RENDER; NULL, the default: their defaults.
     pub render: *const luxfer_render_params,
-    /// How the lights lie on the surface; NULL, the default, for the defaults.
+    /// Layout of the lights on the surface; NULL, the default: the defaults.
     pub pattern: *const luxfer_pattern_params,
 }
 
@@ -137,11 +138,11 @@ impl luxfer_transfer_params {
             rectify,
             unwarp,
             features: params::read(self.features)?.params(),
-            plane: params::read(self.plane)?.params(),
+            plane: params::read(self.plane)?.params()?,
             lights: if self.lights.is_null() {
                 segment::Params::for_lights()
             } else {
-                params::read_required(self.lights)?.params()
+                params::read_required(self.lights)?.params()?
             },
             emission: params::read(self.emission)?.params()?,
             pattern: params::read(self.pattern)?.pattern()?,
@@ -230,7 +231,7 @@ pub unsafe extern "C" fn luxfer_transfer_create(
     })
 }
 
-/// Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread.
+/// Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_photo(
     transfer: *mut luxfer_transfer,
@@ -249,7 +250,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_photo(
     })
 }
 
-/// Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: none. Any thread.
+/// Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: no depth map. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_depth(
     transfer: *mut luxfer_transfer,
@@ -266,10 +267,11 @@ pub unsafe extern "C" fn luxfer_transfer_set_depth(
     })
 }
 
-/// Sets the scene to light, and the name (UTF-8) of the object or material of its surface that receives the lights. The
-/// scene itself is never changed; each start takes it as it is then. Of all the triangles of that name the plane is taken that
-/// faces most of the room: its parts, as between the beams of a ceiling, share one pattern that goes on from part to part. What
-/// lies in other planes is left as it is; another transfer lights it, with a pattern of its own. Any thread.
+/// Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
+/// transfer never changes the scene; each job uses the scene as it is when the job starts. Among the triangles of that
+/// name it takes the plane that faces most of the room. The parts of this plane, for example between the beams of a
+/// ceiling, share one pattern that continues from part to part. Triangles in other planes stay unchanged; light them by
+/// another transfer with its own pattern. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_scene(
     transfer: *mut luxfer_transfer,
@@ -288,10 +290,10 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
     })
 }
 
-/// Sets the triangles of the scene, mesh and triangle of each, that receive the lights instead of those of a name; of these too
-/// the plane is taken that faces most of the room. They replace those set before, and luxfer_transfer_set_scene takes them away;
-/// triangles may be NULL if count is 0: none, the name counts again. Any thread.
-/// A run ends with LUXFER_INVALID_ARGUMENT if the scene does not have them.
+/// Sets the triangles of the scene that receive the lights, mesh index and triangle index of each, instead of the named
+/// surface. Among them, too, the transfer takes the plane that faces most of the room. They replace earlier triangles,
+/// and luxfer_transfer_set_scene removes them. triangles may be NULL if count is 0: the name counts again. Any thread.
+/// A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_triangles(
     transfer: *mut luxfer_transfer,
@@ -310,8 +312,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_triangles(
     })
 }
 
-/// Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the surface
-/// as it is instead of making one from the photo. texture may be NULL, the default: one is made. Any thread.
+/// Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the
+/// surface instead of making one from the photo. texture may be NULL, the default: make one. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_texture(
     transfer: *mut luxfer_transfer,
@@ -326,8 +328,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_texture(
     })
 }
 
-/// Sets the camera of the picture. camera may be NULL, the default: the scene's first, or one chosen in a corner
-/// of the room if it has none. Any thread.
+/// Sets the camera of the picture. camera may be NULL, the default: the first camera of the scene, or a camera in a
+/// corner of the room if the scene has none. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_camera(
     transfer: *mut luxfer_transfer,
@@ -342,8 +344,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_camera(
     })
 }
 
-/// Adds a stroke on the photo that concerns phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
-/// lights are examples of the plane as well. Any thread.
+/// Adds a stroke on the photo for phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
+/// lights count as strokes on the plane too. Any thread.
 /// LUXFER_INVALID_OPERATION before the photo is set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_add_stroke(
@@ -407,9 +409,9 @@ fn add(strokes: &mut StrokeSet, more: StrokeSet) {
     strokes.lights.extend(more.lights);
 }
 
-/// Sets rectangles of the surface that lamps keep away from, as behind ducts and sprinklers: u0, v0, u1 and v1 of each in
-/// metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace those set
-/// before; zones may be NULL if count is 0. Any thread.
+/// Sets rectangles of the surface without lamps, for example behind ducts and sprinklers: u0, v0, u1 and v1 of each in
+/// metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace earlier
+/// rectangles; zones may be NULL if count is 0. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_zones(
     transfer: *mut luxfer_transfer,
@@ -438,9 +440,9 @@ pub unsafe extern "C" fn luxfer_transfer_clear_strokes(transfer: *mut luxfer_tra
     })
 }
 
-/// Puts the lines and the camera that a luxfer_rectify has found, and the plane if it has unwarped one, in the place of the
-/// results of the stages VIEW and UNWARP. Any thread.
-/// LUXFER_NOT_READY if it has found none yet.
+/// Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
+/// plane, the result of the stage UNWARP by that plane. Any thread.
+/// LUXFER_NOT_READY if it has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_rectify(
     transfer: *mut luxfer_transfer,
@@ -457,8 +459,8 @@ pub unsafe extern "C" fn luxfer_transfer_use_rectify(
     })
 }
 
-/// Puts the result of a luxfer_features in the place of that of the stage FEATURES. Any thread.
-/// LUXFER_NOT_READY if it has none yet.
+/// Replaces the result of the stage FEATURES by that of a luxfer_features. Any thread.
+/// LUXFER_NOT_READY if it has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_features(
     transfer: *mut luxfer_transfer,
@@ -470,9 +472,9 @@ pub unsafe extern "C" fn luxfer_transfer_use_features(
     })
 }
 
-/// Puts the result of a luxfer_segment in the place of that of the stage PLANE or LIGHTS, as phase, a LUXFER_PHASE_ value,
-/// says. Any thread.
-/// LUXFER_NOT_READY if it has none yet.
+/// Replaces the result of the stage PLANE or LIGHTS by that of a luxfer_segment; phase, a LUXFER_PHASE_ value, chooses
+/// the stage. Any thread.
+/// LUXFER_NOT_READY if it has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_segment(
     transfer: *mut luxfer_transfer,
@@ -485,8 +487,8 @@ pub unsafe extern "C" fn luxfer_transfer_use_segment(
     })
 }
 
-/// Puts a mask of the photo's size, such as one drawn by hand, in the place of the result of the stage PLANE or LIGHTS, as
-/// phase, a LUXFER_PHASE_ value, says; 1 channel, taken as a confidence in [0, 1]. Any thread.
+/// Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example one drawn by hand;
+/// phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, used as a confidence in [0, 1]. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_mask(
     transfer: *mut luxfer_transfer,
@@ -511,12 +513,12 @@ fn use_segmentation(
     }
 }
 
-/// Starts a job that runs the stages first to last, LUXFER_STAGE_ values, both included; those before must have results.
-/// params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if a job runs already, or an input or the result of an earlier stage is missing;
-/// LUXFER_INVALID_ARGUMENT for a setting of one of the stages that is out of range. The job may end as the jobs of its
-/// stages may, the message naming the stage, and ends at once if the scene has no such surface; the results of the stages
-/// before stay.
+/// Starts a job that runs the stages from first to last, LUXFER_STAGE_ values, both included; the stages before first
+/// must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if a job runs already, or if an input or the result of an earlier stage is missing;
+/// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
+/// jobs; the message names the stage. It ends at once if the scene does not have the surface. The results of finished
+/// stages stay.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_start(
     transfer: *mut luxfer_transfer,
@@ -548,7 +550,7 @@ pub unsafe extern "C" fn luxfer_transfer_retain(transfer: *mut luxfer_transfer) 
     handle::retain(transfer)
 }
 
-/// Gives a reference back; a job that runs goes on. Any thread.
+/// Removes a reference; a running job continues. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_release(transfer: *mut luxfer_transfer) -> luxfer_status {
     handle::release(transfer)

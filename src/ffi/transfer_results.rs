@@ -1,6 +1,7 @@
 //! Transfer results
 //!
-//! What a transfer has made so far. Results appear when their stage has ended; the picture grows while it is rendered.
+//! The results of a transfer. A result is available once its stage has ended; the rendering is available in its current
+//! state while it runs.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -40,36 +41,36 @@ pub const LUXFER_TRANSFER_UNWARPED_VALID: luxfer_transfer_image = 6;
 pub const LUXFER_TRANSFER_EMISSION: luxfer_transfer_image = 7;
 /// 1 on lamps of the texture, else 0; 1 channel.
 pub const LUXFER_TRANSFER_EMISSION_MASK: luxfer_transfer_image = 8;
-/// The scene in its new light, linear RGB in cd/m²; while it is being rendered, as far as it is.
+/// The scene in its new light, linear RGB in cd/m²; in its current state while the rendering runs.
 pub const LUXFER_TRANSFER_RENDER: luxfer_transfer_image = 9;
 /// Variance of the rendering; 3 channels.
 pub const LUXFER_TRANSFER_RENDER_VARIANCE: luxfer_transfer_image = 10;
-/// The picture with its noise filtered out, if the settings of the stage RENDER have a preview; see LUXFER_RENDER_PREVIEW.
+/// The rendering after a noise filter, if the settings of the stage RENDER have a preview; see LUXFER_RENDER_PREVIEW.
 pub const LUXFER_TRANSFER_RENDER_PREVIEW: luxfer_transfer_image = 11;
 
 /// A scene of the transfer: a LUXFER_SCENE_ value.
 pub type luxfer_transfer_scene = i32;
-/// With the emission at the photo's own strength, before it is solved for.
+/// The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor.
 pub const LUXFER_SCENE_UNSOLVED: luxfer_transfer_scene = 0;
-/// With the solved emission: the result.
+/// The scene with the solved emission: the result.
 pub const LUXFER_SCENE_LIT: luxfer_transfer_scene = 1;
-/// As LUXFER_SCENE_LIT, the light's colour taken away and its luminance kept.
+/// As LUXFER_SCENE_LIT, with white light of equal luminance.
 pub const LUXFER_SCENE_WHITE: luxfer_transfer_scene = 2;
 
-/// What each stage took and how good its result is. Set struct_size before the call. Errors of stages without a result are
-/// NaN.
+/// Time and error of each stage. Set struct_size before the call. The error of a stage without a result is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_transfer_report {
     /// sizeof(luxfer_transfer_report), set by the caller.
     pub struct_size: u32,
-    /// Number of fixtures; see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has ended.
+    /// Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has
+    /// ended.
     pub fixtures: u32,
-    /// Seconds each stage took when it last ran, by LUXFER_STAGE_ value.
+    /// Duration of each stage's last run in seconds, by LUXFER_STAGE_ value.
     pub seconds: [f64; 8],
     /// Largest standard deviation of a vanishing point's direction, in radians.
     pub view_error: f64,
-    /// Mean trust in the depth of the features, in [0, 1].
+    /// Mean confidence of the features' depth, in [0, 1].
     pub depth_confidence: f64,
     /// Expected share of wrong pixels in the mask of the plane.
     pub plane_error: f64,
@@ -77,15 +78,16 @@ pub struct luxfer_transfer_report {
     pub lights_error: f64,
     /// Largest expected error of a corner of the unwarped image, in unwarped pixels.
     pub unwarp_error: f64,
-    /// Relative difference between texture and photo in the share of lit area.
+    /// Relative difference between texture and photo in the share of the lit area.
     pub emission_error: f64,
-    /// Widest relative half-width of the solution's 95 % intervals.
+    /// Largest relative half-width of the solution's 95 % confidence intervals.
     pub relight_error: f64,
-    /// As the error of luxfer_render_report: root mean square of the picture's standard errors, relative to its mean.
+    /// As the field error of luxfer_render_report: root mean square of the rendering's standard errors, divided by its
+    /// mean.
     pub render_error: f64,
     /// Size of a texel of the emission in metres.
     pub texel_size: f64,
-    /// Mean colour the surface is to have, relative to the photo's white.
+    /// Mean colour that the surface should have, relative to the photo's white.
     pub target: [f32; 3],
     /// 0.
     pub reserved: u32,
@@ -154,15 +156,15 @@ pub struct luxfer_fixture {
     pub struct_size: u32,
     /// Centre in metres.
     pub position: [f32; 3],
-    /// Unit direction the lamp shines in.
+    /// Unit vector of the direction in which the lamp shines.
     pub normal: [f32; 3],
-    /// Unit direction of its long axis.
+    /// Unit vector of the long axis.
     pub axis: [f32; 3],
     /// Mean luminance per channel in cd/m².
     pub radiance: [f32; 3],
-    /// Number of its kind, as of luxfer_luminaire.
+    /// Number of the lamp's kind, as in luxfer_luminaire.
     pub kind: u32,
-    /// Lengths along and across the axis in metres.
+    /// Length along the long axis and across it, in metres.
     pub size: [f64; 2],
     /// Area in m².
     pub area: f64,
@@ -195,7 +197,7 @@ unsafe impl Versioned for luxfer_fixture {
     }
 }
 
-/// A result of a stage, or which stage makes it.
+/// A result of a stage, or an error that names the stage.
 fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
     result.as_ref().ok_or_else(|| {
         Error::new(ErrorKind::NotReady, format!("there is no such result yet; LUXFER_STAGE_{stage} makes it"))
@@ -203,7 +205,8 @@ fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
 }
 
 /// Gets an image; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview that was not asked for.
+/// LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview if
+/// luxfer_render_params.preview was 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_image(
     transfer: *mut luxfer_transfer,
@@ -242,7 +245,8 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
 
 /// Gets a scene; which is a LUXFER_SCENE_ value. The caller releases *scene, which is independent of the transfer. Any
 /// thread.
-/// LUXFER_NOT_READY before the stage EMISSION, for LUXFER_SCENE_UNSOLVED, or RELIGHT has ended.
+/// LUXFER_NOT_READY before the stage EMISSION has ended, for LUXFER_SCENE_UNSOLVED, or the stage RELIGHT, for the
+/// others.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_scene(
     transfer: *mut luxfer_transfer,
@@ -263,7 +267,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_scene(
     })
 }
 
-/// Tells what each stage took and how good its result is. Any thread.
+/// Gets time and error of each stage. Any thread.
 /// LUXFER_NOT_READY before the first stage has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_report(
@@ -277,7 +281,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_report(
     })
 }
 
-/// Tells what the lines of the photo say about its camera, and how the plane is unwarped. Any thread.
+/// Gets the camera that was found from the lines of the photo, and the unwarping of the plane. Any thread.
 /// LUXFER_NOT_READY before the stage VIEW has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_view(
@@ -292,7 +296,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_view(
     })
 }
 
-/// Tells the solved colour and intensity and how sure they are. Any thread.
+/// Gets the solved colour and intensity and their confidence. Any thread.
 /// LUXFER_NOT_READY before the stage RELIGHT has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_solution(
@@ -339,11 +343,11 @@ pub unsafe extern "C" fn luxfer_transfer_get_fixture(
     })
 }
 
-/// Writes the luminaire schedule, every lamp of the lit scene, to a file whose name ends in .csv or .json: position, normal,
-/// axis, size, area, luminance, flux and colour temperature, their units in the names of the columns; in .json also the corners of the outline
-/// in metres, as "outline_m". Any thread.
-/// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if
-/// the file cannot be written.
+/// Writes the luminaire schedule, a list of all lamps of the lit scene, to a .csv or .json file: position, normal,
+/// axis, size, area, luminance, flux and colour temperature; the names of the columns contain the units. In .json,
+/// "outline_m" holds the corners of the outline in metres. path is UTF-8. Any thread.
+/// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another extension; LUXFER_IO if the
+/// file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_save_fixtures(
     transfer: *mut luxfer_transfer,

@@ -1,11 +1,12 @@
 //! Version
 //!
-//! The macros say what this header was made for, the functions what library is loaded. Before 1.0 libraries of one minor
-//! version are compatible (libluxfer.so.0.1); from 1.0 on those of one major version.
+//! The macros give the version of this header, the functions give the version of the loaded library. Before 1.0,
+//! libraries with the same minor version are compatible (libluxfer.so.0.1); from 1.0 on, libraries with the same major
+//! version.
 //!
-//! A program that meets its library at run time (dlopen, a folder of plug-ins) asks at its start whether
-//! luxfer_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, whether the two are equal when divided by 10000 and the
-//! library is not the older one. luxfer::Context::create of bindings/cpp does.
+//! A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
+//! luxfer_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that the
+//! library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
 
 use std::ffi::c_char;
 

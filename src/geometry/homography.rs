@@ -9,23 +9,23 @@ use glam::{DMat3, DVec2, DVec3};
 pub struct Homography(pub DMat3);
 
 impl Homography {
-    /// The map that takes four points to four points, exactly (Hartley and Zisserman 2004, 4.1, with the normalisation of
-    /// 4.4). Three collinear points on either side have no such map.
+    /// The map that takes four points to four others exactly (Hartley and Zisserman 2004, 4.1, with the normalisation
+    /// of 4.4). Returns an error if three points on either side are collinear.
     pub fn from_corners(from: [DVec2; 4], to: [DVec2; 4]) -> Result<Self> {
         let (nf, nt) = (normalisation(&from)?, normalisation(&to)?);
         let (f, t) = (from.map(|p| apply(nf, p)), to.map(|p| apply(nt, p)));
         for quad in [f, t] {
-            let least = (0..4)
+            let min_area = (0..4)
                 .map(|i| doubled_area(quad[i], quad[(i + 1) % 4], quad[(i + 2) % 4]).abs())
                 .fold(f64::MAX, f64::min);
-            if least < 1e-12 {
+            if min_area < 1e-12 {
                 return Err(Error::degenerate(
-                    "three of the four corners lie on one line: no perspective maps them to a rectangle",
+                    "three of the four corners are collinear: no perspective maps them to a rectangle",
                 ));
             }
         }
-        // Two rows per point; the last entry is fixed to 1, which normalised points allow unless the origin maps to
-        // infinity: then another entry takes its place.
+        // Set up two rows per point and fix the last entry to 1. If the origin maps to infinity that entry is 0, so
+        // another entry is fixed instead.
         let mut a = [[0.0; 9]; 8];
         for i in 0..4 {
             let (x, y, u, v) = (f[i].x, f[i].y, t[i].x, t[i].y);
@@ -48,7 +48,7 @@ impl Homography {
         Ok(Self(nt.inverse() * normalised * nf).rescaled())
     }
 
-    /// The same map scaled to unit Frobenius norm, so that its entries can be compared and inverted safely.
+    /// The homography scaled to unit Frobenius norm, so that entries can be compared and inverted safely.
     pub fn rescaled(self) -> Self {
         let norm = self.0.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
         Self(if norm > 0.0 { self.0 * (1.0 / norm) } else { self.0 })
@@ -58,7 +58,7 @@ impl Homography {
         Self(self.rescaled().0.inverse()).rescaled()
     }
 
-    /// The image of a point; its third coordinate changes sign across the line that maps to infinity.
+    /// The image of a point in homogeneous coordinates; the third changes sign across the line that maps to infinity.
     pub fn apply_homogeneous(&self, p: DVec2) -> DVec3 {
         self.0 * p.extend(1.0)
     }
@@ -68,7 +68,7 @@ impl Homography {
         apply(self.0, p)
     }
 
-    /// `self` after `first`.
+    /// The composition that applies `first`, then `self`.
     pub fn after(self, first: Self) -> Self {
         Self(self.0 * first.0).rescaled()
     }
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_across_and_behind_the_horizon_are_told_by_the_sign() {
+    fn the_sign_identifies_corners_on_and_behind_the_horizon() {
         let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
         let signs = |to: [DVec2; 4]| {
             let h = Homography::from_corners(square, to).unwrap();
@@ -139,12 +139,12 @@ mod tests {
         let [a, b, c, d] = quad;
         let one_side = |s: [bool; 4]| s.iter().all(|&v| v == s[0]);
         assert!(one_side(signs(quad)));
-        // A quad that crosses itself, or that is not convex, is one that the horizon cuts.
+        // A self-intersecting or non-convex quadrilateral is cut by the horizon.
         let crossed = signs([a, b, d, c]);
         assert!(crossed[0] == crossed[1] && crossed[2] == crossed[3] && crossed[0] != crossed[2], "{crossed:?}");
         let dented = signs([a, b, DVec2::new(0.8, 0.3), d]);
         assert_eq!(dented.iter().filter(|&&v| v).count() % 2, 1, "{dented:?}");
-        // A corner on the horizon itself has no image.
+        // A corner on the horizon has no finite image.
         let h = Homography(
             DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::Z) + DMat3::from_cols(-DVec3::Z, DVec3::ZERO, DVec3::ZERO),
         );

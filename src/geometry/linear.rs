@@ -1,6 +1,6 @@
 //! Small dense systems: Gaussian elimination with complete pivoting, and eigenvectors of symmetric matrices.
 
-/// Solves `a x = b` by elimination with complete pivoting; `None` where the matrix is singular to working precision.
+/// Solves `a x = b` by elimination with complete pivoting; `None` if the matrix is singular to working precision.
 pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
     let scale = a.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
     if !scale.is_finite() || scale == 0.0 {
@@ -8,7 +8,7 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
     }
     let mut order: [usize; N] = std::array::from_fn(|i| i);
     for k in 0..N {
-        // Bring the largest remaining entry to the diagonal.
+        // Move the largest remaining entry to the diagonal.
         let (mut row, mut col) = (k, k);
         for r in k..N {
             for c in k..N {
@@ -24,7 +24,7 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
         b.swap(k, row);
         a.iter_mut().for_each(|r| r.swap(k, col));
         order.swap(k, col);
-        // Eliminate below it.
+        // Eliminate the entries below it.
         for r in k + 1..N {
             let factor = a[r][k] / a[k][k];
             for c in k..N {
@@ -41,7 +41,7 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
     x.iter().all(|v| v.is_finite()).then_some(x)
 }
 
-/// Eigenvalues in rising order with their unit eigenvectors, of a symmetric matrix (cyclic Jacobi rotations).
+/// Eigenvalues in rising order, with unit eigenvectors, of a symmetric matrix (cyclic Jacobi rotations).
 pub fn symmetric_eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
     let mut v: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
     for _ in 0..64 {

@@ -1,7 +1,8 @@
 //! Plane and space geometry in `f64`: homographies, the pinhole camera and its vanishing points, small linear systems.
 //!
-//! Image points are in pixels, x right, y down, the centre of the top-left pixel at (0.5, 0.5). Camera space is x right,
-//! y down, z forward. Homogeneous points are never divided before they must be: a vanishing point may be at infinity.
+//! Image points are in pixels, x right, y down, with the centre of the top-left pixel at (0.5, 0.5). Camera space is x
+//! right, y down, z forward. Homogeneous points are divided only where necessary: a vanishing point may be at
+//! infinity.
 
 pub mod homography;
 pub mod linear;

@@ -1,37 +1,37 @@
-//! The pinhole camera of a photo: focal length, principal point and the three room axes as the camera sees them.
+//! The pinhole camera of a photo: focal length, principal point and the three room axes in camera space.
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// Where a focal length came from, best first.
+/// Origin of a focal length, most reliable first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FocalSource {
     /// Given by the caller.
     Given,
-    /// From two finite vanishing points of orthogonal directions.
+    /// Derived from two finite vanishing points of orthogonal directions.
     VanishingPoints,
-    /// A guess, 0.85 of the image width: the vanishing points do not determine it.
+    /// Assumed as 0.85 of the image width, because the vanishing points do not determine it.
     Assumed,
 }
 
-/// Index of a room axis: two horizontal ones and the vertical.
+/// Indices of the room axes: two horizontal ones and the vertical.
 pub const HORIZONTAL_A: usize = 0;
 pub const VERTICAL: usize = 1;
 pub const HORIZONTAL_B: usize = 2;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perspective {
-    /// Focal length in pixels, the same in x and y.
+    /// Focal length in pixels, equal in x and y.
     pub focal: f64,
     pub focal_source: FocalSource,
     /// Principal point in pixels.
     pub principal: DVec2,
-    /// Room axes as unit columns in camera space (x right, y down, z forward), orthogonal and right-handed. Column 1 is
-    /// the room's vertical and points downwards; column 2 is the horizontal axis closest to the viewing direction.
+    /// Room axes as unit columns in camera space (x right, y down, z forward), orthogonal and right-handed. Column 1
+    /// is the room's vertical and points down; column 2 is the horizontal axis closest to the viewing direction.
     pub axes: DMat3,
 }
 
 impl Perspective {
-    /// Camera-space direction through an image point, its z being 1.
+    /// Camera-space direction through an image point, scaled to z = 1.
     pub fn ray(&self, pixel: DVec2) -> DVec3 {
         ((pixel - self.principal) / self.focal).extend(1.0)
     }

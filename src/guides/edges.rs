@@ -1,4 +1,4 @@
-//! Edges of shapes: where the material changes, the surface folds, or one thing stands before another.
+//! Edges of shapes: changes of material, creases of the surface, and depth discontinuities.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,12 +6,14 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::Vec3;
 
-/// Normals that differ by more than this (1 - cosine; about 40°) between neighbouring pixels make a full edge.
-const FOLD: f32 = 0.25;
-/// So does a step of depth, against the slope on either side, of this share of the depth.
-const STEP: f32 = 0.02;
-/// Edges are spread over this many pixels (standard deviation), so that patches beside them know of them.
-const SPREAD: f32 = 0.8;
+/// Difference between the normals of neighbouring pixels (1 - cosine; about 40°) that makes a full edge [origin not
+/// recorded].
+const FULL_CREASE: f32 = 0.25;
+/// Second difference of depth, as a share of the depth, that makes a full edge [origin not recorded].
+const FULL_STEP: f32 = 0.02;
+/// Standard deviation in pixels by which edges are blurred, so that patches beside an edge sense it [origin not
+/// recorded].
+const BLUR: f32 = 0.8;
 
 /// The strength of the edge at each pixel, in `[0, 1]`.
 pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Result<Image> {
@@ -29,7 +31,7 @@ pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Resu
             let here = normal(x, y);
             for (i, j) in around {
                 let changes = material.pixel(i, j) != material.pixel(x, y);
-                let fold = (1.0 - here.dot(normal(i, j))) / FOLD;
+                let fold = (1.0 - here.dot(normal(i, j))) / FULL_CREASE;
                 *edge = edge.max(if changes {
                     1.0
                 } else if here == Vec3::ZERO {
@@ -38,16 +40,16 @@ pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Resu
                     fold
                 });
             }
-            // The second difference of depth: a slope alone is no step.
+            // Use the second difference of depth: a constant slope is not a discontinuity.
             for pair in around.chunks_exact(2) {
                 let (d, a, b) =
                     (depth.pixel(x, y)[0], depth.pixel(pair[0].0, pair[0].1)[0], depth.pixel(pair[1].0, pair[1].1)[0]);
-                let step = (a + b - 2.0 * d).abs() / (STEP * d);
+                let step = (a + b - 2.0 * d).abs() / (FULL_STEP * d);
                 *edge = if step.is_finite() { edge.max(step) } else { *edge };
             }
-            // Faint ones are noise of curved surfaces.
+            // Suppress faint edges, which are noise on curved surfaces.
             *edge = ((*edge - 0.2) / 0.8).clamp(0.0, 1.0);
         }
     })?;
-    pyramid::blur(&sharp, SPREAD, job)
+    pyramid::blur(&sharp, BLUR, job)
 }

@@ -1,13 +1,13 @@
-//! Guides of a scene: what the light does in each place of its picture, told apart by the way it came (StyLit, section 3.2),
-//! and what is there.
+//! Guides of a scene: its light at each pixel, separated by light path (StyLit, section 3.2), and its geometry and
+//! materials.
 //!
-//! [`run`] renders a camera's view once and keeps, beside the full picture, the light of five light path expressions, the
-//! normals, the edges of shapes ([`edges`](self)), and a colour for each material by its name, so that the red of one scene's
-//! ball is the red of another scene's vase. [`pairs`] brings two scenes' guides to a common exposure for `stylize`.
+//! [`run`] renders a camera's view once. Besides the full picture it keeps the light of five light path expressions,
+//! the normals, the edges of shapes ([`edges`](self)), and a colour for each material derived from its name, so that
+//! equal names match across scenes. [`pairs`] brings two scenes' guides to a common exposure for `stylize`.
 //!
-//! The light is smoothed along surfaces (`smooth`): sampling noise would be matched like texture.
+//! The light is smoothed along surfaces (`smooth`), because sampling noise would be matched like texture.
 //!
-//! For sequences [`motion`] tells where each pixel was in the frame before.
+//! For sequences, [`motion`] computes the position of each pixel in the previous frame.
 //!
 //! Not modelled: motion of objects; only the camera moves.
 
@@ -29,9 +29,9 @@ use crate::rng::Rng;
 use crate::scene::Camera;
 use glam::Vec3;
 
-/// The kinds of light, each a name and its expression (Heckbert's notation): all; reflected once by something matt; once by
-/// something glossy; matt after matt, which is where colours bleed; once or twice matt, which tells shadows apart; and
-/// light that glossy things throw onto matt ones: caustics.
+/// The light components, each with a name and its light path expression (Heckbert's notation): all light; one diffuse
+/// reflection; one glossy reflection; diffuse after diffuse, which is colour bleeding; one or two diffuse reflections,
+/// which distinguishes shadows; and light reflected by glossy onto diffuse surfaces: caustics.
 pub const LIGHT: [(&str, &str); 6] = [
     ("full", "L.*E"),
     ("direct", "LDE"),
@@ -40,7 +40,7 @@ pub const LIGHT: [(&str, &str); 6] = [
     ("two bounces", "LD{1,2}E"),
     ("caustics", "LS+DE"),
 ];
-/// Index of the caustics, which [`pairs`] only gives when asked for.
+/// Index of the caustics, which [`pairs`] includes only on request.
 const CAUSTICS: usize = 5;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -65,15 +65,15 @@ impl Default for Params {
 pub struct Guides {
     /// In the order of [`LIGHT`]: linear RGB in cd/m².
     pub light: [Image; 6],
-    /// Unit normals as the camera has them: x right, y up, z towards the viewer; 0 where nothing is. 3 channels.
+    /// Unit normals in camera axes: x right, y up, z towards the viewer; 0 where there is no surface. 3 channels.
     pub normals: Image,
     /// 1 on edges of shapes, 0 away from them; 1 channel.
     pub edges: Image,
-    /// A colour for each material, made from its name; black where nothing is. 3 channels.
+    /// A colour for each material, derived from its name; black where there is no surface. 3 channels.
     pub materials: Image,
-    /// The camera they are seen by.
+    /// The camera of the view.
     pub camera: Camera,
-    /// Distance along the viewing direction in metres, infinite where nothing is; 1 channel.
+    /// Distance along the viewing direction in metres, infinite where there is no surface; 1 channel.
     pub depth: Image,
 }
 
@@ -96,13 +96,13 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<
     let film = render::run(world, camera, &settings, job.part(0.0, 0.95), &mut |_| {})?;
     let job = job.part(0.95, 1.0);
 
-    // The layers come in the order they were asked for.
+    // The layers are in the order requested.
     let mut layers = film.layers.into_iter().map(|l| l.image);
     let mut next = || layers.next().ok_or_else(|| crate::error::Error::degenerate("the rendering has no layers"));
     let mut light = [film.beauty, next()?, next()?, next()?, next()?, next()?];
     let (mut normals, material, depth) = (next()?, next()?, next()?);
 
-    // Normals as the camera has them: what matters is how a surface lies in the picture.
+    // Rotate normals to camera axes: the orientation relative to the view is what matters.
     let right = camera.forward.cross(camera.up).normalize_or_zero();
     let axes = [right, right.cross(camera.forward).normalize_or_zero(), -camera.forward.normalize_or_zero()];
     for n in normals.data.chunks_exact_mut(3) {
@@ -137,7 +137,7 @@ fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
     Ok(out)
 }
 
-/// What goes beside the light.
+/// Optional guides besides the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     pub normals: bool,
@@ -145,7 +145,7 @@ pub struct Extras {
     pub edges: bool,
     /// For scenes whose materials are painted differently.
     pub materials: bool,
-    /// For scenes in which glossy things throw light onto others.
+    /// For scenes with caustics.
     pub caustics: bool,
 }
 
@@ -157,17 +157,17 @@ pub struct Pair {
     pub target: Image,
     /// Whether it is light, in `[0, 1]`, or data.
     pub is_light: bool,
-    /// Whether it was asked for in [`Extras`].
+    /// Whether it was requested in [`Extras`].
     pub is_extra: bool,
 }
 
-/// The guides of an exemplar and a target at a common exposure: the luminance that nine tenths of both full pictures stay
-/// below becomes [`BRIGHT`].
+/// The guides of an exemplar and a target at a common exposure: the 90th percentile of luminance over both full
+/// pictures becomes [`BRIGHT`].
 pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pair>> {
     let exposure = exposure(&source.light[0], &target.light[0])?;
     let mut pairs = Vec::new();
     for (i, (name, _)) in LIGHT.iter().enumerate().filter(|(i, _)| *i != CAUSTICS || extras.caustics) {
-        // As a screen would show it: what is beyond white is white.
+        // Clip at white, as a display does.
         let expose = |image: &Image| -> Result<Image> {
             let mut exposed = image.try_clone()?;
             exposed.data.iter_mut().for_each(|v| *v = (*v * exposure).min(1.0));
@@ -193,7 +193,7 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
     Ok(pairs)
 }
 
-/// Linear value that the brighter tenth of the pictures lies above.
+/// Exposed value of the 90th percentile of luminance [convention].
 const BRIGHT: f32 = 0.8;
 
 /// The factor from cd/m² to the common exposure.

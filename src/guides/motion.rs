@@ -1,15 +1,15 @@
-//! Where each pixel of a frame was in the frame before, for a camera that moves through a scene that does not.
+//! The position of each pixel of a frame in the previous frame, for a moving camera in a static scene.
 
 use super::Guides;
 use crate::error::Result;
 use crate::image::Image;
 use glam::Vec3;
 
-/// A surface that lies deeper than another by this share was hidden by it.
-const HIDDEN: f32 = 0.02;
+/// Relative difference in depth above which a surface was occluded in the previous frame [origin not recorded].
+const DEPTH_TOLERANCE: f32 = 0.02;
 
-/// Two channels: the place in the frame before, relative to the place in this one, in pixels; NaN where nothing was to be seen
-/// or something else was in front.
+/// Two channels: the position in the previous frame relative to the position in this one, in pixels; NaN where there
+/// is no surface, or where it was occluded or outside the picture.
 pub fn motion(now: &Guides, before: &Guides) -> Result<Image> {
     now.depth.check_same_size("this frame", &before.depth, "the frame before")?;
     let (width, height) = (now.depth.width, now.depth.height);
@@ -24,7 +24,7 @@ pub fn motion(now: &Guides, before: &Guides) -> Result<Image> {
     let mut out = Image::new(width, height, 2)?;
     for (i, motion) in out.data.chunks_exact_mut(2).enumerate() {
         let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
-        // The point seen, and where the camera of the frame before has it.
+        // Reproject the visible point into the camera of the previous frame.
         let ray = now.camera.direction(x / size[0], y / size[1], aspect);
         let point = now.camera.position + ray * (now.depth.data[i] / ray.dot(forward));
         let offset: Vec3 = point - old.position;
@@ -32,7 +32,7 @@ pub fn motion(now: &Guides, before: &Guides) -> Result<Image> {
         let u = (offset.dot(right) / (depth * half * aspect) + 1.0) / 2.0 * size[0];
         let v = (1.0 - offset.dot(up) / (depth * half)) / 2.0 * size[1];
         let inside = depth > 0.0 && u >= 0.0 && v >= 0.0 && u < size[0] && v < size[1];
-        let seen = inside && depth <= before.depth.pixel(u as usize, v as usize)[0] * (1.0 + HIDDEN);
+        let seen = inside && depth <= before.depth.pixel(u as usize, v as usize)[0] * (1.0 + DEPTH_TOLERANCE);
         motion.copy_from_slice(&if seen { [u - x, v - y] } else { [f32::NAN; 2] });
     }
     Ok(out)

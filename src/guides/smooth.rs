@@ -7,44 +7,45 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::Vec3;
 
-/// Passes; the reach doubles in each.
+/// Number of passes; the step doubles in each.
 const PASSES: u32 = 3;
-/// The cubic B-spline that each pass applies along x and along y.
+/// The cubic B-spline that each pass applies along x and y [convention].
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
-/// Relative difference of brightness that counts little.
+/// Relative difference of brightness at which the weight has fallen to 1/e [origin not recorded].
 const TOLERANCE: f32 = 0.25;
 
-/// The light averaged over neighbours of the same material, of like normal and of like brightness. Brightness is judged
-/// from means over 5 × 5 pixels: single ones are too noisy to tell light from shadow.
+/// The light averaged over neighbours of the same material, similar normal and similar brightness. Brightness is
+/// compared between means over 5 × 5 pixels, because single pixels are too noisy to distinguish light from shadow.
 pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job) -> Result<Image> {
     let floor = 0.02 * mean_luminance(light);
     let surface = Surface { normals, material };
-    let near = |a: f32, b: f32| {
+    let range_weight = |a: f32, b: f32| {
         let apart = (a - b) / (TOLERANCE * (0.5 * (a + b) + floor)).max(f32::MIN_POSITIVE);
         (-apart * apart).exp()
     };
     let mut current = light.try_clone()?;
     for pass in 0..PASSES {
         let means = surface.average(&current, &current, 1, |_, _| 1.0, job)?;
-        current = surface.average(&current, &means, 1 << pass, near, job)?;
+        current = surface.average(&current, &means, 1 << pass, range_weight, job)?;
     }
     Ok(current)
 }
 
-/// What the light lies on.
+/// The surfaces that the light falls on.
 struct Surface<'a> {
     normals: &'a Image,
     material: &'a Image,
 }
 
 impl Surface<'_> {
-    /// Weighted means over 5 × 5 pixels `step` apart; `like` weighs the brightnesses that `guide` has in two places.
+    /// Weighted means over 5 × 5 pixels at distance `step`; `range_weight` weights a pair of positions by their
+    /// brightness in `guide`.
     fn average(
         &self,
         light: &Image,
         guide: &Image,
         step: isize,
-        like: impl Fn(f32, f32) -> f32 + Sync,
+        range_weight: impl Fn(f32, f32) -> f32 + Sync,
         job: Job,
     ) -> Result<Image> {
         let (width, height) = (light.width, light.height);
@@ -65,7 +66,7 @@ impl Surface<'_> {
                         continue;
                     }
                     let facing = if here == Vec3::ZERO { 1.0 } else { here.dot(normal(u, v)).max(0.0).powi(16) };
-                    let weight = weight * facing * like(brightness, luminance(guide.rgb(u, v)));
+                    let weight = weight * facing * range_weight(brightness, luminance(guide.rgb(u, v)));
                     if weight.is_finite() {
                         sum += light.rgb(u, v) * weight;
                         total += weight;

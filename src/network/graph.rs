@@ -1,4 +1,4 @@
-//! A network ready to run: its nodes in order, with operators whose settings are known to be sound.
+//! A network ready to run: its nodes in order, with validated operators.
 
 use super::ops::Op;
 use super::read::{self, NodeMessage, unsupported};
@@ -6,10 +6,10 @@ use super::tensor::Tensor;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 
-/// A network of one input image and one output that is asked for, the first.
+/// A network with one input image and one output, the first.
 pub struct Network {
     pub(super) nodes: Vec<Node>,
-    /// For each value that nodes pass on, its number if known before the run.
+    /// For each value passed between nodes, its contents if known before the run.
     pub(super) constants: Vec<Option<Tensor>>,
     pub(super) input: usize,
     pub(super) output: usize,
@@ -19,26 +19,26 @@ pub struct Network {
 pub(super) struct Node {
     pub name: String,
     pub op: Op,
-    /// Numbers of the values; optional ones may be left out.
+    /// Indices of the input values; optional ones may be absent.
     pub inputs: Vec<Option<usize>>,
     pub outputs: Vec<Option<usize>>,
     /// Values that no later node needs.
     pub last_uses: Vec<usize>,
 }
 
-/// Most nodes of a network: the largest DPT has about 3,000.
-const MOST_NODES: usize = 100_000;
+/// Maximum number of nodes: the largest DPT has about 3,000.
+const MAX_NODES: usize = 100_000;
 
 impl Network {
-    /// Reads the bytes of an ONNX file. Fails with `Format` where they are damaged or contradict themselves, with `Unsupported`
-    /// for operators and types that are not done here; both say where.
+    /// Parses the bytes of an ONNX file. Errors: `Format` if they are damaged or inconsistent, `Unsupported` for
+    /// operators and types that are not implemented; both name the place.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
         let model = read::model(bytes)?;
         if !(7..=21).contains(&model.opset) {
             return Err(unsupported(format_args!("version {} of the operators (7 to 21 are known)", model.opset)));
         }
-        if model.nodes.len() > MOST_NODES {
-            return Err(unsupported(format_args!("{} nodes (at most {MOST_NODES} are allowed)", model.nodes.len())));
+        if model.nodes.len() > MAX_NODES {
+            return Err(unsupported(format_args!("{} nodes (at most {MAX_NODES} are allowed)", model.nodes.len())));
         }
         // Old files list their weights among the inputs.
         let mut inputs = model.inputs.into_iter().filter(|(name, _)| !model.constants.contains_key(name));
@@ -68,12 +68,12 @@ impl Network {
         Ok(network)
     }
 
-    /// The sizes that the input must have; `None` where any will do. Empty if the file does not say.
+    /// The sizes that the input must have; `None` for any size. Empty if the file does not declare them.
     pub fn input_shape(&self) -> &[Option<usize>] {
         &self.input_shape
     }
 
-    /// Drops nodes that the output does not need, and notes where each value is used last.
+    /// Drops nodes that the output does not depend on, and records the last use of each value.
     fn keep_what_counts(&mut self) {
         let mut is_needed = vec![false; self.constants.len()];
         is_needed[self.output] = true;
@@ -111,7 +111,7 @@ impl<'a> Values<'a> {
     }
 
     fn find(&self, name: &str) -> Result<usize> {
-        let missing = || Error::format(format!("no node before it makes the value {name}"));
+        let missing = || Error::format(format!("no earlier node computes the value {name}"));
         self.numbers.get(name).copied().ok_or_else(missing)
     }
 
@@ -121,7 +121,7 @@ impl<'a> Values<'a> {
         let inputs = inputs.collect::<Result<_>>()?;
         let mut outputs = Vec::new();
         for name in &message.outputs {
-            // A node without inputs knows its answer.
+            // The output of a node without inputs is constant.
             let constant = if let Op::Constant(tensor) = &op { Some(tensor.clone()) } else { None };
             outputs.push(given(&name).then(|| self.define(name, constant)).transpose()?);
         }

@@ -1,9 +1,9 @@
-//! The wire format of Protocol Buffers: fields of a message, as views of its bytes.
+//! The wire format of Protocol Buffers: fields of a message as views of its bytes.
 
 use crate::error::{Error, Result};
 use crate::image::try_push;
 
-/// What a field holds.
+/// The value of a field.
 #[derive(Clone, Copy)]
 pub enum Value<'a> {
     Varint(u64),
@@ -13,7 +13,7 @@ pub enum Value<'a> {
 }
 
 fn truncated() -> Error {
-    Error::format("the file is truncated, or no ONNX file")
+    Error::format("the file is truncated, or not an ONNX file")
 }
 
 /// Calls `field` with the number and the value of every field of a message.
@@ -31,7 +31,7 @@ pub fn fields<'a>(message: &'a [u8], mut field: impl FnMut(u64, Value<'a>) -> Re
                 Value::Bytes(bytes)
             }
             5 => Value::Fixed32(u32::from_le_bytes(array(&mut rest)?)),
-            kind => return Err(Error::format(format!("a field has wire type {kind}: this is no ONNX file"))),
+            kind => return Err(Error::format(format!("a field has wire type {kind}: this is not an ONNX file"))),
         };
         field(key >> 3, value)?;
     }
@@ -48,7 +48,7 @@ fn varint(rest: &mut &[u8]) -> Result<u64> {
             return Ok(value);
         }
     }
-    Err(Error::format("a number has more than ten bytes: this is no ONNX file"))
+    Err(Error::format("a number has more than ten bytes: this is not an ONNX file"))
 }
 
 fn array<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N]> {
@@ -61,7 +61,7 @@ impl<'a> Value<'a> {
     pub fn bytes(self) -> Result<&'a [u8]> {
         match self {
             Self::Bytes(bytes) => Ok(bytes),
-            _ => Err(Error::format("a field that should hold bytes holds a number: this is no ONNX file")),
+            _ => Err(Error::format("a field that should hold bytes holds a number: this is not an ONNX file")),
         }
     }
 
@@ -73,18 +73,20 @@ impl<'a> Value<'a> {
         match self {
             Self::Varint(value) | Self::Fixed64(value) => Ok(value as i64),
             Self::Fixed32(value) => Ok(i64::from(value)),
-            Self::Bytes(_) => Err(Error::format("a field that should hold a number holds bytes: this is no ONNX file")),
+            Self::Bytes(_) => {
+                Err(Error::format("a field that should hold a number holds bytes: this is not an ONNX file"))
+            }
         }
     }
 
     pub fn float(self) -> Result<f32> {
         match self {
             Self::Fixed32(bits) => Ok(f32::from_bits(bits)),
-            _ => Err(Error::format("a field that should hold a float does not: this is no ONNX file")),
+            _ => Err(Error::format("a field that should hold a float does not: this is not an ONNX file")),
         }
     }
 
-    /// Adds the numbers of a repeated field, packed or one by one.
+    /// Appends the numbers of a repeated field, packed or not.
     pub fn integers(self, to: &mut Vec<i64>) -> Result<()> {
         let Self::Bytes(mut rest) = self else {
             to.push(self.integer()?);
@@ -96,7 +98,7 @@ impl<'a> Value<'a> {
         Ok(())
     }
 
-    /// The same for floats.
+    /// As [`Value::integers`], for floats.
     pub fn floats(self, to: &mut Vec<f32>) -> Result<()> {
         let Self::Bytes(mut rest) = self else {
             to.push(self.float()?);

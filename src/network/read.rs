@@ -1,4 +1,4 @@
-//! The messages of an ONNX file (`onnx.proto3`), those fields of them that matter.
+//! The messages of an ONNX file (`onnx.proto3`), restricted to the fields used here.
 
 use super::protobuf::{Value, fields};
 use super::tensor::{Data, Tensor, count};
@@ -13,7 +13,7 @@ pub struct Model<'a> {
     pub opset: i64,
     pub nodes: Vec<NodeMessage<'a>>,
     pub constants: HashMap<&'a str, Tensor>,
-    /// Names with their shapes; `None` is a size that is open.
+    /// Names with their shapes; `None` is an open size.
     pub inputs: Vec<(&'a str, Vec<Option<usize>>)>,
     pub outputs: Vec<&'a str>,
 }
@@ -29,7 +29,7 @@ pub struct NodeMessage<'a> {
     pub attributes: HashMap<&'a str, Attribute<'a>>,
 }
 
-/// `AttributeProto`: what has been set of it.
+/// `AttributeProto`: the fields that are set.
 #[derive(Default)]
 pub struct Attribute<'a> {
     pub float: Option<f32>,
@@ -64,7 +64,7 @@ pub fn model(bytes: &[u8]) -> Result<Model<'_>> {
         }
         Ok(())
     })?;
-    let graph = found.ok_or_else(|| Error::format("the file has no graph: it is truncated, or no ONNX file"))?;
+    let graph = found.ok_or_else(|| Error::format("the file has no graph: it is truncated, or not an ONNX file"))?;
     fields(graph, |number, value| {
         match number {
             1 => model.nodes.push(node(value.bytes()?)?),
@@ -83,7 +83,7 @@ pub fn model(bytes: &[u8]) -> Result<Model<'_>> {
 }
 
 pub fn unsupported(what: impl std::fmt::Display) -> Error {
-    Error::new(ErrorKind::Unsupported, format!("the network uses {what}, which this runtime does not do"))
+    Error::new(ErrorKind::Unsupported, format!("the network uses {what}, which this runtime does not support"))
 }
 
 fn node(bytes: &[u8]) -> Result<NodeMessage<'_>> {
@@ -130,7 +130,7 @@ fn value_info(bytes: &[u8]) -> Result<(&str, Vec<Option<usize>>)> {
     let (mut name, mut shape) = ("", Vec::new());
     fields(bytes, |number, value| match number {
         1 => value.text().map(|text| name = text),
-        // TypeProto, its tensor type, that one's shape, and its axes.
+        // TypeProto, its tensor type, the shape of that, and its axes.
         2 => nested(value, 1, |tensor| {
             nested(tensor, 2, |axes| {
                 nested(axes, 1, |axis| {
@@ -151,7 +151,7 @@ fn value_info(bytes: &[u8]) -> Result<(&str, Vec<Option<usize>>)> {
     Ok((name, shape))
 }
 
-/// Goes through the fields of one number of a message.
+/// Visits the fields with a given number in a message.
 fn nested<'a>(message: Value<'a>, wanted: u64, mut work: impl FnMut(Value<'a>) -> Result<()>) -> Result<()> {
     fields(message.bytes()?, |number, value| if number == wanted { work(value) } else { Ok(()) })
 }
@@ -181,7 +181,7 @@ fn tensor(bytes: &[u8]) -> Result<(&str, Tensor)> {
         Ok(())
     })?;
     if is_elsewhere {
-        return Err(unsupported("weights in a file of their own"));
+        return Err(unsupported("weights in a separate file"));
     }
     let shape: Vec<usize> = shape
         .into_iter()
@@ -202,7 +202,7 @@ fn tensor(bytes: &[u8]) -> Result<(&str, Tensor)> {
         (7, Some(raw)) => integers_of(raw_items(raw, i64::from_le_bytes)?),
         (1 | 11, None) => floats_of(floats),
         (10, None) => floats_of(try_collect(integers.into_iter().map(|bits| half(bits as u16)))?),
-        // Varints of negative 32-bit numbers are those of 64 bits.
+        // Negative 32-bit integers are encoded as 64-bit varints.
         (2 | 3 | 6 | 7 | 9, None) => integers_of(integers),
         _ => return Err(unsupported(format_args!("tensors of type {kind}"))),
     };

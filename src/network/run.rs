@@ -1,17 +1,18 @@
-//! A run: node by node in the order of the file, every value dropped after its last use.
+//! Execution: node by node in the order of the file, dropping every value after its last use.
 
 use super::graph::Network;
 use super::ops::Call;
-use super::tensor::{Room, Tensor};
+use super::tensor::{MemoryBudget, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
-/// Most bytes of all values at once, beside the network's own weights; what a node needs meanwhile may be as much again.
-pub const MOST_BYTES: usize = 1 << 30;
+/// Maximum number of bytes of all values at a time, in addition to the network's own weights; temporary memory of a
+/// node may take the same again.
+pub const MAX_BYTES: usize = 1 << 30;
 
 impl Network {
-    /// The first output for an input. Fails with `Format` where shapes do not fit together, with `OutOfMemory` beyond
-    /// [`MOST_BYTES`].
+    /// Computes the first output for an input. Errors: `Format` if shapes are inconsistent, `OutOfMemory` beyond
+    /// [`MAX_BYTES`].
     pub fn run(&self, input: Tensor, job: Job) -> Result<Tensor> {
         let mut values: Vec<Option<Tensor>> = vec![None; self.constants.len()];
         let mut used = input.bytes();
@@ -22,7 +23,7 @@ impl Network {
             let value = |&number: &usize| values[number].as_ref().or(self.constants[number].as_ref());
             let call = Call {
                 inputs: node.inputs.iter().map(|number| number.as_ref().and_then(value)).collect(),
-                room: Room(MOST_BYTES.saturating_sub(used)),
+                budget: MemoryBudget(MAX_BYTES.saturating_sub(used)),
                 outputs: node.outputs.len(),
                 job,
             };
@@ -39,6 +40,6 @@ impl Network {
             job.report(1.0);
         }
         let made = values[self.output].take().or_else(|| self.constants[self.output].clone());
-        made.ok_or_else(|| Error::format("the network does not make its output"))
+        made.ok_or_else(|| Error::format("the network does not compute its output"))
     }
 }

@@ -1,10 +1,10 @@
-//! Arrays of numbers with a shape, and the room there is for them.
+//! Numeric arrays with a shape, and the memory budget for them.
 
 use crate::error::{Error, Result};
 use crate::image::{no_memory, try_vec};
 use std::sync::Arc;
 
-/// A dense array, the last axis fastest. Cheap to clone and to reshape: numbers are shared.
+/// A dense array, row-major. Cheap to clone and to reshape, because the numbers are shared.
 #[derive(Clone, Debug)]
 pub struct Tensor {
     pub shape: Vec<usize>,
@@ -14,11 +14,11 @@ pub struct Tensor {
 #[derive(Clone, Debug)]
 pub enum Data {
     Floats(Arc<Vec<f32>>),
-    /// All integers, and booleans as 0 and 1.
+    /// All integer types, and booleans as 0 and 1.
     Integers(Arc<Vec<i64>>),
 }
 
-/// The number of items of a shape, or an error where no memory could hold them.
+/// The number of items of a shape, or an error if it exceeds all memory.
 pub fn count(shape: &[usize]) -> Result<usize> {
     let all = shape.iter().try_fold(1usize, |n, &d| n.checked_mul(d));
     all.filter(|&n| n <= usize::MAX / 16)
@@ -36,10 +36,10 @@ impl Tensor {
         Self { shape, data: Data::Integers(Arc::new(values)) }
     }
 
-    /// The same numbers in another shape of as many.
+    /// The same numbers in another shape of equal size.
     pub fn reshaped(&self, shape: Vec<usize>) -> Result<Self> {
         if count(&shape)? != self.len() {
-            return Err(Error::format(format!("a tensor of shape {:?} cannot take shape {shape:?}", self.shape)));
+            return Err(Error::format(format!("a tensor of shape {:?} cannot be reshaped to {shape:?}", self.shape)));
         }
         Ok(Self { shape, data: self.data.clone() })
     }
@@ -61,18 +61,18 @@ impl Tensor {
     pub fn as_floats(&self) -> Result<&[f32]> {
         match &self.data {
             Data::Floats(values) => Ok(values),
-            Data::Integers(_) => Err(Error::format("integers stand where floats are needed")),
+            Data::Integers(_) => Err(Error::format("integers where floats are needed")),
         }
     }
 
     pub fn as_integers(&self) -> Result<&[i64]> {
         match &self.data {
             Data::Integers(values) => Ok(values),
-            Data::Floats(_) => Err(Error::format("floats stand where integers are needed")),
+            Data::Floats(_) => Err(Error::format("floats where integers are needed")),
         }
     }
 
-    /// The shape, if it has so many axes.
+    /// The shape, if it has `N` axes.
     pub fn shape_of<const N: usize>(&self) -> Result<[usize; N]> {
         self.shape
             .as_slice()
@@ -80,29 +80,29 @@ impl Tensor {
             .map_err(|_| Error::format(format!("a tensor has shape {:?}; {N} axes are needed", self.shape)))
     }
 
-    /// An axis counted from the front, or from the back if negative.
+    /// An axis index counted from the front, or from the back if negative.
     pub fn axis(&self, axis: i64) -> Result<usize> {
         normal_axis(axis, self.shape.len())
     }
 }
 
-/// An axis of `rank` counted from the front, or from the back if negative.
+/// An axis index of `rank` axes counted from the front, or from the back if negative.
 pub fn normal_axis(axis: i64, rank: usize) -> Result<usize> {
     let from_front = if axis < 0 { axis.checked_add(rank as i64) } else { Some(axis) };
     let found = from_front.and_then(|a| usize::try_from(a).ok()).filter(|&a| a < rank);
     found.ok_or_else(|| Error::format(format!("axis is {axis}; the tensor has {rank}")))
 }
 
-/// How many bytes may still be taken.
+/// The number of bytes that may still be allocated.
 #[derive(Clone, Copy)]
-pub(crate) struct Room(pub usize);
+pub(crate) struct MemoryBudget(pub usize);
 
-impl Room {
+impl MemoryBudget {
     fn check<T>(self, count: usize) -> Result<()> {
         if count <= self.0 / size_of::<T>() { Ok(()) } else { Err(no_memory::<T>(count)) }
     }
 
-    /// So many copies of a value, if there is room.
+    /// A list of copies of a value, if the budget allows.
     pub fn vec<T: Clone>(self, count: usize, value: T) -> Result<Vec<T>> {
         self.check::<T>(count)?;
         try_vec(count, value)

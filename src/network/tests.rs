@@ -1,5 +1,5 @@
-//! Operators against their definitions, and files that are damaged, lie, or ask for more than there is. Whole networks are
-//! compared with another runtime in `tests/python/test_network.py`.
+//! Tests operators against their definitions, and files that are damaged, inconsistent, or demand too much memory.
+//! Whole networks are compared with another runtime in `tests/python/test_network.py`.
 
 use super::writer::Setting::{F, I, Is, S, T};
 use super::writer::Writer;
@@ -18,7 +18,7 @@ fn run(file: &[u8], input: &Tensor) -> Result<Tensor> {
     Network::parse(file)?.run(input.clone(), Monitor::default().job())
 }
 
-/// The output of one node with more inputs that are constants.
+/// The output of a single node with further, constant inputs.
 fn node(kind: &str, x: &Tensor, more: &[(&str, &Tensor)], settings: &[super::writer::Setting]) -> Tensor {
     let shape: Vec<i64> = x.shape.iter().map(|&n| n as i64).collect();
     let mut writer = Writer::new(17, &shape);
@@ -111,7 +111,7 @@ fn products_of_stacks_of_matrices() {
         let (x, w) = (x.as_floats().unwrap(), w.as_floats().unwrap());
         close(&got, &out, |i| {
             let (matrix, row, column) = (i / columns / rows, i / columns % rows, i % columns);
-            // Matrices of the stacks: a's repeats along its axis of 1, b's over the outermost.
+            // Matrices of the stacks: a's repeat along its axis of size 1, b's over the outermost.
             let (m, n) = match a.len() {
                 4 if a[1] == 1 => (matrix / 3, matrix % 3),
                 _ => (matrix, 0),
@@ -244,7 +244,7 @@ fn items_are_put_where_they_belong() {
     expect(node("GlobalAveragePool", &image, &[], &[]), &[1, 1, 1, 1], &[1.5]);
 }
 
-/// A network with a bit of everything that shapes are computed with.
+/// A network that uses all the operators with which shapes are computed.
 fn small() -> Writer {
     let weights = noise(5, &[4, 3, 3, 3]);
     Writer::new(13, &[1, 3, 16, 16])
@@ -327,7 +327,7 @@ fn files_that_ask_for_more_than_there_is_are_refused() {
         let (w, t) = (w.constant("a", &Tensor::integers(vec![], vec![0])), Tensor::integers(vec![], vec![i64::MAX]));
         w.constant("b", &t).constant("c", &Tensor::integers(vec![], vec![1])).node("Range", &["a", "b", "c"], "y", &[])
     });
-    // Weights that are not there, a column by a row, and growth from node to node.
+    // Missing weights, incompatible shapes, and exponential growth from node to node.
     with(&|w| w.node("Add", &["x", "nothing"], "y", &[]));
     with(&|w| {
         let column = Tensor::floats(vec![1 << 15, 1], vec![1.0; 1 << 15]);
@@ -342,7 +342,7 @@ fn files_that_ask_for_more_than_there_is_are_refused() {
         }
         w
     });
-    // What is not done here is named.
+    // Unsupported operators are named.
     let error = with(&|w| w.node("Loop", &["x"], "y", &[]));
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("Loop"), "{error}");
     let error = with(&|w| w.node("Conv", &["x", "x"], "y", &[Is("strides", &[0, 0])]));

@@ -1,8 +1,8 @@
-//! Networks for tests, written as ONNX files byte by byte.
+//! Writes networks for tests as ONNX files.
 
 use super::tensor::{Data, Tensor};
 
-/// The bytes of a message, field by field.
+/// The bytes of a message, appended field by field.
 #[derive(Default, Clone)]
 pub struct Message(Vec<u8>);
 
@@ -39,7 +39,7 @@ impl Message {
     }
 }
 
-/// What a test sets of a node.
+/// An attribute of a node that a test sets.
 pub enum Setting<'a> {
     I(&'a str, i64),
     F(&'a str, f32),
@@ -59,14 +59,14 @@ pub fn tensor(name: &str, tensor: &Tensor) -> Message {
     message.bytes(8, name.as_bytes())
 }
 
-/// A network in the making; its input is "x".
+/// A network under construction; its input is "x".
 pub struct Writer {
     graph: Message,
     opset: i64,
 }
 
 impl Writer {
-    /// With an input of a shape; 0 leaves a size open.
+    /// With an input of the given shape; 0 leaves a size open.
     pub fn new(opset: i64, shape: &[i64]) -> Self {
         Self { graph: Message::default().message(11, &value("x", shape)), opset }
     }
@@ -104,7 +104,7 @@ impl Writer {
         self
     }
 
-    /// The file, whose output is "y".
+    /// The file, with the output "y".
     pub fn file(&self) -> Vec<u8> {
         let graph = self.graph.clone().message(12, &value("y", &[]));
         let opset = Message::default().integer(2, self.opset);

@@ -1,4 +1,4 @@
-//! Which patches of an image may be used.
+//! Sets of usable patches.
 
 use super::field::pack;
 use crate::error::Result;
@@ -7,23 +7,23 @@ use crate::image::{try_collect, try_vec, try_with_capacity};
 /// A set of patches of one image.
 #[derive(Debug)]
 pub struct Domain {
-    /// Patches along x and y.
+    /// Number of patches along x and y.
     pub width: usize,
     pub height: usize,
     member: Vec<bool>,
-    /// The members, in the order of the image unless some were removed and [`Domain::compact`] not called yet.
+    /// The members in scan order; may include removed members until [`Domain::compact`] is called.
     list: Vec<u32>,
     count: usize,
 }
 
 impl Domain {
-    /// All patches of width `patch` of an image of `width × height` pixels whose pixels all satisfy `all`, or of which
-    /// one satisfies it if `any`.
+    /// All patches of width `patch` of an image of `width × height` pixels whose pixels all lie in the mask, or, with
+    /// `any`, at least one of whose pixels does.
     pub fn new(width: usize, height: usize, patch: usize, mask: Option<&[bool]>, any: bool) -> Result<Self> {
         let (w, h) = (width + 1 - patch, height + 1 - patch);
         let mut member = try_vec(w * h, true)?;
         if let Some(mask) = mask {
-            // Two running counts, along x and then along y.
+            // Count mask pixels by running sums, along x and then along y.
             let mut along_x = try_vec(w * height, 0u32)?;
             for (out, row) in along_x.chunks_exact_mut(w).zip(mask.chunks_exact(width)) {
                 let mut sum = row[..patch - 1].iter().filter(|&&m| m).count() as u32;
@@ -41,7 +41,7 @@ impl Domain {
                 }
             }
         }
-        // Members are only ever removed: there is room for those of any time.
+        // Members are only ever removed, so this capacity always suffices.
         let list = try_with_capacity(member.iter().filter(|m| **m).count())?;
         let mut domain = Self { width: w, height: h, member, list, count: 0 };
         domain.compact();
@@ -71,7 +71,7 @@ impl Domain {
         self.member[index]
     }
 
-    /// Removes a member; it stays in the list of [`Domain::members`] until [`Domain::compact`].
+    /// Removes a member; it remains in the list of [`Domain::members`] until [`Domain::compact`].
     pub fn remove(&mut self, index: usize) {
         self.count -= usize::from(self.member[index]);
         self.member[index] = false;
@@ -90,12 +90,12 @@ impl Domain {
         &self.list
     }
 
-    /// Of each patch whether it is a member.
+    /// For each patch, whether it is a member.
     pub fn flags(&self) -> &[bool] {
         &self.member
     }
 
-    /// [`Domain::flags`], of which nothing else is kept.
+    /// Converts the set into [`Domain::flags`].
     pub fn into_flags(self) -> Vec<bool> {
         self.member
     }

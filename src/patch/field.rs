@@ -4,10 +4,10 @@ use super::domain::Domain;
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 
-/// A patch without a match.
+/// Marks a patch without a match.
 pub const NONE: u32 = u32::MAX;
 
-/// A position in one integer.
+/// Packs a position into one integer.
 #[inline]
 pub fn pack(x: usize, y: usize) -> u32 {
     (y as u32) << 16 | x as u32
@@ -18,15 +18,15 @@ pub fn unpack(position: u32) -> (usize, usize) {
     ((position & 0xffff) as usize, (position >> 16) as usize)
 }
 
-/// For each patch of one image its match in another, and their distance.
+/// For each patch of one image, its match in another image and their distance.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Patches along x and y.
+    /// Number of patches along x and y.
     pub width: usize,
     pub height: usize,
     /// Packed positions, or [`NONE`].
     pub at: Vec<u32>,
-    /// Distances; `u32::MAX` marks a match that is only a hint of where to look.
+    /// Distances; `u32::MAX` marks a match that is only an initial position for the search (a hint).
     pub error: Vec<u32>,
 }
 
@@ -35,7 +35,7 @@ impl Field {
         Ok(Self { width, height, at: try_vec(width * height, NONE)?, error: try_vec(width * height, u32::MAX)? })
     }
 
-    /// A copy, or an error where there is no memory for it.
+    /// A copy, or an error if memory is short.
     pub fn try_clone(&self) -> Result<Self> {
         let copy = |list: &[u32]| try_collect(list.iter().copied());
         Ok(Self { at: copy(&self.at)?, error: copy(&self.error)?, ..*self })
@@ -50,8 +50,9 @@ impl Field {
         Ok(field)
     }
 
-    /// The field at twice the resolution, as hints: twice the coarse match plus the parity of the pixel, moved inside
-    /// `base`. The border, where the finer image has more patches than twice the coarse one, continues its neighbour.
+    /// The field at twice the resolution, as hints: twice the coarse match plus the parity of the pixel, clamped to
+    /// `base`. At the border, where the finer image has more patches than twice the coarse one, it extends the nearest
+    /// entry.
     pub fn upsample(&self, width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {
@@ -66,8 +67,7 @@ impl Field {
         Ok(field)
     }
 
-    /// The field from matches back to patches, as hints: where several patches share a match the closest one is
-    /// taken, among equals the first.
+    /// The inverse field, as hints: if several patches share a match, the closest one is taken (the first, if equal).
     pub fn invert(&self, base: &Domain) -> Result<Self> {
         let mut inverse = Self::new(base.width, base.height)?;
         for (i, (&at, &error)) in self.at.iter().zip(&self.error).enumerate() {
@@ -83,7 +83,7 @@ impl Field {
         Ok(inverse)
     }
 
-    /// Takes over matches and distances computed row by row.
+    /// Stores matches and distances computed row by row.
     pub(super) fn set_rows(&mut self, rows: Vec<Vec<(u32, u32)>>) {
         for (i, (at, error)) in rows.into_iter().flatten().enumerate() {
             (self.at[i], self.error[i]) = (at, error);

@@ -1,17 +1,17 @@
-//! Distance between two patches, with early exit; the one file of this engine with `unsafe` code.
+//! Distance between two patches with early exit; the only file of this engine with `unsafe` code.
 //!
 //! Both versions add the same integers in 32 bits and stop after the same row, so they agree to the bit. [`Quantiser`]
-//! (see `features.rs`) keeps the sum below 2³¹.
+//! (see `quantised.rs`) keeps the sum below 2³¹.
 //!
 //! [`Quantiser`]: super::Quantiser
 
 use crate::simd::Level;
 
-/// The instructions to compute with.
+/// The instruction set to compute with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kernel(Level);
 
-/// One patch: samples of its image from its top-left pixel on, and the samples from one row to the next.
+/// A patch: the samples of its image from its top-left pixel on, and the number of samples per row of the image.
 #[derive(Clone, Copy)]
 pub struct Patch<'a> {
     pub samples: &'a [i16],
@@ -19,21 +19,21 @@ pub struct Patch<'a> {
 }
 
 impl Kernel {
-    /// The fastest kernel of this machine.
+    /// The fastest kernel on this machine.
     pub fn detect() -> Self {
         Self(Level::widest())
     }
 
-    /// Sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after a row that brings it
-    /// to `limit` or more.
+    /// Sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after the row in which
+    /// the sum reaches `limit`.
     #[inline]
     pub fn distance(self, a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
         let end = |p: &Patch| (rows - 1) * p.row_len + run;
         assert!(rows > 0 && run % 8 == 0 && end(&a) <= a.samples.len() && end(&b) <= b.samples.len());
         match self.0 {
             Level::Baseline => portable(a, b, run, rows, limit),
-            // SAFETY: the processor has the instructions of its level and of those below, and the line above keeps every
-            // load inside its slice. (Rows are short: wider registers, masked at their ends, are slower.)
+            // SAFETY: the processor supports its level and all levels below, and the assertion above keeps every load
+            // inside its slice. (Rows are short: wider registers with masked ends are slower.)
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 | Level::Avx512 => unsafe { avx2(a, b, run, rows, limit) },
         }

@@ -1,9 +1,10 @@
-//! How often the pixels of an image are used, and what using them once more costs: Kaspar et al., "Self Tuning Texture
-//! Optimization" (2015).
+//! The occurrence map of an image and the penalty of further use: Kaspar et al., "Self Tuning Texture Optimization"
+//! (2015).
 //!
-//! The occurrence Ω of a pixel is how many matches hold it, and ω what that would be if all allowed patches were used alike.
-//! Beside its distance a match costs λ times the mean of Ω / ω over its pixels. ω is counted for each pixel, since fewer
-//! patches hold one near a border: so even usage costs the same everywhere, and a field that is the identity stays it.
+//! The occurrence Ω of a pixel is the number of matches that contain it, and ω its value under uniform usage of all
+//! allowed patches. The penalty of a match, added to its distance, is λ times the mean of Ω / ω over its pixels. ω is
+//! computed per pixel, since fewer patches contain pixels near a border: uniform usage then has the same penalty
+//! everywhere, and an identity field remains an identity.
 
 use super::domain::Domain;
 use super::field::{Field, NONE, unpack};
@@ -11,20 +12,20 @@ use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// Counted along with every match that changes: by a search on one thread.
+/// Updated with every match that changes, by a search on one thread.
 pub struct Occurrence {
     /// Width of the image in pixels, and of a patch.
     width: usize,
     patch: usize,
     /// Ω of each pixel.
     uses: Vec<AtomicU32>,
-    /// What a use of each pixel costs.
+    /// Penalty per use of each pixel.
     each: Vec<f32>,
 }
 
 impl Occurrence {
-    /// Counts the matches of `field` among the `allowed` patches of width `patch`; even usage costs `weight` a match, in the
-    /// units of a distance.
+    /// Counts the matches of `field` among the `allowed` patches of width `patch`; under uniform usage a match costs
+    /// `weight`, in the units of a distance.
     pub fn new(field: &Field, allowed: &Domain, patch: usize, weight: f64) -> Result<Self> {
         let (width, height) = (allowed.width + patch - 1, allowed.height + patch - 1);
         let matched = field.at.iter().filter(|&&at| at != NONE);
@@ -41,15 +42,15 @@ impl Occurrence {
         Ok(occurrence)
     }
 
-    /// What a match at `position` costs beside its distance.
+    /// The penalty of a match at `position`.
     pub fn cost(&self, position: u32) -> u32 {
         let cost: f32 =
             pixels(position, self.width, self.patch).map(|i| self.uses[i].load(Relaxed) as f32 * self.each[i]).sum();
-        // A distance is as much at most, so that both together fit.
+        // A distance has the same bound, so that their sum does not overflow.
         cost.min(i32::MAX as f32 / 2.0) as u32
     }
 
-    /// A patch goes from one match, or [`NONE`], to another.
+    /// Updates the counts when a patch changes from one match, or [`NONE`], to another.
     pub(super) fn replace(&self, from: u32, to: u32) {
         if from != NONE {
             self.count(from, u32::MAX);
@@ -65,7 +66,7 @@ impl Occurrence {
     }
 }
 
-/// The pixels of a patch in an image of `width`.
+/// The pixel indices of a patch in an image of `width`.
 fn pixels(position: u32, width: usize, patch: usize) -> impl Iterator<Item = usize> {
     let (x, y) = unpack(position);
     (y..y + patch).flat_map(move |row| row * width + x..row * width + x + patch)
@@ -83,18 +84,18 @@ mod tests {
         let occurrence = Occurrence::new(&identity, &allowed, 3, 1000.0).unwrap();
         let costs = |o: &Occurrence| allowed.members().iter().map(|&at| o.cost(at)).collect::<Vec<u32>>();
         assert!(costs(&occurrence).iter().all(|c| c.abs_diff(1000) <= 1), "{:?}", costs(&occurrence));
-        // Twice as many patches that are used evenly.
+        // Twice as many patches, used uniformly.
         let twice = Field { width: 14, height: 5, at: [&identity.at[..]; 2].concat(), error: vec![0; 70] };
         let even = Occurrence::new(&twice, &allowed, 3, 1000.0).unwrap();
         assert!(costs(&even).iter().all(|c| c.abs_diff(1000) <= 1));
-        // One match moves from one end to the other, and back.
+        // One match moves from one end to the other and back.
         let (from, to) = (pack(0, 0), pack(6, 4));
         occurrence.replace(from, to);
         assert!(occurrence.cost(from) < 900 && occurrence.cost(to) > 1100);
         assert!(occurrence.cost(pack(3, 2)).abs_diff(1000) <= 1);
         occurrence.replace(to, from);
         assert!(costs(&occurrence).iter().all(|c| c.abs_diff(1000) <= 1));
-        // However much it weighs, cost and distance fit into one number.
+        // For any weight, penalty plus distance fits into one integer.
         let heavy = Occurrence::new(&identity, &allowed, 3, 1e30).unwrap();
         assert!(heavy.cost(from) <= i32::MAX as u32 / 2 + 1);
         assert_eq!(Occurrence::new(&Field::new(3, 3).unwrap(), &allowed, 3, 1.0).unwrap().cost(from), 0);

@@ -4,22 +4,22 @@ use crate::error::Result;
 use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 
-/// Side of an image `level` halvings down; never below 1.
+/// Side of an image after `level` halvings; at least 1.
 pub fn level_size(side: usize, level: usize) -> usize {
     (side >> level).max(1)
 }
 
-/// Levels that keep the shorter of all sides at `smallest` pixels or more; at least 1, at most `wanted`.
+/// Number of levels for which the shortest side has at least `smallest` pixels; between 1 and `wanted`.
 pub fn level_count(shortest_side: usize, smallest: usize, wanted: usize) -> usize {
     (1..wanted.max(1)).take_while(|&l| level_size(shortest_side, l) >= smallest).count() + 1
 }
 
-/// Half the image: 2 × 2 averages (area averages where a side is odd).
+/// Halves an image by 2 × 2 averages (area averages if a side is odd).
 pub fn halve(image: &Image, job: Job) -> Result<Image> {
     pyramid::resize(image, level_size(image.width, 1), level_size(image.height, 1), job)
 }
 
-/// Half the mask: set where all the pixels under it are, or where one is if `any`.
+/// Halves a mask: a pixel is set if all pixels under it are, or, with `any`, at least one.
 pub fn halve_mask(mask: &[bool], width: usize, height: usize, any: bool) -> Result<Vec<bool>> {
     let (w, h) = (level_size(width, 1), level_size(height, 1));
     let span = |i: usize, n: usize, of: usize| i * of / n..((i + 1) * of).div_ceil(n);

@@ -1,60 +1,59 @@
-//! PatchMatch (Barnes et al. 2009): propagation and random search, deterministic for any number of threads.
+//! PatchMatch (Barnes et al. 2009): propagation and random search, with results independent of the number of threads.
 //!
-//! The query image is cut into fixed tiles. A sweep visits each tile twice, forwards and backwards, seeing the rest of
-//! the field as it was before the sweep, and only then are the tiles written back.
+//! The query image is divided into fixed tiles. A sweep visits each tile forwards and backwards, sees the rest of the
+//! field as it was before the sweep, and writes all tiles back at the end.
 
 use super::domain::Domain;
-use super::features::Features;
 use super::field::{Field, NONE, pack, unpack};
 use super::kernel::{Kernel, Patch};
 use super::occurrence::Occurrence;
+use super::quantised::QuantisedImage;
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 use crate::rng::{Rng, hash};
 
-/// Patches along a side of a tile: with 16 channels a tile and its matches stay in a second-level cache.
+/// Patches along the side of a tile: with 16 channels, a tile and its matches fit into a second-level cache.
 const TILE: usize = 48;
 
-/// Where matches of the patches of `query` may be searched for.
+/// The search for matches of patches of `query` among patches of `base`.
 #[derive(Clone, Copy)]
 pub struct Search<'a> {
-    pub query: &'a Features,
-    pub base: &'a Features,
+    pub query: &'a QuantisedImage,
+    pub base: &'a QuantisedImage,
     /// Patches of `base` that may be matches.
     pub allowed: &'a Domain,
     /// Width of a patch in pixels.
     pub patch: usize,
-    /// What matches cost beside their distances, counted along in [`Search::sweep`], which then takes one tile after the
-    /// other, on one thread.
+    /// Usage penalties, updated during [`Search::sweep`], which then processes tiles sequentially on one thread.
     pub occurrence: Option<&'a Occurrence>,
     pub kernel: Kernel,
     pub seed: u64,
 }
 
-/// One round of propagation and random search.
+/// Parameters of a sweep of propagation and random search.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep {
-    /// Number of this sweep: random numbers depend on it.
+    /// Index of this sweep, which seeds its random numbers.
     pub index: u64,
-    /// Largest distance of random candidates from the best match so far, in pixels; halved until it is 0.
-    pub reach: usize,
-    /// Random candidates from anywhere for a patch that has no match yet.
-    pub fresh: usize,
+    /// Initial radius in pixels of the random search around the best match; halved until it is 0.
+    pub radius: usize,
+    /// Number of uniformly random candidates for a patch without a match.
+    pub initial_samples: usize,
 }
 
 impl Search<'_> {
-    /// Distance between a patch of the query and one of the base, cut short at `limit`.
+    /// Distance between a patch of the query and one of the base, with early exit at `limit`.
     #[inline]
     pub fn distance(&self, x: usize, y: usize, match_x: usize, match_y: usize, limit: u32) -> u32 {
-        fn at(image: &Features, x: usize, y: usize) -> Patch<'_> {
+        fn at(image: &QuantisedImage, x: usize, y: usize) -> Patch<'_> {
             Patch { samples: &image.data[(y * image.width + x) * image.lanes..], row_len: image.row_len() }
         }
         let run = self.patch * self.query.lanes;
         self.kernel.distance(at(self.query, x, y), at(self.base, match_x, match_y), run, self.patch, limit)
     }
 
-    /// What a match at a position, or [`NONE`], costs beside its distance.
+    /// The penalty of a match at a position, or of [`NONE`].
     fn cost(&self, position: u32) -> u32 {
         match self.occurrence {
             Some(occurrence) if position != NONE => occurrence.cost(position),
@@ -62,7 +61,7 @@ impl Search<'_> {
         }
     }
 
-    /// Recomputes the distances of the patches for which `wanted` holds, where they have an allowed match.
+    /// Recomputes the distances of the patches for which `wanted` holds and that have an allowed match.
     pub fn rescore(&self, field: &mut Field, job: Job, wanted: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let width = field.width;
         let at = &field.at;
@@ -102,7 +101,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Lowers the distances of the patches for which `active` holds; no distance rises, but where usage costs.
+    /// Lowers the distances of the patches for which `active` holds; without usage penalties, no distance rises.
     pub fn sweep(
         &self,
         field: &mut Field,
@@ -135,9 +134,9 @@ impl Search<'_> {
 }
 
 impl Search<'_> {
-    /// Lets each active patch continue a neighbour's match where that lowers its distance plus `seam` for each of its four
-    /// neighbours that its match does not continue: one round of iterated conditional modes (Besag 1986) there and back.
-    /// Nothing is searched for, so the sum of distances and seams of a tile never rises.
+    /// Lets each active patch continue a neighbour's match if that lowers its distance plus `seam` per neighbour (of
+    /// four) that its match does not continue: one forward and one backward round of iterated conditional modes (Besag
+    /// 1986). No new matches are searched for, so the sum of distances and seams of a tile never rises.
     pub fn join(&self, field: &mut Field, seam: u32, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let tiles = exec::map(columns * rows, job, |t| {
@@ -176,7 +175,7 @@ impl Tile {
         }
     }
 
-    /// Searches forwards and backwards; says whether there was anything to do.
+    /// Searches forwards and backwards; returns whether there was anything to do.
     fn search(
         &mut self,
         search: &Search,
@@ -196,11 +195,11 @@ impl Tile {
                 continue;
             }
             busy = true;
-            // Distances are compared with what matches cost, but kept without.
+            // Compare distances including penalties, but store them without.
             let total = self.error[i].saturating_add(search.cost(self.at[i]));
             let mut best = Best { at: self.at[i], error: total, x, y };
 
-            // Propagation: the matches of the two neighbours just visited, moved by one.
+            // Propagation: try the matches of the two neighbours visited last, shifted by one.
             let d = if backwards { 1 } else { -1 };
             for (dx, dy) in [(d, 0), (0, d)] {
                 if let Some(neighbour) = self.neighbour(before, x as isize + dx, y as isize + dy) {
@@ -209,23 +208,23 @@ impl Tile {
                 }
             }
 
-            // Random search, on the way forwards only.
+            // Random search, in the forward direction only.
             if !backwards {
                 let mut rng = Rng::new(key, &[index as u64]);
                 if best.error == u32::MAX {
-                    for _ in 0..sweep.fresh {
+                    for _ in 0..sweep.initial_samples {
                         let members = search.allowed.members();
                         let (px, py) = unpack(members[rng.below(members.len())]);
                         best.try_at(search, px as isize, py as isize);
                     }
                 }
-                let mut reach = sweep.reach;
-                while reach > 0 && best.at != NONE {
+                let mut radius = sweep.radius;
+                while radius > 0 && best.at != NONE {
                     let (px, py) = unpack(best.at);
-                    let (bits, span) = (rng.next_u64(), 2 * reach as u64 + 1);
-                    let offset = |half: u64| ((half * span) >> 32) as isize - reach as isize;
+                    let (bits, span) = (rng.next_u64(), 2 * radius as u64 + 1);
+                    let offset = |half: u64| ((half * span) >> 32) as isize - radius as isize;
                     best.try_at(search, px as isize + offset(bits & 0xffff_ffff), py as isize + offset(bits >> 32));
-                    reach /= 2;
+                    radius /= 2;
                 }
             }
             if best.error == total && best.at == self.at[i] {
@@ -240,14 +239,14 @@ impl Tile {
         busy
     }
 
-    /// Joins forwards and backwards; says whether anything changed.
+    /// Joins forwards and backwards; returns whether anything changed.
     fn join(&mut self, search: &Search, before: &Field, seam: u32, active: &(impl Fn(usize) -> bool + Sync)) -> bool {
         let count = self.width * self.height;
         let mut changed = false;
         for step in 0..2 * count {
             let i = if step < count { step } else { 2 * count - 1 - step };
             let (x, y) = (self.x0 + i % self.width, self.y0 + i / self.width);
-            // What each neighbour would continue to here.
+            // The match here that would continue each neighbour's match.
             let around = [(-1, 0), (1, 0), (0, -1), (0, 1)].map(|(dx, dy)| {
                 let at = self.neighbour(before, x as isize + dx, y as isize + dy)?;
                 let (px, py) = unpack(at);
@@ -285,7 +284,7 @@ impl Tile {
         changed
     }
 
-    /// The match of a patch: this tile's newest, or from outside it what was known before the sweep.
+    /// The match of a patch: the current one inside this tile, the one before the sweep outside it.
     fn neighbour(&self, before: &Field, x: isize, y: isize) -> Option<u32> {
         if x < 0 || y < 0 || x as usize >= before.width || y as usize >= before.height {
             return None;
@@ -317,7 +316,7 @@ impl Best {
         }
         let (px, py) = (px as usize, py as usize);
         let at = pack(px, py);
-        // A match already known costs nothing; a hint has yet to be measured.
+        // Skip a match already measured; a hint has not been measured yet.
         if (at == self.at && self.error != u32::MAX) || !search.allowed.contains(px, py) {
             return;
         }
@@ -339,9 +338,9 @@ mod tests {
     use crate::image::Image;
     use crate::job::Monitor;
 
-    fn noise(width: usize, height: usize) -> Features {
+    fn noise(width: usize, height: usize) -> QuantisedImage {
         let image = Image::from_fn(width, height, |x, y| [Rng::new(4, &[x as u64, y as u64]).next_f32()]);
-        let mut out = Features::new(width, height, 1).unwrap();
+        let mut out = QuantisedImage::new(width, height, 1).unwrap();
         out.fill(0, &Quantiser::for_weights(&[1.0], 5), &image.unwrap(), Monitor::default().job()).unwrap();
         out
     }
@@ -369,7 +368,7 @@ mod tests {
         search.join(&mut field, 1000, monitor.job(), |_| true).unwrap();
         assert_eq!(field, truth);
 
-        // Every third match is wrong.
+        // Corrupt every third match.
         (0..field.at.len()).step_by(3).for_each(|i| field.at[i] = pack(i * 7 % 66, i * 5 % 56));
         search.rescore(&mut field, monitor.job(), |_| true).unwrap();
         let seams = |f: &Field| {

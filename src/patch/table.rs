@@ -1,18 +1,19 @@
-//! A search that is not PatchMatch: a k-d tree over the mean channels of patches (Bentley 1975), visited without
-//! backtracking, whose neighbours in tree order are compared in full.
+//! An alternative to PatchMatch: a k-d tree over the channel means of patches (Bentley 1975), traversed without
+//! backtracking; the neighbours in tree order are compared in full.
 //!
-//! Means say little about texture, so its matches are farther than PatchMatch's; it needs no iterations and no start.
+//! Means carry little information about texture, so the matches are worse than PatchMatch's, but no iterations and no
+//! initial field are needed.
 
 use super::domain::Domain;
-use super::features::Features;
 use super::field::{Field, pack, unpack};
+use super::quantised::QuantisedImage;
 use super::search::{Best, Search};
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_vec;
 use crate::job::Job;
 
-/// Most patches in a leaf.
+/// Maximum number of patches in a leaf.
 const LEAF: usize = 8;
 
 /// The mean of each channel over each patch.
@@ -23,12 +24,12 @@ pub struct Means {
 }
 
 impl Means {
-    pub fn new(image: &Features, patch: usize, job: Job) -> Result<Self> {
+    pub fn new(image: &QuantisedImage, patch: usize, job: Job) -> Result<Self> {
         let (width, height, lanes) = (image.width + 1 - patch, image.height + 1 - patch, image.lanes);
         let mut data = try_vec(width * height * lanes, 0i16)?;
         let area = (patch * patch) as i32;
         exec::for_rows(&mut data, width * lanes, job, |y, row| {
-            // Sums of columns, then of `patch` columns side by side.
+            // Sum `patch` rows into columns, then `patch` neighbouring columns.
             let mut columns = vec![0i32; image.row_len()];
             for samples in image.data[y * image.row_len()..][..patch * image.row_len()].chunks_exact(image.row_len()) {
                 columns.iter_mut().zip(samples).for_each(|(c, &s)| *c += i32::from(s));
@@ -46,7 +47,7 @@ impl Means {
     }
 }
 
-/// The patches of one image, sorted so that near ones are mostly near each other.
+/// The patches of one image in k-d tree order, in which similar patches are mostly close.
 pub struct Table {
     order: Vec<u32>,
     /// Channel and value of each split; the children of node `i` are `2i + 1` and `2i + 2`.
@@ -68,7 +69,7 @@ impl Table {
             let members = &mut order[low..high];
             let half = members.len() / 2;
             if !members.is_empty() {
-                // Split the channel of the widest spread at its median; among equals by position.
+                // Split the channel of the widest range at its median; ties are ordered by position.
                 let channel = widest(means, members);
                 let key = |&position: &u32| (means.of(position)[channel], position);
                 members.select_nth_unstable_by_key(half, key);
@@ -80,8 +81,8 @@ impl Table {
         Ok(Self { order, splits })
     }
 
-    /// Index in the order near which patches with means like these are found.
-    fn find(&self, means: &[i16]) -> usize {
+    /// Index in the order near which patches with similar means lie.
+    fn leaf_of(&self, means: &[i16]) -> usize {
         let (mut low, mut high, mut node) = (0, self.order.len(), 0);
         while let Some(&(channel, value)) = self.splits.get(node) {
             let half = low + (high - low) / 2;
@@ -95,7 +96,7 @@ impl Table {
     }
 }
 
-/// The channel in which a sample of the members differs most.
+/// The channel of the widest range in a sample of the members.
 fn widest(means: &Means, members: &[u32]) -> usize {
     let step = (members.len() / 256).max(1);
     let spread = |channel: usize| {
@@ -103,12 +104,12 @@ fn widest(means: &Means, members: &[u32]) -> usize {
         let (low, high) = values.fold((i16::MAX, i16::MIN), |(l, h), v| (l.min(v), h.max(v)));
         i32::from(high) - i32::from(low)
     };
-    // The first among equals, so that padding is never chosen.
+    // Ties go to the first, so that padding is never chosen.
     (0..means.lanes).rev().max_by_key(|&c| spread(c)).unwrap_or(0)
 }
 
 impl Search<'_> {
-    /// Compares each active patch with `tries` allowed patches that the table has near it; no distance rises.
+    /// Compares each active patch with the `tries` nearest allowed patches in table order; no distance rises.
     pub fn look_up(
         &self,
         field: &mut Field,
@@ -126,8 +127,9 @@ impl Search<'_> {
                 let i = y * width + x;
                 let mut best = Best { at: before.at[i], error: before.error[i], x, y };
                 if count > 0 && active(i) {
-                    let middle = table.find(query_means.of(pack(x, y))).min(count - 1);
-                    // Outwards on both sides, over patches that are not allowed (any more) too, but not for ever.
+                    let middle = table.leaf_of(query_means.of(pack(x, y))).min(count - 1);
+                    // Walk outwards on both sides, skipping patches that are not allowed, for a bounded number of
+                    // steps.
                     let mut left = tries;
                     for step in 0..16 * tries {
                         let at = if step % 2 == 0 { middle + step / 2 } else { middle.wrapping_sub(step / 2 + 1) };
@@ -163,14 +165,14 @@ mod tests {
     fn patches_of_one_image_are_found_in_another_that_contains_them() {
         let quantisers = Quantiser::for_weights(&[1.0, 1.0], 5);
         let job = Monitor::default();
-        let mut base = Features::new(60, 50, 2).unwrap();
+        let mut base = QuantisedImage::new(60, 50, 2).unwrap();
         let noise = Image::from_fn(60, 50, |x, y| {
             let mut rng = Rng::new(1, &[x as u64, y as u64]);
             [rng.next_f32(), rng.next_f32()]
         });
         base.fill(0, &quantisers, &noise.unwrap(), job.job()).unwrap();
-        // The query is a piece of the base.
-        let mut query = Features::new(30, 20, 2).unwrap();
+        // The query is a part of the base.
+        let mut query = QuantisedImage::new(30, 20, 2).unwrap();
         for y in 0..20 {
             let from = (y + 11) * base.row_len() + 7 * base.lanes;
             let row = base.data[from..from + query.row_len()].to_vec();
@@ -191,7 +193,7 @@ mod tests {
         };
         let mut field = Field::new(26, 16).unwrap();
         search.look_up(&mut field, &table, &means, 2 * LEAF, job.job(), |_| true).unwrap();
-        // A patch whose mean equals that of a split may lie on the other side of it: the few ties are missed.
+        // A patch whose mean equals that of a split may lie on its other side: these few ties are missed.
         let found = |(i, &at): (usize, &u32)| at == pack(i % 26 + 7, i / 26 + 11);
         assert!(field.at.iter().enumerate().filter(|&p| found(p)).count() > 26 * 16 * 95 / 100);
         assert!(field.at.iter().zip(&field.error).enumerate().all(|(i, (at, &e))| (e == 0) == found((i, at))));

@@ -1,4 +1,5 @@
-//! The image a field stands for: the average of the pixels that overlapping matches put in each place (Algorithm 1).
+//! Reconstructs the image from a field: the average of the pixels that overlapping matches place at each position
+//! (Algorithm 1).
 
 use super::field::{Field, NONE, pack, unpack};
 use crate::error::Result;
@@ -6,30 +7,30 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// How the pixels that fall on the same place are combined.
+/// Combination of the pixels placed at the same position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vote {
-    /// Their mean, as in the paper.
+    /// The mean, as in the paper.
     Plain,
-    /// Their mean weighted by `1 / (1 + E / mean E)`.
+    /// The mean weighted by `1 / (1 + E / mean E)`.
     Weighted,
-    /// The one that is closest to their mean: no new colours, so texture keeps its contrast.
+    /// The pixel closest to the mean: introduces no new colours, so texture keeps its contrast.
     Nearest,
-    /// The one that most of them put there, among equals the closest to their mean: where two pieces of the exemplar meet,
-    /// each stays whole up to the seam.
-    Most,
+    /// The pixel placed most often (ties: the one closest to the mean): where two pieces of the exemplar meet, each
+    /// stays intact up to the seam.
+    Majority,
 }
 
-/// What the matches over one place put there: pixels of the exemplar, each once.
+/// A distinct exemplar pixel placed at a position, with its votes.
 struct Ballot {
-    /// Where in the exemplar relative to the place, wrapping: the same for patches that continue each other.
+    /// Source position relative to the target position, wrapping: equal for patches that continue each other.
     offset: u32,
     count: usize,
     weight: f64,
 }
 
-/// Writes into each pixel of `out` for which `wanted` holds what the matches in `style` say; a pixel that no match covers
-/// keeps its value. Where all agree the result is the exemplar's pixel to the bit.
+/// Reconstructs each pixel of `out` for which `wanted` holds from the matches in `style`; pixels without a match keep
+/// their value. Where all matches agree, the result equals the exemplar's pixel to the bit.
 pub fn vote(
     out: &mut Image,
     field: &Field,
@@ -49,12 +50,12 @@ pub fn vote(
                 let (px, py) = unpack(offset.wrapping_add(pack(x, y)));
                 style.pixel(px, py)
             };
-            // Mostly one piece of the exemplar covers the place.
+            // Fast path: a single piece of the exemplar covers most positions.
             if let Some(offset) = common_offset(field, patch, x, y) {
                 pixel.copy_from_slice(colour(offset));
                 continue;
             }
-            // Collect the exemplar's pixels that the patches over this place put here.
+            // Collect the exemplar pixels that the patches over this position place here.
             ballots.clear();
             for fy in fields_over(y, patch, field.height) {
                 for fx in fields_over(x, patch, field.width) {
@@ -86,8 +87,8 @@ pub fn vote(
                 let sum: f64 = ballots.iter().map(|b| b.weight * f64::from(colour(b.offset)[c])).sum();
                 *value = (sum / total) as f32;
             }
-            if matches!(how, Vote::Nearest | Vote::Most) {
-                let count = |b: &Ballot| if how == Vote::Most { b.count } else { 0 };
+            if matches!(how, Vote::Nearest | Vote::Majority) {
+                let count = |b: &Ballot| if how == Vote::Majority { b.count } else { 0 };
                 let distance =
                     |b: &Ballot| -> f32 { colour(b.offset).iter().zip(&*pixel).map(|(s, m)| (s - m) * (s - m)).sum() };
                 let best = (ballots.iter())
@@ -100,8 +101,7 @@ pub fn vote(
     })
 }
 
-/// Where in the exemplar, relative to a place, all the matches over it have it from; `None` where they differ or one is
-/// missing.
+/// The source offset on which all matches over a position agree; `None` if they differ or one is missing.
 #[inline]
 fn common_offset(field: &Field, patch: usize, x: usize, y: usize) -> Option<u32> {
     let (columns, rows) = (fields_over(x, patch, field.width), fields_over(y, patch, field.height));
@@ -114,7 +114,7 @@ fn common_offset(field: &Field, patch: usize, x: usize, y: usize) -> Option<u32>
     (first != NONE && rows.into_iter().all(agrees)).then_some(offset)
 }
 
-/// The pixel of the exemplar that all the matches over a place put there; `None` where they differ or one is missing.
+/// The exemplar pixel on which all matches over a position agree; `None` if they differ or one is missing.
 pub fn origin(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, usize)> {
     common_offset(field, patch, x, y).map(|offset| unpack(offset.wrapping_add(pack(x, y))))
 }
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
 
-    /// Five patches over one pixel: two put 0 there, the others 0.5, 1 and 1 from different places.
+    /// Five patches over one pixel: two place 0 there, the others 0.5, 1 and 1 from different positions.
     #[test]
     fn votes_are_averaged_or_chosen_from() {
         let style = Image::from_fn(40, 5, |x, _| [[0.0, 0.5, 1.0, 1.0][(x.clamp(10, 39) - 10) / 8]]).unwrap();
@@ -141,6 +141,6 @@ mod tests {
             vote(&mut out, &field, &style, 5, how, Monitor::default().job(), |_| true).unwrap();
             out.pixel(4, 2)[0]
         };
-        assert_eq!([Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most].map(middle), [0.5, 0.5, 0.5, 0.0]);
+        assert_eq!([Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority].map(middle), [0.5, 0.5, 0.5, 0.0]);
     }
 }

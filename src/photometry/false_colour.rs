@@ -1,23 +1,23 @@
-//! False colour: a luminance or illuminance image as colours whose order the eye sees, with a scale bar that says what they
-//! mean.
+//! False colour: renders a luminance or illuminance image in colours of visible order, with a scale bar.
 //!
-//! The colours run from dark violet over red to light yellow in OKLab (Ottosson 2020): their lightness grows evenly with the
-//! value, so that what is brighter is more, also for the colour-blind and on grey paper, and their hue tells steps apart.
+//! The colours run from dark violet over red to light yellow in OKLab (Ottosson 2020). Lightness increases uniformly
+//! with the value, so the order is visible also to the colour-blind and in greyscale print; hue helps to distinguish
+//! steps.
 
 use super::glyphs::{self, draw};
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour};
 use glam::Vec3;
 
-/// How values are spread over the colours.
+/// The mapping from values to colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     Linear,
-    /// Decades are equally wide.
+    /// All decades have equal width.
     Logarithmic,
 }
 
-/// What the values are.
+/// The quantity of the values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Luminance, in cd/m².
@@ -30,11 +30,12 @@ pub enum Unit {
 pub struct Params {
     pub scale: Scale,
     pub unit: Unit,
-    /// Value of the darkest colour, ≥ 0; > 0 on a logarithmic scale, where 0 stands for a thousandth of the largest.
+    /// Value of the darkest colour, ≥ 0; must be > 0 on a logarithmic scale, where 0 selects a thousandth of the
+    /// largest.
     pub least: f64,
-    /// Value of the lightest colour, > `least`; 0 stands for the largest value of the image.
+    /// Value of the lightest colour, > `least`; 0 selects the largest value of the image.
     pub most: f64,
-    /// Whether the scale bar is drawn beside the image, which then is wider.
+    /// Whether to draw the scale bar beside the image, which widens it.
     pub bar: bool,
 }
 
@@ -44,20 +45,20 @@ impl Default for Params {
     }
 }
 
-/// What has no value: a mesh's map between its triangles.
-const NOTHING: Vec3 = Vec3::splat(0.05);
+/// Colour of pixels without a value, such as those between the triangles of a mesh's map.
+const NO_VALUE: Vec3 = Vec3::splat(0.05);
 const PAPER: Vec3 = Vec3::splat(1.0);
 const INK: Vec3 = Vec3::ZERO;
 
-/// Linear RGB of a share of the scale, in `[0, 1]`.
+/// Linear RGB at a fraction of the scale, in `[0, 1]`.
 pub fn colour_of(share: f64) -> Vec3 {
     let t = share.clamp(0.0, 1.0) as f32;
     let lightness = 0.22 + 0.73 * t;
-    // Chroma as large as sRGB has along the way: none at the ends, most at the reds.
+    // Chroma follows the sRGB gamut along the way: small at the ends, largest at the reds.
     let chroma = 0.19 * (4.0 * t * (1.0 - t)).sqrt() * (1.0 - 0.25 * t) + 0.03 + 0.05 * t;
     let hue = (-75.0 + 180.0 * t).to_radians();
     let wanted = oklab_to_linear(lightness, chroma * hue.cos(), chroma * hue.sin());
-    // What is out of gamut loses chroma, never lightness: by a search, since the gamut has no simple form.
+    // Reduce chroma, never lightness, until the colour is in gamut; bisect, since the gamut has no closed form.
     if inside(wanted) {
         return wanted.clamp(Vec3::ZERO, Vec3::ONE);
     }
@@ -74,7 +75,7 @@ fn inside(rgb: Vec3) -> bool {
     rgb.min_element() >= -1e-4 && rgb.max_element() <= 1.0 + 1e-4
 }
 
-/// Ottosson 2020, "A perceptual color space for image processing".
+/// OKLab to linear RGB (Ottosson 2020, "A perceptual color space for image processing").
 fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
     let l = lightness + 0.396_337_78 * a + 0.215_803_76 * b;
     let m = lightness - 0.105_561_346 * a - 0.063_854_17 * b;
@@ -87,17 +88,18 @@ fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
     )
 }
 
-/// The image in false colour, linear RGB. Its luminance counts where it has three channels, its values where it has one.
+/// The image in false colour, linear RGB. Uses the luminance of three-channel images and the values of single-channel
+/// ones.
 ///
 /// # Errors
-/// A range that is none; an image without a value above 0 where the range is to come from it.
+/// An invalid range; no value above 0 where the range is derived from the image.
 pub fn render(image: &Image, params: &Params) -> Result<Image> {
     let range = Range::new(params, image)?;
-    // 256 steps are finer than the eye.
+    // 256 steps are below the visible difference.
     let table: Vec<Vec3> = (0..256).map(|i| colour_of(f64::from(i) / 255.0)).collect();
     let seen = |x: usize, y: usize| {
         let share = range.share(f64::from(value(image, x, y)));
-        if share.is_nan() { NOTHING } else { table[(share * 255.0).round() as usize] }
+        if share.is_nan() { NO_VALUE } else { table[(share * 255.0).round() as usize] }
     };
     if !params.bar {
         return Image::from_fn(image.width, image.height, |x, y| seen(x, y).to_array());
@@ -110,7 +112,7 @@ pub fn render(image: &Image, params: &Params) -> Result<Image> {
     Ok(out)
 }
 
-/// By how many pixels the scale bar widens an image; 0 without one.
+/// The width in pixels that the scale bar adds to the image; 0 without a bar.
 pub fn bar_width(image: &Image, params: &Params) -> Result<usize> {
     Ok(if params.bar { Bar::new(&Range::new(params, image)?, params.unit, image.height).width } else { 0 })
 }
@@ -140,25 +142,25 @@ impl Range {
         };
         if !(most > least) {
             return Err(Error::argument(format!(
-                "the scale goes from {least} to {most}; the second must be larger: set least and most, or give an image \
-                 with light"
+                "the scale goes from {least} to {most}; the second must be larger: set least and most, or give an \
+                 image with light"
             )));
         }
         Ok(Self { scale: params.scale, least, most })
     }
 
-    /// Where a value lies on the scale, in `[0, 1]`; NaN stays.
+    /// The position of a value on the scale, in `[0, 1]`; NaN stays NaN.
     fn share(&self, value: f64) -> f64 {
         let share = match self.scale {
             Scale::Linear => (value - self.least) / (self.most - self.least),
-            // Nothing is at the dark end.
+            // Put 0 at the dark end.
             Scale::Logarithmic if value <= 0.0 => 0.0,
             Scale::Logarithmic => (value / self.least).ln() / (self.most / self.least).ln(),
         };
         share.clamp(0.0, 1.0)
     }
 
-    /// Values to be named, no more than `count`: 1, 2 and 5 times powers of ten.
+    /// At most `count` labelled values: 1, 2 and 5 times powers of ten.
     fn ticks(&self, count: usize) -> Vec<f64> {
         let nice = |exponent: i32, digit: f64| digit * 10f64.powi(exponent);
         let exponents =
@@ -166,7 +168,7 @@ impl Range {
         let within = |v: &f64| *v >= self.least * (1.0 - 1e-9) && *v <= self.most * (1.0 + 1e-9);
         match self.scale {
             Scale::Linear => {
-                // The smallest nice step that is wide enough.
+                // Choose the smallest round step that is wide enough.
                 let wide = (self.most - self.least) / count.max(1) as f64;
                 let exponent = wide.log10().floor() as i32;
                 let steps = [(exponent, 1.0), (exponent, 2.0), (exponent, 5.0), (exponent + 1, 1.0)];
@@ -188,9 +190,9 @@ impl Range {
     }
 }
 
-/// The scale bar: a strip of colours on paper, with ticks, numbers and the unit above.
+/// The scale bar: a strip of colours on white, with ticks, numbers and the unit above.
 struct Bar {
-    /// Pixels per dot of a letter.
+    /// Pixels per dot of a glyph.
     dot: usize,
     width: usize,
     top: usize,
@@ -198,13 +200,13 @@ struct Bar {
     left: usize,
     right: usize,
     unit: &'static str,
-    /// The row of each tick, and its text.
+    /// The row and the text of each tick.
     ticks: Vec<(usize, String)>,
 }
 
 impl Bar {
     fn new(range: &Range, unit: Unit, height: usize) -> Self {
-        // Letters as high as a twenty-fourth of the image, in whole pixels.
+        // Glyphs are a twenty-fourth of the image in height, in whole pixels per dot.
         let dot = (height / (24 * glyphs::HEIGHT)).max(1);
         let line = (glyphs::HEIGHT + 2) * dot;
         let (top, bottom) = ((2 * line).min(height / 3), height - line.min(height / 3));
@@ -242,7 +244,7 @@ impl Bar {
     }
 }
 
-/// A number as short as it can be said, with an exponent where it would have many zeros.
+/// The shortest text of a number, with an exponent if it would have many zeros.
 fn text(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e6).contains(&rounded) { rounded.to_string() } else { format!("{rounded:e}") }
@@ -252,7 +254,8 @@ fn text(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// Lightness grows evenly in CIELAB too, which the map was not made in; no two neighbours are alike.
+    /// Lightness also increases uniformly in CIELAB, in which the map was not designed, and no two neighbours are
+    /// equal.
     #[test]
     fn colours_are_in_perceptual_order() {
         let lightness: Vec<f32> = (0..=32).map(|i| colour::linear_to_lab(colour_of(f64::from(i) / 32.0)).x).collect();
@@ -270,14 +273,14 @@ mod tests {
         let plain = Params { bar: false, ..Params::default() };
         let at = |params: &Params, x| render(&image, params).unwrap().rgb(x, 0);
         let close = |a: Vec3, share: f64| (a - colour_of(share)).abs().max_element() < 0.01;
-        assert!(close(at(&plain, 2), 1.0) && close(at(&plain, 1), 0.1) && at(&plain, 3) == NOTHING);
+        assert!(close(at(&plain, 2), 1.0) && close(at(&plain, 1), 0.1) && at(&plain, 3) == NO_VALUE);
         let log = Params { scale: Scale::Logarithmic, least: 1.0, most: 1e4, ..plain.clone() };
         assert!(close(at(&log, 0), 0.0) && close(at(&log, 1), 0.25) && close(at(&log, 2), 0.5));
-        // Colour images count by their luminance.
+        // Colour images are shown by their luminance.
         let green = Image::from_fn(1, 1, |_, _| [0.0, 100.0, 0.0]).unwrap();
         let shown = render(&green, &Params { most: 143.033_74, ..plain.clone() }).unwrap().rgb(0, 0);
         assert!(close(shown, 0.5), "{shown}");
-        // A range must be one.
+        // Invalid ranges are rejected.
         let dark = Image::new(2, 2, 1).unwrap();
         for (image, params) in [
             (&dark, plain.clone()),
@@ -299,7 +302,8 @@ mod tests {
         assert_eq!([0.0, 0.5, 1500.0, 2e7, 1e-5].map(text), ["0", "0.5", "1500", "2e7", "1e-5"]);
     }
 
-    /// The bar stands beside the image: dark below, light above, with ink in its letters; images of any size have one.
+    /// The bar is drawn beside the image, dark at the bottom and light at the top, with labels; images of any size
+    /// have one.
     #[test]
     fn the_bar_is_drawn() {
         let image = Image::from_fn(200, 300, |x, y| [(x * y) as f32]).unwrap();

@@ -1,11 +1,12 @@
-//! Unified glare rating of a luminance image (CIE 117:1995): `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)` over the sources of
-//! glare, with the luminance `L` and solid angle `ω` of each, its position index `p`, and the luminance `Lb` of the
-//! background.
+//! Unified glare rating of a luminance image (CIE 117:1995): `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)`, summed over the
+//! glare sources, with the luminance `L`, solid angle `ω` and position index `p` of each, and the background luminance
+//! `Lb`.
 //!
-//! Sources are the connected patches brighter than a threshold: an emissive texture is brighter in some places than in
-//! others, and a rating from the luminaire's mean would miss what the eye sees (Scheir et al. 2017). The background is the
-//! mean of the rest of the image, by its share of the illuminance at the eye: the wider the image, the truer. The position
-//! index is Guth's above the line of sight, and below it that of Iwata and Tokura (1997), as in `evalglare`.
+//! Glare sources are the connected regions brighter than a threshold: an emissive texture is not uniform, and a rating
+//! by the luminaire's mean would underestimate the perceived glare (Scheir et al. 2017). The background luminance is
+//! the mean over the rest of the image, weighted by its contribution to the illuminance at the eye; it is more
+//! accurate for wide images. The position index is Guth's above the line of sight, and that of Iwata and Tokura (1997)
+//! below it, as in `evalglare`.
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
@@ -14,35 +15,36 @@ use std::f64::consts::PI;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight is its centre, level.
+    /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight points to its centre and is
+    /// horizontal.
     pub fov_y: f64,
-    /// Luminance from which on a pixel is a source of glare, in cd/m²; 0 = five times the mean of the image.
+    /// Luminance in cd/m² from which a pixel belongs to a glare source; 0 selects five times the mean of the image.
     pub threshold: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
-    /// Unified glare rating; below 10 it means none, and `-∞` that there is no source.
+    /// Unified glare rating; below 10 there is no discomfort, and `-∞` means that there is no source.
     pub ugr: f64,
-    /// In cd/m².
+    /// Background luminance in cd/m².
     pub background: f64,
-    /// What counted as glare, in cd/m².
+    /// The threshold used, in cd/m².
     pub threshold: f64,
     pub sources: Vec<Source>,
 }
 
-/// A source of glare.
+/// A glare source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
     /// Mean luminance in cd/m².
     pub luminance: f64,
-    /// Solid angle in steradian. CIE 117 is meant for 0.0003 to 0.1 sr.
+    /// Solid angle in steradian. CIE 117 is valid for 0.0003 to 0.1 sr.
     pub solid_angle: f64,
-    /// Position index, 1 on the line of sight.
+    /// Position index; 1 on the line of sight.
     pub position: f64,
 }
 
-/// Sums over a patch of pixels.
+/// Sums over a region of pixels.
 #[derive(Clone, Copy, Default)]
 struct Patch {
     solid_angle: f64,
@@ -50,10 +52,10 @@ struct Patch {
     direction: DVec3,
 }
 
-/// Rates an image of luminance (1 channel) or of linear RGB in cd/m².
+/// Rates an image of luminance (1 channel) or of linear RGB, in cd/m².
 ///
 /// # Errors
-/// An image that is empty or not finite, parameters out of range.
+/// An image that is empty or not finite; parameters out of range.
 pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
     check_range("fov_y", params.fov_y, 1e-3, PI - 1e-3)?;
     check_range("threshold", params.threshold, 0.0, 1e12)?;
@@ -78,7 +80,7 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
         }
     };
 
-    // The background, by the illuminance at the eye.
+    // Compute the background luminance, weighted by the illuminance at the eye.
     let glares = |i: usize| threshold > 0.0 && luminance(i) >= threshold;
     let (mut light, mut weight) = (0.0, 0.0);
     for i in (0..width * height).filter(|&i| !glares(i)) {
@@ -88,7 +90,7 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
     }
     let background = if weight > 0.0 { light / weight } else { 0.0 };
 
-    // The sources.
+    // Collect the glare sources by flood fill.
     let mut seen = try_vec(width * height, false)?;
     let (mut open, mut sources) = (Vec::new(), Vec::new());
     for start in 0..width * height {
@@ -128,11 +130,11 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
     Ok(Rating { ugr, background, threshold, sources })
 }
 
-/// A pinhole camera that looks along -z, y up.
+/// A pinhole camera that looks along -z, with y up.
 struct View {
     width: usize,
     centre: [f64; 2],
-    /// Side of a pixel on the plane at distance 1.
+    /// Side of a pixel on the image plane at distance 1.
     pixel: f64,
 }
 
@@ -153,11 +155,11 @@ impl View {
     }
 }
 
-/// Position index of a direction, the line of sight being -z and y up.
+/// Position index of a direction; the line of sight is -z, and y is up.
 fn position_index(direction: DVec3) -> f64 {
     let (side, up, ahead) = (direction.x, direction.y, -direction.z);
     if up >= 0.0 {
-        // Guth 1963: τ from the vertical, σ from the line of sight, in degrees.
+        // Guth 1963: τ is the angle from the vertical, σ the angle from the line of sight, in degrees.
         let tau = side.abs().atan2(up).to_degrees();
         let tau = if side == 0.0 && up == 0.0 { 0.0 } else { tau };
         let sigma = side.hypot(up).atan2(ahead).to_degrees();
@@ -165,7 +167,7 @@ fn position_index(direction: DVec3) -> f64 {
         let second = (21.0 + 0.266_67 * tau - 0.002_963 * tau * tau) * 1e-5 * sigma * sigma;
         (first + second).exp()
     } else {
-        // Iwata and Tokura 1997: by the distance below and beside, relative to that ahead.
+        // Iwata and Tokura 1997: a function of the distance from the line of sight relative to the distance ahead.
         let ratio = side.hypot(up) / ahead.max(1e-9);
         let factor = if ratio < 0.6 { 0.8 } else { 1.2 };
         (1.0 + factor * ratio).min(16.0)
@@ -176,7 +178,7 @@ fn position_index(direction: DVec3) -> f64 {
 mod tests {
     use super::*;
 
-    /// A view with a square patch whose first pixel is given.
+    /// A view with a square bright region whose first pixel is given.
     fn view(side: usize, first: [usize; 2], patch: usize, lamp: f32) -> Image {
         let inside = |v: usize, from: usize| v >= from && v < from + patch;
         let lit = |x: usize, y: usize| inside(x, first[0]) && inside(y, first[1]);
@@ -188,7 +190,7 @@ mod tests {
         let fov_y = 1.0f64;
         let params = Params { fov_y, threshold: 1000.0 };
         let rating = rate(&view(200, [90, 90], 20, 10_000.0), &params).unwrap();
-        // A tenth of the view's side, on the line of sight: ω = 4 asin(a² / (1 + a²)), a half of it.
+        // A tenth of the view's side, on the line of sight: ω = 4 asin(a² / (1 + a²)), with a half the side.
         let a = 0.1 * (fov_y / 2.0).tan();
         let omega = 4.0 * (a * a / (1.0 + a * a)).asin();
         let [source] = rating.sources[..] else { panic!("{:?}", rating.sources) };
@@ -196,7 +198,7 @@ mod tests {
         assert!((source.position - 1.0).abs() < 1e-3 && (rating.background - 100.0).abs() < 1e-9);
         let expected = 8.0 * (0.25 / 100.0 * 1e8 * omega).log10();
         assert!((rating.ugr - expected).abs() < 1e-2, "{} {expected}", rating.ugr);
-        // Two such lamps rate 8 log10(2) higher, but for where they are.
+        // Two such lamps rate 8 log10(2) higher, up to their positions.
         let mut two = view(200, [60, 90], 20, 10_000.0);
         let other = view(200, [120, 90], 20, 10_000.0);
         two.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = a.max(*b));
@@ -211,7 +213,7 @@ mod tests {
         let ugr = |at: [usize; 2]| rate(&view(201, at, 11, 2e4), &params).unwrap().ugr;
         let (ahead, above, beside, below) = (ugr([95, 95]), ugr([95, 15]), ugr([15, 95]), ugr([95, 175]));
         assert!(ahead > above + 3.0 && ahead > beside + 2.0 && ahead > below + 2.0, "{ahead} {above} {beside} {below}");
-        // Guth: 10° straight up has p = exp((35.2 - 1.22) 0.01 + 21e-3) = 1.434.
+        // Guth: at 10° straight up, p = exp((35.2 - 1.22) 0.01 + 21e-3) = 1.434.
         let up = position_index(DVec3::new(0.0, 10f64.to_radians().sin(), -10f64.to_radians().cos()));
         assert!((up - (0.3398f64 + 0.021).exp()).abs() < 1e-6, "{up}");
     }

@@ -1,14 +1,14 @@
-//! Letters of dots for what a scale bar says: numbers and units.
+//! A dot-matrix font for the numbers and units of a scale bar.
 
 use crate::image::Image;
 use glam::Vec3;
 
-/// Dots of a letter, and from one to the next.
+/// Width and height of a glyph in dots, and the advance to the next glyph.
 pub const WIDTH: usize = 3;
 pub const HEIGHT: usize = 5;
 pub const ADVANCE: usize = WIDTH + 1;
 
-/// Rows of a letter from the top, three dots each.
+/// Rows of a glyph from the top, three dots each.
 fn rows(letter: char) -> [u8; HEIGHT] {
     match letter {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
@@ -34,7 +34,7 @@ fn rows(letter: char) -> [u8; HEIGHT] {
     }
 }
 
-/// Draws a text whose top left corner is `at`, each dot a square of `dot` pixels; what lies outside the image is cut off.
+/// Draws a text with its top left corner at `at`, each dot a square of `dot` pixels, clipped to the image.
 pub fn draw(image: &mut Image, text: &str, at: [usize; 2], dot: usize, ink: Vec3) {
     for (place, letter) in text.chars().enumerate() {
         for (row, bits) in rows(letter).into_iter().enumerate() {

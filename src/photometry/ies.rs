@@ -1,14 +1,16 @@
-//! IES LM-63 files, all editions from 1986 to 2019, type C photometry (the other types are for floodlights and car lamps).
+//! IES LM-63 files, all editions from 1986 to 2019, with type C photometry (the other types are for floodlights and
+//! car lamps).
 
-use super::lines::{self, Lines, MOST_ANGLES, MOST_VALUES, at, count, number, plain, within};
+use super::lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
 use super::luminaire::Luminaire;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
 use std::fmt::Write;
 
+/// [convention]
 const FEET: f64 = 0.3048;
 
-/// The words of the lines after `TILT=`, each with its line.
+/// The words of the lines after `TILT=`, each with its line number.
 struct Words<'a> {
     list: std::vec::IntoIter<(usize, &'a str)>,
     line: usize,
@@ -44,17 +46,17 @@ impl<'a> Words<'a> {
 /// Reads a file from memory.
 ///
 /// # Errors
-/// `Format` with the line if the file is malformed; `Unsupported` for types A and B.
+/// `Format`, with the line number, if the file is malformed; `Unsupported` for types A and B.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
     let mut lines = text.numbered();
     let mut luminaire = Luminaire::lambertian("", 0.0, [0.0; 3]);
 
-    // Keywords, up to the line that says what the lamp's tilt does.
+    // Read the keywords, up to the TILT line.
     let mut last = 1;
     let tilt = loop {
         let Some((number, line)) = lines.next() else {
-            return Err(at(last, "the file has no line TILT=, so it is no IES file or ends too soon"));
+            return Err(at(last, "the file has no line TILT=: it is not an IES file, or it is truncated"));
         };
         last = number;
         if let Some(tilt) = line.strip_prefix("TILT=") {
@@ -74,20 +76,20 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let mut words = Words { list: list.into_iter(), line: last };
     if tilt.eq_ignore_ascii_case("INCLUDE") {
         words.next("the lamp's orientation")?;
-        let pairs = words.count("the number of tilt angles", 0, MOST_ANGLES)?;
+        let pairs = words.count("the number of tilt angles", 0, MAX_ANGLES)?;
         words.list("a tilt angle", pairs, 360.0)?;
         words.list("a tilt factor", pairs, 1e9)?;
     }
 
-    // Ten numbers on one line and three on the next, in practice on any.
+    // Ten numbers on one line and three on the next by the standard; in practice on any lines.
     let lamps = words.within("the number of lamps", 0.0, 1e6)?;
     let (line, word) = words.next("lumens per lamp")?;
     let lumens: f64 = number(line, word, "lumens per lamp")?;
     let multiplier = words.within("the candela multiplier", 0.0, 1e9)?;
-    let gammas = words.count("the number of vertical angles", 1, MOST_ANGLES)?;
-    let planes = words.count("the number of horizontal angles", 1, MOST_ANGLES)?;
-    if gammas * planes > MOST_VALUES {
-        return Err(at(words.line, format_args!("{gammas} x {planes} intensities; at most {MOST_VALUES} are read")));
+    let gammas = words.count("the number of vertical angles", 1, MAX_ANGLES)?;
+    let planes = words.count("the number of horizontal angles", 1, MAX_ANGLES)?;
+    if gammas * planes > MAX_VALUES {
+        return Err(at(words.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
     let kind = words.count("the photometric type", 1, 3)?;
     if kind != 1 {
@@ -116,7 +118,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     Ok(luminaire)
 }
 
-/// The whole circle of planes, from the part that symmetry lets a file leave out.
+/// Expands the planes to the full circle by the file's symmetry.
 fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Result<(Vec<f64>, Vec<f64>)> {
     let (first, last) = (angles[0], angles[angles.len() - 1]);
     if angles.windows(2).any(|w| w[0] >= w[1]) {
@@ -125,7 +127,7 @@ fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Resu
     let plane = |i: usize| (angles[i], &candela[i * gammas..][..gammas]);
     let mut all: Vec<(f64, &[f64])> = (0..angles.len()).map(plane).collect();
     let mirror = |all: &mut Vec<(f64, &[f64])>, about: f64| {
-        // What lies on the mirror is its own image; so is what falls on a plane there is.
+        // A plane on the mirror is its own image; skip images that coincide with an existing plane.
         let images: Vec<_> = all.iter().map(|&(c, values)| ((2.0 * about - c).rem_euclid(360.0), values)).collect();
         let missing: Vec<_> = images.into_iter().filter(|(c, _)| all.iter().all(|(d, _)| d != c)).collect();
         all.extend(missing);
@@ -147,7 +149,8 @@ fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Resu
             return Err(at(
                 line,
                 format_args!(
-                    "the horizontal angles go from {first} to {last}; they must go from 0 to 0, 90, 180 or 360, or from 90 to 270"
+                    "the horizontal angles go from {first} to {last}; they must go from 0 to 0, 90, 180 or 360, or \
+                     from 90 to 270"
                 ),
             ));
         }
@@ -156,10 +159,10 @@ fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Resu
     Ok((all.iter().map(|(c, _)| *c).collect(), all.iter().flat_map(|(_, values)| values.iter().copied()).collect()))
 }
 
-/// The file of a luminaire, as LM-63-2002.
+/// Writes a luminaire as an LM-63-2002 file.
 ///
 /// # Errors
-/// As [`Luminaire::check`].
+/// Those of [`Luminaire::check`].
 pub fn write(luminaire: &Luminaire) -> Result<String> {
     luminaire.check()?;
     let l = luminaire;
@@ -169,7 +172,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
         plain(&l.manufacturer)
     );
     let _ = write!(text, "[LUMINAIRE] {}\r\nTILT=NONE\r\n", plain(&l.name));
-    // Absolute photometry states -1 lumens.
+    // Absolute photometry is declared by -1 lumens.
     let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { -1.0 };
     let planes = if round { 1 } else { l.planes.len() + 1 };
     let [length, width, height] = l.size;
@@ -185,7 +188,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     Ok(text)
 }
 
-/// Numbers, so many to a line that old programs can read it.
+/// Appends numbers, ten per line, so that old programs can read them.
 fn push(text: &mut String, values: &[f64]) {
     for line in values.chunks(10) {
         let words: Vec<String> = line.iter().map(|v| v.to_string()).collect();
@@ -193,8 +196,8 @@ fn push(text: &mut String, values: &[f64]) {
     }
 }
 
-/// Largest file that is read, in bytes.
-pub const MOST_BYTES: usize = lines::MOST_BYTES;
+/// Maximum size of a file in bytes.
+pub const MAX_BYTES: usize = lines::MAX_BYTES;
 
 #[cfg(test)]
 mod tests {
@@ -226,7 +229,7 @@ mod tests {
             let again = read(write(&l).unwrap().as_bytes()).unwrap();
             assert_eq!(again, l);
         }
-        // Tilt data are passed over; numbers may be on any lines.
+        // Tilt data are skipped; numbers may be on any lines.
         let tilted = QUARTER
             .replace("TILT=NONE", "TILT=INCLUDE\n1\n2\n0 90\n1 0.5")
             .replace("0 45 90\n0 45 90", "0\n45 90 0\n45 90");
@@ -249,7 +252,7 @@ mod tests {
         says(&QUARTER.replace("100 80 0", "100 -80 0"), "an intensity is");
         says(&QUARTER.replace("100 80 0", "100 NaN 0"), "an intensity is");
         assert!(read(&[0xff, 0x00, 0x12]).is_err());
-        // Every beginning of a file is refused, and none makes trouble.
+        // Every truncated file is rejected without a panic.
         for end in 0..QUARTER.len() - 3 {
             assert!(read(&QUARTER.as_bytes()[..end]).is_err(), "{end}");
         }

@@ -1,14 +1,15 @@
-//! EULUMDAT files (Stockmar 1990): a value per line in a fixed order, intensities in candela per 1000 lumens of the lamps.
+//! EULUMDAT files (Stockmar 1990): one value per line in a fixed order; intensities in candela per 1000 lumens of the
+//! lamps.
 
-use super::lines::{Lines, MOST_ANGLES, MOST_VALUES, at, count, plain, within};
+use super::lines::{Lines, MAX_ANGLES, MAX_VALUES, at, count, plain, within};
 use super::luminaire::Luminaire;
 use crate::error::Result;
 use crate::image::try_vec;
 use std::fmt::Write;
 
-/// Most sets of lamps of a file.
-const MOST_SETS: usize = 20;
-/// Room indices for which a file has direct ratios.
+/// Maximum number of lamp sets in a file.
+const MAX_SETS: usize = 20;
+/// Number of room indices for which a file lists direct ratios.
 const ROOM_INDICES: usize = 10;
 
 struct Rows<'a, I> {
@@ -51,36 +52,36 @@ impl<'a, I: Iterator<Item = (usize, &'a str)>> Rows<'a, I> {
 /// Reads a file from memory.
 ///
 /// # Errors
-/// `Format` with the line if the file is malformed.
+/// `Format`, with the line number, if the file is malformed.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
     let mut rows = Rows { lines: text.numbered(), line: 0, text: "" };
     let manufacturer = rows.next("the manufacturer")?.to_string();
     rows.count("the type", 0, 3)?;
     let symmetry = rows.count("the symmetry", 0, 4)?;
-    let planes = rows.count("the number of C planes", 1, MOST_ANGLES)?;
+    let planes = rows.count("the number of C planes", 1, MAX_ANGLES)?;
     rows.within("the distance between C planes", 0.0, 360.0)?;
-    let gammas = rows.count("the number of intensities of a plane", 1, MOST_ANGLES)?;
+    let gammas = rows.count("the number of intensities of a plane", 1, MAX_ANGLES)?;
     rows.within("the distance between intensities", 0.0, 180.0)?;
     rows.next("the report's number")?;
     let name = rows.next("the luminaire's name")?.to_string();
     rows.skip(3, "the date")?;
-    if gammas * planes > MOST_VALUES {
-        return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MOST_VALUES} are read")));
+    if gammas * planes > MAX_VALUES {
+        return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
 
-    // Of both the housing and the luminous area there are sizes in millimetres; the latter counts.
+    // Read the sizes in millimetres of the housing and of the luminous area; only the latter are used.
     rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
     let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
     let height = rows.list(4, "a height of the luminous area", 0.0, 1e7)?.into_iter().fold(0.0, f64::max);
-    // Round ones have a diameter and no width.
+    // A round luminaire has its diameter as length, and width 0.
     let size = if width == 0.0 { [-length, -length, height] } else { [length, width, height] }.map(|mm| mm / 1e3);
     rows.skip(2, "the light output ratio")?;
     let factor = rows.within("the conversion factor", 0.0, 1e9)?;
     rows.skip(1, "the tilt")?;
 
-    // Sets of lamps; the first is the one measured. A negative number of lamps means absolute photometry.
-    let sets = rows.count("the number of sets of lamps", 1, MOST_SETS)?;
+    // Read the lamp sets; the first is the measured one. A negative number of lamps declares absolute photometry.
+    let sets = rows.count("the number of sets of lamps", 1, MAX_SETS)?;
     let (mut lumens, mut watts, mut absolute) = (0.0, 0.0, false);
     for set in 0..sets {
         let lamps = rows.within("the number of lamps", -1e6, 1e6)?;
@@ -101,7 +102,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let mut values = rows.list(stored.len() * gammas, "an intensity", 0.0, 1e12)?;
     values.iter_mut().for_each(|v| *v *= scale);
 
-    // Every plane of the circle shows one that is stored.
+    // Map every plane of the circle to the stored plane that it equals.
     let single = symmetry == 1;
     let (mut shown, mut candela) = (Vec::new(), Vec::new());
     for plane in 0..if single { 1 } else { planes } {
@@ -127,7 +128,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     Ok(luminaire)
 }
 
-/// The planes that a file has intensities of, by its symmetry.
+/// Indices of the planes that a file stores, by its symmetry.
 fn stored_planes(symmetry: usize, planes: usize) -> std::result::Result<Vec<usize>, &'static str> {
     match symmetry {
         0 => Ok((0..planes).collect()),
@@ -139,7 +140,7 @@ fn stored_planes(symmetry: usize, planes: usize) -> std::result::Result<Vec<usiz
     }
 }
 
-/// The stored plane that shows what a plane does.
+/// The stored plane that equals a plane by symmetry.
 fn image_of(symmetry: usize, plane: usize, planes: usize) -> usize {
     let about_0 = |p: usize| (planes - p) % planes;
     let about_90 = |p: usize| (planes + planes / 2 - p) % planes;
@@ -156,15 +157,15 @@ fn image_of(symmetry: usize, plane: usize, planes: usize) -> usize {
     }
 }
 
-/// The file of a luminaire, without symmetry unless it has one plane only.
+/// Writes a luminaire as a file without symmetry, unless it has a single plane.
 ///
 /// # Errors
-/// As [`Luminaire::check`].
+/// Those of [`Luminaire::check`].
 pub fn write(luminaire: &Luminaire) -> Result<String> {
     luminaire.check()?;
     let l = luminaire;
     let single = l.planes.len() == 1;
-    // One plane stands for a circle of 24, as interior luminaires have.
+    // Expand a single plane to 24 planes, as is common for interior luminaires.
     let planes: Vec<f64> = if single { (0..24).map(|i| f64::from(i) * 15.0).collect() } else { l.planes.clone() };
     let step = |angles: &[f64]| match angles {
         [a, b, ..] if angles.windows(2).all(|w| (w[1] - w[0] - (b - a)).abs() < 1e-9) => b - a,
@@ -208,7 +209,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     for value in [down, output_ratio, 1.0, 0.0] {
         line(&value);
     }
-    // One set of lamps, a negative number of them for absolute photometry.
+    // One lamp set; a negative number of lamps declares absolute photometry.
     line(&1);
     line(&if l.lamp_flux > 0.0 { 1 } else { -1 });
     line(&"");
@@ -228,7 +229,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
 mod tests {
     use super::*;
 
-    /// A luminaire of `planes` C planes and two angles, with intensities of the stored planes at 90 degrees.
+    /// A luminaire of `planes` C planes and two angles, with the given intensities of the stored planes at 90 degrees.
     fn file(symmetry: usize, planes: usize, values: &[f64]) -> String {
         let mut lines: Vec<String> = ["Works", "3"].map(String::from).into();
         lines.push(symmetry.to_string());
@@ -249,13 +250,13 @@ mod tests {
     fn symmetries_are_unfolded() {
         let side = |symmetry, values: &[f64]| {
             let l = read(file(symmetry, 4, values).as_bytes()).unwrap();
-            // 2000 lm: twice what is written per 1000.
+            // 2000 lm: twice the file's value per 1000 lm.
             [0.0, 90.0, 180.0, 270.0].map(|c| l.intensity(c, 90.0) / 2.0)
         };
         assert_eq!(side(0, &[1.0, 2.0, 3.0, 4.0]), [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(side(1, &[7.0]), [7.0; 4]);
         assert_eq!(side(2, &[1.0, 2.0, 3.0]), [1.0, 2.0, 3.0, 2.0]);
-        // From C270 by way of C0 to C90.
+        // From C270 through C0 to C90.
         assert_eq!(side(3, &[4.0, 1.0, 2.0]), [1.0, 2.0, 1.0, 4.0]);
         assert_eq!(side(4, &[1.0, 2.0]), [1.0, 2.0, 1.0, 2.0]);
         let l = read(file(1, 24, &[7.0]).as_bytes()).unwrap();
@@ -293,7 +294,7 @@ mod tests {
         says(&good.replacen("\r\n4\r\n", "\r\n400000000\r\n", 1), "line 4: the number of C planes");
         says(&good.replacen("tube\r\n2000", "tube\r\nmany", 1), "\"many\"");
         says(&good.replacen("Works\r\n3", "Works\r\n9", 1), "line 2: the type is 9");
-        // Every beginning that lacks a line is refused.
+        // Every file with missing lines is rejected.
         let lines: Vec<&str> = good.lines().collect();
         for end in 0..lines.len() {
             assert!(read(lines[..end].join("\n").as_bytes()).is_err(), "{end}");

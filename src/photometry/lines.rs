@@ -1,28 +1,28 @@
-//! Text files read line by line, within bounds, with errors that name the line.
+//! Line-by-line parsing of text files with bounded sizes, and errors that name the line.
 
 use crate::error::{Error, Result};
 use std::str::FromStr;
 
-/// Largest file that is read: a distribution of a tenth of a degree all around would have fewer bytes.
-pub const MOST_BYTES: usize = 64 << 20;
-/// Most angles along either side of a distribution, and most values in it.
-pub const MOST_ANGLES: usize = 4096;
-pub const MOST_VALUES: usize = 1 << 22;
+/// Maximum size of a file in bytes: more than a distribution with a resolution of a tenth of a degree needs.
+pub const MAX_BYTES: usize = 64 << 20;
+/// Maximum number of angles along either axis of a distribution, and of values in it.
+pub const MAX_ANGLES: usize = 4096;
+pub const MAX_VALUES: usize = 1 << 22;
 
-/// The lines of a file. Old files are Latin-1: each byte that is not ASCII becomes a character.
+/// The lines of a file. Files that are not UTF-8 are read as Latin-1.
 pub struct Lines {
     text: String,
 }
 
 impl Lines {
     /// # Errors
-    /// `Format` if the file is too large, or has bytes that no text has.
+    /// `Format` if the file is too large or contains zero bytes.
     pub fn new(bytes: &[u8]) -> Result<Self> {
-        if bytes.len() > MOST_BYTES {
-            return Err(Error::format(format!("the file has {} bytes; at most {MOST_BYTES} are read", bytes.len())));
+        if bytes.len() > MAX_BYTES {
+            return Err(Error::format(format!("the file has {} bytes; at most {MAX_BYTES} are read", bytes.len())));
         }
         if bytes.contains(&0) {
-            return Err(Error::format("the file is not a text: it contains zero bytes"));
+            return Err(Error::format("the file is not a text file: it contains zero bytes"));
         }
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text.trim_start_matches('\u{feff}').into(),
@@ -42,12 +42,12 @@ pub fn at(line: usize, message: impl std::fmt::Display) -> Error {
     Error::format(format!("line {line}: {message}"))
 }
 
-/// A number as a file has it; a decimal comma counts as a point.
+/// Parses a number; a decimal comma counts as a point.
 pub fn number<T: FromStr>(line: usize, word: &str, what: &str) -> Result<T> {
-    word.replace(',', ".").parse().map_err(|_| at(line, format_args!("{what} is {word:?}, which is no number")))
+    word.replace(',', ".").parse().map_err(|_| at(line, format_args!("{what} is {word:?}, which is not a number")))
 }
 
-/// A finite number in a range.
+/// Parses a finite number in a range.
 pub fn within(line: usize, word: &str, what: &str, low: f64, high: f64) -> Result<f64> {
     let value: f64 = number(line, word, what)?;
     if value >= low && value <= high {
@@ -57,17 +57,17 @@ pub fn within(line: usize, word: &str, what: &str, low: f64, high: f64) -> Resul
     }
 }
 
-/// A count in a range; files write counts as `3` or `3.0`.
+/// Parses a count in a range; files write counts as `3` or `3.0`.
 pub fn count(line: usize, word: &str, what: &str, low: usize, high: usize) -> Result<usize> {
     let value = within(line, word, what, low as f64, high as f64)?;
     if value.fract() == 0.0 {
         Ok(value as usize)
     } else {
-        Err(at(line, format_args!("{what} is {value}, no whole number")))
+        Err(at(line, format_args!("{what} is {value}; it must be a whole number")))
     }
 }
 
-/// Text for one line of a file.
+/// Text restricted to a single line of a file.
 pub fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

@@ -1,28 +1,28 @@
-//! A luminaire's luminous intensity distribution in C planes: what IES and EULUMDAT files hold.
+//! A luminaire's luminous intensity distribution in C planes, the content of IES and EULUMDAT files.
 
 use crate::error::{Error, Result};
 
-/// Intensities in C planes (CIE 121): `γ` from straight down at 0° to straight up at 180°, `C` around that axis.
+/// Intensities in C planes (CIE 121): `γ` runs from 0° (straight down) to 180° (straight up), `C` around that axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Luminaire {
     pub name: String,
     pub manufacturer: String,
     /// Vertical angles γ in degrees, ascending, within `[0, 180]`.
     pub gammas: Vec<f64>,
-    /// Angles C of the planes in degrees, ascending from 0: up to 360 excluded, all that there are.
+    /// Angles C of the planes in degrees, ascending from 0 to below 360: all planes of the circle.
     pub planes: Vec<f64>,
-    /// Intensity in candela, plane after plane.
+    /// Intensity in candela, plane by plane.
     pub candela: Vec<f64>,
-    /// Rated flux of its lamps in lumens; 0 if the file states intensities without (absolute photometry).
+    /// Rated flux of the lamps in lumens; 0 if the file has absolute intensities (absolute photometry).
     pub lamp_flux: f64,
-    /// Electric power in watts, ballast included; 0 if not known.
+    /// Electric power in watts including the ballast; 0 if unknown.
     pub watts: f64,
-    /// Length, width and height of the luminous opening in metres, negative for round ones as IES has them.
+    /// Length, width and height of the luminous opening in metres; negative for round ones, as in IES.
     pub size: [f64; 3],
 }
 
 impl Luminaire {
-    /// A matt disc or panel that sends out a flux downwards: `I = flux / π · cos γ`.
+    /// A Lambertian disc or panel that emits a flux downwards: `I = flux / π · cos γ`.
     pub fn lambertian(name: &str, flux: f64, size: [f64; 3]) -> Self {
         let gammas: Vec<f64> = (0..=36).map(|i| f64::from(i) * 2.5).collect();
         let top = flux / std::f64::consts::PI;
@@ -64,8 +64,8 @@ impl Luminaire {
         }
     }
 
-    /// Intensity in candela in a direction, in degrees; 0 beyond the vertical angles that were measured. Linear between
-    /// angles, around the whole circle.
+    /// Intensity in candela in a direction given in degrees, interpolated linearly between angles and around the
+    /// circle; 0 outside the measured vertical angles.
     pub fn intensity(&self, c: f64, gamma: f64) -> f64 {
         let n = self.gammas.len();
         let last = self.gammas[n - 1];
@@ -80,7 +80,7 @@ impl Luminaire {
             let values = &self.candela[plane * n..][..n];
             values[lower] + (values[upper] - values[lower]) * t
         };
-        // The planes on both sides, the last of which is followed by the first.
+        // Find the planes on both sides; the last plane is followed by the first.
         let m = self.planes.len();
         let c = c.rem_euclid(360.0);
         let before = self.planes.partition_point(|p| *p <= c).clamp(1, m) - 1;
@@ -90,7 +90,7 @@ impl Luminaire {
         in_plane(before) + (in_plane(after) - in_plane(before)) * s
     }
 
-    /// The angle γ in degrees from which on there is no light any more.
+    /// The angle γ in degrees from which on there is no light.
     pub fn widest(&self) -> f64 {
         let n = self.gammas.len();
         let dark = |i: usize| self.candela.iter().skip(i).step_by(n).all(|v| *v == 0.0);
@@ -98,10 +98,11 @@ impl Luminaire {
         self.gammas[first_dark.min(n - 1)]
     }
 
-    /// Luminous flux in lumens: the intensity over the sphere, linear between the angles and integrated exactly.
+    /// Luminous flux in lumens: the integral over the sphere of the intensity, linear between angles, integrated
+    /// exactly.
     pub fn flux(&self) -> f64 {
         let (n, m) = (self.gammas.len(), self.planes.len());
-        // Share of the circle that each plane stands for.
+        // The share of the circle that each plane represents.
         let share = |plane: usize| {
             let gap = |from: usize, to: usize| match (self.planes[to] - self.planes[from]).rem_euclid(360.0) {
                 0.0 => 360.0,
@@ -119,13 +120,13 @@ impl Luminaire {
         2.0 * std::f64::consts::PI * total
     }
 
-    /// Lumens per watt; `None` if the power is not known.
+    /// Efficacy in lumens per watt; `None` if the power is unknown.
     pub fn efficacy(&self) -> Option<f64> {
         (self.watts > 0.0).then(|| self.flux() / self.watts)
     }
 }
 
-/// `∫ I(γ) sin γ dγ` of a linear `I` between two angles.
+/// `∫ I(γ) sin γ dγ` for `I` linear between two angles.
 fn zone(intensity: &[f64], [a, b]: [f64; 2]) -> f64 {
     let slope = (intensity[1] - intensity[0]) / (b - a);
     let at = |g: f64, i: f64| slope * g.sin() - i * g.cos();
@@ -139,7 +140,7 @@ mod tests {
 
     #[test]
     fn flux_meets_closed_forms() {
-        // 1 cd everywhere: 4π lm, whatever the angles.
+        // 1 cd everywhere gives 4π lm for any angles.
         let even = Luminaire {
             gammas: vec![0.0, 17.0, 90.0, 180.0],
             planes: vec![0.0, 10.0, 200.0],

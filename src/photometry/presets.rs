@@ -1,27 +1,27 @@
-//! What EN 12464-1 asks of common rooms: maintained illuminance, glare, uniformity and colour rendering, and illuminance of
-//! walls and ceilings.
+//! Requirements of EN 12464-1 for common rooms: maintained illuminance, glare, uniformity, colour rendering, and
+//! illuminance of walls and ceilings.
 //!
-//! A short excerpt for design, of what makers of luminaires quote of the standard in public, each with its edition: the rows
-//! of schools and libraries as Glamox quotes the tables of 2021; offices by what Trilux, Fagerhult and Performance in
-//! Lighting say of 500 lx, U0 0.6, and of 300 lx, U0 0.4, with walls and ceilings of the edition of 2011. The standard itself is
-//! what counts.
+//! A short excerpt for design, as quoted publicly by luminaire manufacturers, with the edition of each row. Schools
+//! and libraries: the tables of 2021 as quoted by Glamox. Offices: 500 lx with U0 0.6, and 300 lx with U0 0.4, as
+//! quoted by Trilux, Fagerhult and Performance in Lighting, with walls and ceilings of the 2011 edition. The standard
+//! itself is authoritative.
 
-/// What a place should have.
+/// The requirements for a type of place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
     pub name: &'static str,
     /// Year of the edition.
     pub edition: u32,
-    /// Least mean illuminance of the task area, in lux.
+    /// Minimum mean illuminance of the task area, in lux.
     pub illuminance: f64,
-    /// Largest unified glare rating.
+    /// Maximum unified glare rating.
     pub glare: f64,
-    /// Least uniformity U0: smallest over mean illuminance of the task area.
+    /// Minimum uniformity U0: minimum over mean illuminance of the task area.
     pub uniformity: f64,
-    /// Least colour rendering index.
+    /// Minimum colour rendering index.
     pub rendering: f64,
-    /// Least mean illuminance of walls and of the ceiling, in lux, with a uniformity of [`SURROUND_UNIFORMITY`]; 0 where
-    /// none is asked for.
+    /// Minimum mean illuminance of walls and of the ceiling, in lux, with a uniformity of [`SURROUND_UNIFORMITY`]; 0
+    /// if not required.
     pub walls: f64,
     pub ceiling: f64,
 }
@@ -42,10 +42,10 @@ pub const PRESETS: &[Preset] = &[
     preset("library: reading areas", 2021, [500.0, 19.0, 0.6, 80.0], [100.0, 50.0]),
 ];
 
-/// Least uniformity of walls and ceilings.
+/// Minimum uniformity of walls and ceilings [convention: EN 12464-1].
 pub const SURROUND_UNIFORMITY: f64 = 0.1;
 
-/// What is amiss of a preset.
+/// A requirement that is not met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shortfall {
     Illuminance,
@@ -54,15 +54,16 @@ pub enum Shortfall {
 }
 
 impl Preset {
-    /// The preset of a name.
+    /// The preset with the given name.
     pub fn find(name: &str) -> Option<&'static Self> {
         PRESETS.iter().find(|p| p.name == name)
     }
 
-    /// What a task area of this least and mean illuminance, seen with this glare rating (if it is known), falls short of.
-    pub fn check(&self, least: f64, mean: f64, glare: Option<f64>) -> Vec<Shortfall> {
+    /// The requirements not met by a task area with the given minimum and mean illuminance and glare rating (if
+    /// known).
+    pub fn check(&self, minimum: f64, mean: f64, glare: Option<f64>) -> Vec<Shortfall> {
         let bright = mean >= self.illuminance;
-        let even = mean > 0.0 && least / mean >= self.uniformity;
+        let even = mean > 0.0 && minimum / mean >= self.uniformity;
         let calm = glare.is_none_or(|g| g <= self.glare);
         let all = [(bright, Shortfall::Illuminance), (even, Shortfall::Uniformity), (calm, Shortfall::Glare)];
         all.into_iter().filter(|(good, _)| !good).map(|(_, what)| what).collect()

@@ -1,39 +1,40 @@
-//! Correlated colour temperature: the blackbody whose colour is nearest, and how far it is.
+//! Correlated colour temperature: the nearest blackbody, and the distance from it.
 //!
-//! The blackbody locus is Krystek's rational approximation in the CIE 1960 diagram ("An algorithm to calculate correlated
-//! colour temperature", 1985), within 8e-5 of the locus from 1000 K to 15000 K. Distances are in that diagram, as the
-//! definition of the correlated temperature has it (CIE 15), searched in mired, where the eye's steps are even.
+//! The blackbody locus is Krystek's rational approximation in the CIE 1960 diagram ("An algorithm to calculate
+//! correlated colour temperature", 1985), accurate to 8e-5 from 1000 K to 15000 K. Distances are measured in that
+//! diagram, as in the definition of the correlated temperature (CIE 15). The search is in mired, in which perceptual
+//! steps are nearly uniform.
 
 use crate::image::colour;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-/// Temperatures that are told apart, in kelvin.
-pub const LEAST_KELVIN: f64 = 1000.0;
-pub const MOST_KELVIN: f64 = 20_000.0;
+/// Range of temperatures in kelvin [convention].
+pub const MIN_KELVIN: f64 = 1000.0;
+pub const MAX_KELVIN: f64 = 20_000.0;
 
-/// Steps in mired of the search before it is refined: the distance to the locus has one minimum within two of them.
+/// Steps in mired of the initial scan: the distance to the locus has a single minimum within two of them.
 const SCAN: usize = 96;
-/// Golden sections, down to rounding.
+/// Golden-section steps, down to rounding.
 const SECTIONS: usize = 60;
 
-/// A colour as lighting people name it.
+/// A colour described by temperature and distance from the blackbody locus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperature {
-    /// In kelvin, in `[1000, 20000]`; at an end the colour may lie beyond.
+    /// In kelvin, in `[1000, 20000]`; at an end of the range the true temperature may lie beyond.
     pub kelvin: f64,
-    /// Distance from the blackbody locus in the CIE 1960 diagram, positive above it (greenish), negative below (pinkish).
-    /// Beyond ±0.05 a temperature means little.
+    /// Distance from the blackbody locus in the CIE 1960 diagram: positive above it (greenish), negative below
+    /// (pinkish). Beyond ±0.05 the temperature has little meaning.
     pub duv: f64,
 }
 
-/// CIE 1931 chromaticity of a linear RGB colour; `None` for black and what is no light.
+/// CIE 1931 chromaticity of a linear RGB colour; `None` for black and invalid colours.
 pub fn chromaticity(rgb: DVec3) -> Option<DVec2> {
     let xyz = to_xyz() * rgb;
     let sum = xyz.element_sum();
     (sum > 0.0 && sum.is_finite()).then(|| DVec2::new(xyz.x, xyz.y) / sum)
 }
 
-/// Correlated temperature of a linear RGB colour; `None` for black and what is no light.
+/// Correlated temperature of a linear RGB colour; `None` for black and invalid colours.
 pub fn of_rgb(rgb: DVec3) -> Option<Temperature> {
     chromaticity(rgb).map(of_chromaticity)
 }
@@ -44,48 +45,48 @@ pub fn of_chromaticity(xy: DVec2) -> Temperature {
     let mired = search(|mired| locus(1e6 / mired).distance_squared(uv));
     let kelvin = 1e6 / mired;
     let nearest = locus(kelvin);
-    // Above the locus is the side of larger v.
+    // The side above the locus has larger v.
     let side = if uv.y >= nearest.y { 1.0 } else { -1.0 };
     Temperature { kelvin, duv: side * uv.distance(nearest) }
 }
 
 /// CIE 1931 chromaticity of a temperature and a distance from the locus.
 pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
-    let kelvin = temperature.kelvin.clamp(LEAST_KELVIN, MOST_KELVIN);
-    // Along the locus u falls as the temperature rises: its normal upwards is the tangent turned.
+    let kelvin = temperature.kelvin.clamp(MIN_KELVIN, MAX_KELVIN);
+    // Along the locus, u falls with rising temperature: the upward normal is the rotated tangent.
     let (a, b) = (locus(kelvin * 0.9995), locus(kelvin * 1.0005));
     let tangent = (a - b).normalize();
     let normal = if tangent.x >= 0.0 { tangent.perp() } else { -tangent.perp() };
     from_1960(locus(kelvin) + normal * temperature.duv)
 }
 
-/// Linear RGB of luminance 1 of a colour; channels may be negative where it is out of gamut (below about 1900 K).
+/// Linear RGB of a colour with luminance 1; channels may be negative out of gamut (below about 1900 K).
 pub fn to_rgb(temperature: Temperature) -> DVec3 {
     let xy = chromaticity_of(temperature);
     to_xyz().inverse() * DVec3::new(xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y)
 }
 
-/// Linear RGB of luminance 1 of a blackbody, without what is out of gamut.
+/// Linear RGB of a blackbody with luminance 1, clipped to the gamut.
 pub fn blackbody(kelvin: f64) -> DVec3 {
     let rgb = to_rgb(Temperature { kelvin, duv: 0.0 }).max(DVec3::ZERO);
     rgb / f64::from(colour::luminance(rgb.as_vec3()))
 }
 
-/// The blackbody light that brings a target nearest to what is wanted.
+/// The blackbody light that brings a target closest to the wanted radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     pub kelvin: f64,
-    /// What to multiply [`blackbody`] of it with, ≥ 0: the luminance of the emission, where its strength was 1 cd/m².
+    /// Factor ≥ 0 on [`blackbody`] of that temperature: the luminance of the emission, if its strength was 1 cd/m².
     pub luminance: f64,
-    /// The target's mean radiance under it and the other lights.
+    /// The target's mean radiance under this light and the other lights.
     pub achieved: DVec3,
-    /// CIEDE2000 difference of that from what is wanted, seen at the exposure that shows that as a middle grey.
+    /// CIEDE2000 difference between it and the wanted radiance, at the exposure that shows the latter as middle grey.
     pub delta_e: f64,
 }
 
-/// Finds temperature and strength of blackbody light for a target of mean radiance `target`, which has `background` from
-/// other lights and `response` per unit of emission, all per channel: at each temperature the strength is a closed form.
-/// `None` where nothing responds.
+/// Finds temperature and strength of a blackbody light for a target of mean radiance `target`, which receives
+/// `background` from other lights and `response` per unit of emission, all per channel. For each temperature the
+/// optimal strength has a closed form. `None` if nothing responds.
 pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
     let wanted = target - background;
     let at = |kelvin: f64| {
@@ -103,9 +104,9 @@ pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
     Some(Fit { kelvin, luminance, achieved, delta_e: colour::delta_e_from(target, achieved) })
 }
 
-/// Where a function of the mired is least: a scan, then golden sections about the least.
+/// Minimises a function of the mired: a scan, then golden-section search around the minimum.
 fn search(f: impl Fn(f64) -> f64) -> f64 {
-    let (low, high) = (1e6 / MOST_KELVIN, 1e6 / LEAST_KELVIN);
+    let (low, high) = (1e6 / MAX_KELVIN, 1e6 / MIN_KELVIN);
     let at = |i: usize| low + (high - low) * i as f64 / SCAN as f64;
     let best = (0..=SCAN).min_by(|&a, &b| f(at(a)).total_cmp(&f(at(b)))).unwrap_or(0);
     let (mut a, mut b) = (at(best.saturating_sub(1)), at((best + 1).min(SCAN)));
@@ -171,7 +172,7 @@ mod tests {
                 assert!((again.duv - duv).abs() < 1e-5, "{kelvin} {duv}: {again:?}");
             }
         }
-        // Warm light is red, cold light is blue, and its luminance is 1.
+        // Warm light is reddish, cold light is bluish, and its luminance is 1.
         let (warm, cold) = (blackbody(2700.0), blackbody(10_000.0));
         assert!(warm.x > 2.0 * warm.z && cold.z > cold.x);
         assert!((colour::luminance(warm.as_vec3()) - 1.0).abs() < 1e-6);
@@ -184,10 +185,10 @@ mod tests {
         let fit = fit(response, background, target).unwrap();
         assert!((fit.kelvin / 3500.0 - 1.0).abs() < 1e-6 && (fit.luminance / 800.0 - 1.0).abs() < 1e-6, "{fit:?}");
         assert!((fit.achieved - target).abs().max_element() < 1e-3 && fit.delta_e < 1e-3, "{fit:?}");
-        // Green is no blackbody: the nearest is told with its difference.
+        // Green is no blackbody colour: the nearest one is returned with its difference.
         let green = super::fit(DVec3::ONE, DVec3::ZERO, DVec3::new(0.2, 1.0, 0.2)).unwrap();
         assert!(green.delta_e > 10.0 && green.luminance > 0.0, "{green:?}");
-        // Other lights are brighter: off.
+        // Other lights are brighter than the target: the best strength is 0.
         assert_eq!(super::fit(response, background, DVec3::ZERO).unwrap().luminance, 0.0);
         assert_eq!(super::fit(DVec3::ZERO, background, target), None);
     }

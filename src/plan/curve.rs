@@ -1,35 +1,36 @@
-//! Curves of error against time, and how to give time out along several of them.
+//! Curves of error against time, and the allocation of time to several of them.
 
 use super::Goal;
 
-/// A stage's error as it gets time.
+/// The error of a stage as a function of its time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curve {
-    /// Least and most time it can use, in seconds; 0 < least <= most.
-    pub least: f64,
-    pub most: f64,
-    /// Seconds, rising, and the squares of the errors they leave: between them they fall with powers of the time that lie
-    /// in [`POWERS`], and beyond as between the last two, but not with more than [`BEYOND`].
+    /// Minimum and maximum time in seconds that it can use; 0 < minimum <= maximum.
+    pub min_seconds: f64,
+    pub max_seconds: f64,
+    /// Ascending times in seconds with the squared errors after them. Between them the squared error falls as a power
+    /// of the time, clamped to [`POWERS`]; beyond them as between the last two, but with at most the power
+    /// [`MAX_EXTRAPOLATED`].
     pub points: [[f64; 2]; 3],
 }
 
-/// By which power of the time squared errors fall at least and at most: that of independent samples, and that of
-/// scrambled nets where what they sample is smooth (Owen 1997, "Scrambled net variance for integrals of smooth functions").
+/// Minimum and maximum exponents by which squared errors fall with time: of independent samples, and of scrambled nets
+/// on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth functions") [paper: Owen 1997].
 const POWERS: [f64; 2] = [1.0, 3.0];
-/// With which power at most where nothing is known of them: edges are left in the end, which nets do less for.
-const BEYOND: f64 = 2.0;
+/// Maximum exponent of the extrapolation: eventually edges dominate, for which nets gain less [origin not recorded].
+const MAX_EXTRAPOLATED: f64 = 2.0;
 
-/// Growth of a stage's time in a step.
+/// Growth of a stage's time per allocation step [convention].
 const STEP: f64 = 1.01;
 
 impl Curve {
-    /// A squared error that falls with time as that of independent samples does.
-    pub fn of_independent(least: f64, most: f64, square: f64) -> Self {
-        let point = |times: f64| [times * least, square / times];
-        Self { least, most, points: [point(1.0), point(2.0), point(4.0)] }
+    /// A squared error that falls with time like that of independent samples.
+    pub fn of_independent(min_seconds: f64, max_seconds: f64, square: f64) -> Self {
+        let point = |times: f64| [times * min_seconds, square / times];
+        Self { min_seconds, max_seconds, points: [point(1.0), point(2.0), point(4.0)] }
     }
 
-    /// Squared error after so many seconds.
+    /// The squared error after a time in seconds.
     pub fn square(&self, seconds: f64) -> f64 {
         let [first, middle, last] = self.points;
         let ([s, a], [t, b]) = if seconds < middle[0] { (first, middle) } else { (middle, last) };
@@ -37,23 +38,23 @@ impl Curve {
             return b.max(0.0);
         }
         let power = ((a / b).ln() / (t / s).ln()).clamp(POWERS[0], POWERS[1]);
-        // Both stretches begin where they meet.
+        // Both pieces are anchored at the middle point.
         let [known, beyond] = [seconds.min(last[0]), seconds.max(last[0])];
-        middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(BEYOND))
+        middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }
 
-    /// How much a step from `seconds` lowers the squared error, per second; 0 at the end of the curve.
+    /// The decrease of the squared error per second of a step from `seconds`; 0 at the end of the curve.
     fn gain(&self, seconds: f64) -> f64 {
-        let next = (seconds * STEP).min(self.most);
+        let next = (seconds * STEP).min(self.max_seconds);
         if next > seconds { (self.square(seconds) - self.square(next)) / (next - seconds) } else { 0.0 }
     }
 }
 
-/// Seconds for each stage: at least what it can do with, then step by step to the one where they lower the sum of the squared
-/// errors most, until the goal is reached or no stage has use for more. Where gains fall along every curve, as here, no
-/// other division of the time does better by more than a step.
+/// Seconds for each stage: starts from the minimum of each and gives time in small steps to the stage where it lowers
+/// the sum of squared errors most, until the goal is reached or no stage can use more. Since gains fall along every
+/// curve, no other allocation is better by more than a step.
 pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
-    let mut seconds: Vec<f64> = curves.iter().map(|c| c.least).collect();
+    let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {
         let total: f64 = seconds.iter().sum();
         let square: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.square(s)).sum();
@@ -64,7 +65,7 @@ pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
         };
         let best = (0..curves.len()).max_by(|&a, &b| curves[a].gain(seconds[a]).total_cmp(&curves[b].gain(seconds[b])));
         let Some(best) = best.filter(|&i| left > 0.0 && curves[i].gain(seconds[i]) > 0.0) else { return seconds };
-        let next = (seconds[best] * STEP).min(curves[best].most);
+        let next = (seconds[best] * STEP).min(curves[best].max_seconds);
         if next - seconds[best] >= left {
             seconds[best] += left;
             return seconds;
@@ -83,16 +84,16 @@ mod tests {
 
     #[test]
     fn errors_pass_through_what_is_known_of_them() {
-        let curve = Curve { least: 1.0, most: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
+        let curve = Curve { min_seconds: 1.0, max_seconds: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
         for ([seconds, square], expected) in curve.points.iter().map(|p| (*p, p[1])) {
             assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");
         }
         assert!((curve.square(64.0) - 0.5).abs() < 1e-9 && (curve.square(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9);
-        // Stratified samples can do better than between edges, but not for ever.
+        // Stratified samples can have steeper curves, but not for ever.
         let steep = Curve { points: [[1.0, 320.0], [4.0, 8.0], [16.0, 0.2]], ..curve };
         assert!((steep.square(1.0) - 320.0).abs() < 1e-9 && (steep.square(16.0) - 0.2).abs() < 1e-9);
         assert!((steep.square(64.0) - 0.2 / 16.0).abs() < 1e-9);
-        // What chance brings about does not rise with time, nor fall without bound.
+        // Noisy measurements must neither raise the error with time nor lower it without bound.
         let odd = Curve { points: [[1.0, 1.0], [4.0, 2.0], [16.0, 1e-9]], ..curve };
         assert!(odd.square(1.0) > odd.square(4.0) && odd.square(64.0) > 1e-12);
         assert_eq!(Curve { points: [[1.0, 0.0], [4.0, 0.0], [16.0, 0.0]], ..curve }.square(9.0), 0.0);
@@ -100,12 +101,12 @@ mod tests {
 
     #[test]
     fn time_goes_where_it_lowers_the_error_most() {
-        // Of errors squared a / t and b / t the best division is as the roots of a and b.
+        // For squared errors a / t and b / t, the optimal times are proportional to the roots of a and b.
         let curves = [monte_carlo(1.0), monte_carlo(9.0)];
         let seconds = allocate(&curves, Goal::Seconds(8.0));
         assert!((seconds.iter().sum::<f64>() - 8.0).abs() < 1e-9);
         assert!((seconds[0] - 2.0).abs() < 0.05, "{seconds:?}");
-        // The same division for an error, whose square is (sqrt a + sqrt b)² / t.
+        // For an error goal the proportions are the same; the squared error is (sqrt a + sqrt b)² / t.
         let seconds = allocate(&curves, Goal::Error(0.2));
         let square: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.square(s)).sum();
         assert!(square <= 0.04 && square > 0.039, "{square}");
@@ -114,11 +115,11 @@ mod tests {
 
     #[test]
     fn least_and_most_are_kept() {
-        let short = Curve { most: 0.5, ..monte_carlo(1.0) };
+        let short = Curve { max_seconds: 0.5, ..monte_carlo(1.0) };
         assert_eq!(allocate(&[short], Goal::Seconds(9.0)), [0.5]);
         assert_eq!(allocate(&[short], Goal::Error(1e-5)), [0.5]);
         assert_eq!(allocate(&[short, short], Goal::Seconds(0.001)), [0.01, 0.01]);
-        // A stage without error is given no more than it needs.
+        // A stage without error gets only its minimum.
         let exact = monte_carlo(0.0);
         assert_eq!(allocate(&[exact, monte_carlo(1.0)], Goal::Seconds(1.0))[0], 0.01);
     }

@@ -1,25 +1,26 @@
-//! Planning: settings of the stages that make light, and of a stylisation, for an error or a time, before they run.
+//! Planning: chooses settings of the lighting stages and of a stylisation for a target error or time, before they run.
 //!
-//! A caller says how much noise the picture may have, or how long it may take ([`Goal`]); the plan says with which settings
-//! relighting and rendering come to it, how long each is expected to take, and what error it is expected to leave.
+//! The caller specifies the noise of the picture or the time it may take ([`Goal`]). The plan returns the settings of
+//! relighting and rendering, with the expected time and error of each.
 //!
-//! What a path costs and how much paths scatter depends on the machine and on the scene, and nothing that could be counted
-//! before tells it. So it is measured: a few tiles of the very image are rendered ([`picture`], `render::probe`), and a few
-//! paths of the very solution are traced ([`strength`]). Along the curves of error against time that follow, the time is
-//! given out in small steps, each to the stage where it lowers the error of the picture most ([`curve`]). A stylisation is tried
-//! with settings from quick to careful, at a part of its resolution (`stylisation`).
+//! The cost of a path and the variance of paths depend on the machine and the scene and cannot be predicted by
+//! counting, so they are measured: a few tiles of the image are rendered ([`picture`], `render::pilot`), and a few
+//! paths of the solution are traced ([`strength`]). Along the resulting curves of error against time, the time is
+//! allocated in small steps, each to the stage where it lowers the error of the picture most ([`curve`]). A
+//! stylisation is tried with settings from quick to careful at reduced resolution (`stylisation`).
 //!
-//! Errors are those of the picture: root mean square over its pixels, relative to its mean, as [`crate::render::Film::error`]
-//! states it. The solution of the emission makes all light of the picture too bright or too dark by a common factor; what
-//! that adds is its own relative standard error times the picture's contrast, its root mean square over its mean. That of a
-//! stylisation is the root of its energy.
+//! Errors refer to the picture: root mean square over its pixels, relative to its mean, as in
+//! [`crate::render::Film::error`]. An error of the emission's solution scales all light of the picture by a common
+//! factor; its contribution is its relative standard error times the picture's contrast, which is the root mean square
+//! divided by the mean. The error of a stylisation is the root of its energy.
 //!
-//! Assumed: the machine does then what it does now, with as many threads; while a plan is made nothing else keeps them busy.
+//! Assumption: the machine later performs as it does now, with the same number of threads, and is otherwise idle while
+//! the plan is made.
 //!
-//! Not modelled: the stages before the light, which no setting trades error for time in, and whose errors they state
-//! themselves; bright paths so rare that a plan meets one by chance or none, such as of a small lamp in polish: the picture's
-//! error may then be twice or half of what is expected; that a picture that stops at an error may fall below it by as much as its last
-//! pass brings; layers beside the picture, which take time of their own.
+//! Not modelled: the stages before the lighting, which have no settings that trade error for time and report their own
+//! errors; bright paths so rare that a plan meets few or none of them, such as those of a small lamp seen in a
+//! polished surface (the picture's error may then be half or twice the expected one); the overshoot of a picture that
+//! stops at a target error, by up to one pass; additional layers, which take time of their own.
 
 mod curve;
 mod picture;
@@ -36,55 +37,55 @@ pub use transfer::{Lighting, check, lighting};
 use crate::error::{Result, check_range};
 use std::time::{Duration, Instant};
 
-/// What is asked for.
+/// The goal of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`; or root of the energy of a
-    /// stylisation.
+    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`; or the root of
+    /// the energy of a stylisation.
     Error(f64),
-    /// Seconds for all that is planned, in `[1e-3, 1e6]`.
+    /// Total seconds of the planned stages, in `[1e-3, 1e6]`.
     Seconds(f64),
 }
 
 impl Goal {
     pub fn check(self) -> Result<()> {
         match self {
-            // In single precision, as hosts give it: their 1e-5 is a little less.
+            // Compare in single precision, as hosts pass it: their 1e-5 is slightly smaller.
             Self::Error(error) => check_range("target_error", error as f32, 1e-5, 1.0).map(drop),
             Self::Seconds(seconds) => check_range("seconds", seconds, 1e-3, 1e6).map(drop),
         }
     }
 }
 
-/// What a stage, or all of them, should take and leave.
+/// Expected time and error of a stage or of all stages.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Expected {
     pub seconds: f64,
     pub error: f64,
 }
 
-/// Tells the time from any start.
+/// A clock with an arbitrary origin.
 pub type Clock<'a> = &'a (dyn Fn() -> Duration + Sync);
 
-/// The time on the wall.
+/// The wall clock.
 pub fn wall() -> impl Fn() -> Duration + Sync {
     let start = Instant::now();
     move || start.elapsed()
 }
 
-/// Seconds that `work` takes by a clock, and what it gives.
+/// Runs `work` and returns the seconds it took by a clock, and its result.
 fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     let start = clock();
     let value = work();
     (clock().saturating_sub(start).as_secs_f64(), value)
 }
 
-/// What a stage that stops at a target may take at most, in times of what is expected.
-const PATIENCE: f64 = 4.0;
-/// What a stage may take of the time it is expected to, before it stops.
-const OVERTIME: f64 = 1.25;
+/// Maximum cost of a stage that stops at a target error, relative to the expected cost [origin not recorded].
+const MAX_COST: f64 = 4.0;
+/// Maximum time of a stage with a time budget, relative to the expected time [origin not recorded].
+const MAX_OVERTIME: f64 = 1.25;
 
-/// Milliseconds after which a stage stops that takes longer than expected.
+/// The time budget in milliseconds after which a stage stops that takes longer than expected.
 fn overtime(expected: Expected) -> u32 {
-    (1e3 * OVERTIME * expected.seconds).ceil().clamp(1.0, f64::from(u32::MAX)) as u32
+    (1e3 * MAX_OVERTIME * expected.seconds).ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }

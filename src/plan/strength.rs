@@ -1,37 +1,37 @@
-//! The strength of the emission: how long its solution takes for an error, from a few short ones.
+//! The strength of the emission: the solution time for an error, predicted from a few short solutions.
 
 use super::curve::Curve;
-use super::{Clock, Expected, Goal, PATIENCE, overtime, timed};
+use super::{Clock, Expected, Goal, MAX_COST, overtime, timed};
 use crate::error::Result;
 use crate::job::Job;
 use crate::relight;
 use crate::render::World;
 use glam::Vec3;
 
-/// Paths of a trial of the solution, and trials: the error that one states is itself known to 13 %.
+/// Paths per trial solution, and number of trials: the standard error that a trial states is itself known to 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
-/// Tells their paths from those of the solution.
-const SALT: u64 = 0x7472_6961_6c73_2121;
-/// Radiance in cd/m² that no other light reaches.
-const BRIGHT: f32 = 1e9;
-/// Least and most paths of a solution.
+/// Separates the trials' random paths from those of the solution.
+const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
+/// Radiance in cd/m² far above that of any other light [convention].
+const DOMINANT: f32 = 1e9;
+/// Minimum and maximum number of paths of a solution [origin not recorded].
 const SOLUTION_PATHS: [f64; 2] = [2048.0, (1u32 << 30) as f64];
-/// A solution that stops at a target forecasts its paths with this margin.
+/// Safety margin in the forecast of a solution that stops at a target error [origin not recorded].
 const MARGIN: f64 = 1.1;
-/// Half-widths of intervals over standard errors, with so many batches.
+/// Ratio of an interval's half-width to its standard error, for the number of batches used [convention].
 const HALF_WIDTH: f64 = 2.04;
 
-/// What a solution of the emission takes.
+/// Measured cost and error of the emission's solution.
 pub(super) struct Strength {
     seconds_per_path: f64,
-    /// Half-width of the interval, relative, that a trial leaves.
+    /// Relative half-width of the confidence interval of a trial.
     half_width: f64,
 }
 
 impl Strength {
-    /// Tries it a few times, for an emitting material and the triangles of the target. What the target is to be has no say
-    /// where there is no other light; with other light it is what the emission makes of it as it stands.
+    /// Runs the trials for an emitting material and the triangles of the target. The target value does not matter
+    /// without other lights; with other lights, the radiance that the emission currently produces is used.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,
@@ -49,13 +49,13 @@ impl Strength {
             };
             relight::run(&input, &params, job)
         };
-        let first = trial(SALT, Vec3::splat(BRIGHT), job.part(0.0, 0.1))?;
+        let first = trial(TRIAL_SEED, Vec3::splat(DOMINANT), job.part(0.0, 0.1))?;
         let target = (first.response + first.background).as_vec3();
         let (mut seconds, mut squares) = (0.0, 0.0);
         let job = job.part(0.1, 1.0);
         for k in 0..TRIALS {
             let part = job.part(k as f64 / TRIALS as f64, (k + 1) as f64 / TRIALS as f64);
-            let (taken, solution) = timed(clock, || trial(SALT + 1 + k, target, part));
+            let (taken, solution) = timed(clock, || trial(TRIAL_SEED + 1 + k, target, part));
             seconds += taken;
             squares += solution?.error().powi(2);
         }
@@ -63,14 +63,18 @@ impl Strength {
         Ok(Self { seconds_per_path: seconds / trials / f64::from(TRIAL), half_width: (squares / trials).sqrt() })
     }
 
-    /// Error that it adds to a picture of a contrast, against time.
+    /// The error that it contributes to a picture of the given contrast, against time.
     pub fn curve(&self, contrast: f64) -> Curve {
-        let [least, most] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
-        Curve::of_independent(least, most, self.adds(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2))
+        let [min_seconds, max_seconds] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
+        Curve::of_independent(
+            min_seconds,
+            max_seconds,
+            self.contribution(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2),
+        )
     }
 
-    /// What a solution with such an interval adds to the error of a picture.
-    pub fn adds(&self, half_width: f64, contrast: f64) -> f64 {
+    /// The contribution of a solution with the given interval to the error of a picture.
+    pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }
 
@@ -78,8 +82,8 @@ impl Strength {
         self.half_width * (f64::from(TRIAL) / paths).sqrt()
     }
 
-    /// The settings with which it takes so many seconds, or reaches the error that they stand for; and what to expect of
-    /// it: the error is that of the solution, half the width of its interval.
+    /// The settings for a time in seconds, or for the error expected after that time, and the expectation: its error
+    /// is the relative half-width of the solution's interval.
     pub fn plan(&self, params: &relight::Params, goal: Goal, seconds: f64) -> (relight::Params, Expected) {
         let paths = (seconds / self.seconds_per_path).clamp(SOLUTION_PATHS[0], SOLUTION_PATHS[1]);
         let error = self.half_width(paths);
@@ -88,7 +92,7 @@ impl Strength {
         if matches!(goal, Goal::Error(_)) {
             let expected = Expected { seconds: MARGIN * paths * self.seconds_per_path, error };
             let target_error = error.min(1.0) as f32;
-            (relight::Params { paths: count(PATIENCE * paths), target_error, ..plain }, expected)
+            (relight::Params { paths: count(MAX_COST * paths), target_error, ..plain }, expected)
         } else {
             let expected = Expected { seconds: paths * self.seconds_per_path, error };
             (relight::Params { paths: count(paths), time_budget_ms: overtime(expected), ..plain }, expected)

@@ -1,44 +1,44 @@
-//! A stylisation: how careful it can be in a time, or has to be for an error.
+//! A stylisation: the most careful settings within a time, or the quickest for an error.
 
 use super::{Clock, Expected, Goal};
 use crate::error::Result;
 use crate::job::Job;
-use crate::stylize::{Input, Mode, Params, Probe};
+use crate::stylize::{Input, Mode, Params, PilotRuns};
 
-/// A stylisation as it is to be.
+/// A planned stylisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stylisation {
     pub params: Params,
-    /// The error is the root of the energy (Eq. 3): how far the matched patches differ, root mean square, in colours and in
+    /// The error is the root of the energy (Eq. 3): the root mean square difference of matched patches in colours and
     /// guides.
     pub expected: Expected,
 }
 
-/// Plans a stylisation: of `params` all is kept but the numbers of iterations and sweeps. `input.previous` does not count.
+/// Plans a stylisation. Changes only the numbers of iterations and sweeps in `params`; ignores `input.previous`.
 ///
 /// # Errors
 /// A goal or a setting out of range; those of [`crate::stylize::run`].
 pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job: Job) -> Result<Stylisation> {
     goal.check()?;
     let (ladder, usual) = ladder(params);
-    let mut probe = Probe::new(input, &ladder, usual, clock, job.part(0.0, 0.6))?;
-    // What is chosen is tried at a higher resolution, and if it then no longer serves best, what does.
+    let mut pilot = PilotRuns::new(input, &ladder, usual, clock, job.part(0.0, 0.6))?;
+    // Refine the chosen settings at a higher resolution, and repeat if others are then better.
     loop {
-        let expected = (0..ladder.len()).map(|i| probe.trial(i));
+        let expected = (0..ladder.len()).map(|i| pilot.predict(i));
         let rungs: Vec<_> = expected.map(|t| Expected { seconds: t.seconds, error: t.energy.sqrt() }).collect();
         let best = chosen(&rungs, goal);
-        if probe.is_refined(best) {
+        if pilot.is_refined(best) {
             job.report(1.0);
             return Ok(Stylisation { params: ladder[best].clone(), expected: rungs[best] });
         }
-        probe.refine(best, job.part(0.6, 1.0))?;
+        pilot.refine(best, job.part(0.6, 1.0))?;
     }
 }
 
-/// Settings from quick to careful, from the front of the knobs' curves in `benches/stylit.rs`, and which of them the presets are
-/// nearest to.
+/// Settings from quick to careful, from the Pareto front in `benches/stylit.rs`, and the index of the settings closest
+/// to the presets.
 fn ladder(params: &Params) -> (Vec<Params>, usize) {
-    // These make one pass, or none.
+    // These modes make a single pass, or none.
     if matches!(params.mode, Mode::Greedy | Mode::LitSphere) {
         return (vec![params.clone()], 0);
     }
@@ -61,7 +61,7 @@ fn ladder(params: &Params) -> (Vec<Params>, usize) {
     (rungs.iter().map(rung).collect(), 1)
 }
 
-/// The least error within the time, or the least time to the error; where none comes to the goal, the one that is nearest.
+/// The smallest error within the time, or the shortest time for the error; if none reaches the goal, the nearest.
 fn chosen(rungs: &[Expected], goal: Goal) -> usize {
     let indices = 0..rungs.len();
     let quickest = |a: &usize, b: &usize| rungs[*a].seconds.total_cmp(&rungs[*b].seconds);

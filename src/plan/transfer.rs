@@ -1,4 +1,4 @@
-//! What follows the emissive texture in a lighting transfer: the solution of its strength, and the picture.
+//! The stages after the emissive texture in a lighting transfer: the solution of its strength, and the picture.
 
 use super::curve::allocate;
 use super::picture::{Picture, Rendering};
@@ -11,24 +11,25 @@ use crate::render::{self, World};
 use crate::transfer::{LitScene, Stage, Transfer};
 use std::sync::Arc;
 
-/// The last two stages of a transfer as they are to be.
+/// The planned last two stages of a transfer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     pub relight: relight::Params,
     pub render: render::Params,
-    /// Of [`Stage::Relight`]: the error is half the width of the solution's interval, relative.
+    /// Expectation of [`Stage::Relight`]; its error is the relative half-width of the solution's interval.
     pub solving: Expected,
-    /// Of [`Stage::Render`]: the error is the picture's by its paths alone.
+    /// Expectation of [`Stage::Render`]; its error is the picture's sampling error alone.
     pub rendering: Expected,
-    /// Of both, and of the picture they make.
+    /// Expectation of both stages and the resulting picture.
     pub whole: Expected,
 }
 
-/// Plans the stages RELIGHT and RENDER of a transfer whose stage EMISSION has run: of its settings what is no matter of
-/// quality is kept.
+/// Plans the stages RELIGHT and RENDER of a transfer whose stage EMISSION has run. Settings that do not affect quality
+/// are kept.
 ///
 /// # Errors
-/// A goal or a setting out of range; no result of the stage EMISSION; no light that comes back to the surface; cancelled.
+/// A goal or a setting out of range; no result of the stage EMISSION; no light that returns to the surface;
+/// cancellation.
 pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Result<Lighting> {
     let lit = check(transfer, goal)?;
     let (building, world) = timed(clock, || World::build(lit.scene.clone(), job.part(0.0, 0.2)));
@@ -40,7 +41,7 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
         Strength::new((&world, lit.placed.material, &triangles), &transfer.params.relight, clock, job.part(0.2, 0.5))?;
     let picture = Picture::new(&world, &camera, &transfer.params.render, clock, job.part(0.5, 1.0))?;
 
-    // Both stages make the scene ready; what time is left is shared out along their curves.
+    // Both stages build the scene; allocate the remaining time along their curves.
     let light = match goal {
         Goal::Seconds(budget) => Goal::Seconds((budget - 2.0 * building).max(0.0)),
         error => error,
@@ -49,7 +50,7 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     let seconds = allocate(&[strength.curve(contrast), picture.curve()], light);
     let (relight, mut solving) = strength.plan(&transfer.params.relight, goal, seconds[0]);
     let Rendering { params: render, expected: mut rendering } = picture.plan(&transfer.params.render, goal, seconds[1]);
-    let error = strength.adds(solving.error, contrast).hypot(rendering.error);
+    let error = strength.contribution(solving.error, contrast).hypot(rendering.error);
     solving.seconds += building;
     rendering.seconds += building;
     let whole = Expected { seconds: solving.seconds + rendering.seconds, error };
@@ -57,12 +58,12 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     Ok(Lighting { relight, render, solving, rendering, whole })
 }
 
-/// Checks what a plan needs, and gives the scene with the lamps that are to be solved for; takes no time worth speaking of.
+/// Checks the preconditions of a plan and returns the scene with the lamps to be solved for; takes negligible time.
 pub fn check(transfer: &Transfer, goal: Goal) -> Result<Arc<LitScene>> {
     goal.check()?;
     transfer.params.check(Stage::Relight)?;
     transfer.params.check(Stage::Render)?;
     transfer.results.unsolved.clone().ok_or_else(|| {
-        Error::new(ErrorKind::InvalidOperation, "run stage Emission first: a plan looks at the light of its lamps")
+        Error::new(ErrorKind::InvalidOperation, "run stage Emission first: a plan measures the light of its lamps")
     })
 }

@@ -1,35 +1,35 @@
-//! What Tukey's biweight makes of normal noise: means over the residuals `r` within its limit, which is 1.
+//! Expectations under normal noise of Tukey's biweight: means over the residuals `r` within its limit, which is 1.
 
 use std::sync::LazyLock;
 
-/// Means over a residual with normal noise of a known variance, of those within the limit. All are 1 for little noise and fall
-/// with it.
+/// Means over normally distributed residuals of known variance, conditional on being within the limit. All three tend
+/// to 1 as the noise vanishes and fall as it grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {
-    /// Of `r²`, as a share of the variance.
+    /// Mean of `r²`, as a share of the variance.
     pub square: f64,
-    /// Of `ψ′(r)` where `ψ(r) = r (1 - r²)²`.
+    /// Mean of `ψ′(r)`, where `ψ(r) = r (1 - r²)²`.
     pub slope: f64,
-    /// Of `ψ²(r)`, as a share of the variance.
+    /// Mean of `ψ²(r)`, as a share of the variance.
     pub influence: f64,
 }
 
-/// Intervals of the table, equal in `d / (1 + d)` of the standard deviation `d`.
+/// Intervals of the lookup table, uniform in `d / (1 + d)` for a standard deviation `d`.
 const INTERVALS: usize = 64;
 
-/// Least deviation that is integrated over, and steps of that.
-const LEAST: f64 = 1e-3;
+/// Smallest standard deviation that is integrated, and the number of integration steps [rounding].
+const MIN_DEVIATION: f64 = 1e-3;
 const STEPS: usize = 256;
 
 static TABLE: LazyLock<[Biweight; INTERVALS + 1]> = LazyLock::new(|| {
     std::array::from_fn(|i| {
         let place = i as f64 / INTERVALS as f64;
-        if i < INTERVALS { integrate((place / (1.0 - place)).max(LEAST)) } else { Biweight::NOTHING_KNOWN }
+        if i < INTERVALS { integrate((place / (1.0 - place)).max(MIN_DEVIATION)) } else { Biweight::INFINITE_NOISE }
     })
 });
 
 impl Biweight {
-    const NOTHING_KNOWN: Self = Self { square: 0.0, slope: 0.0, influence: 0.0 };
+    const INFINITE_NOISE: Self = Self { square: 0.0, slope: 0.0, influence: 0.0 };
 
     pub fn of_noise(variance: f64) -> Self {
         let deviation = variance.max(0.0).sqrt();
@@ -85,7 +85,7 @@ mod tests {
                 assert!((found - sum / count).abs() < 0.01, "{deviation}: {found} instead of {}", sum / count);
             }
         }
-        let most = Biweight::of_noise(f64::INFINITY);
-        assert!(most.slope == 0.0 && most.square == 0.0 && most.influence == 0.0);
+        let limit = Biweight::of_noise(f64::INFINITY);
+        assert!(limit.slope == 0.0 && limit.square == 0.0 && limit.influence == 0.0);
     }
 }

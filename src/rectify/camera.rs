@@ -1,4 +1,4 @@
-//! The camera from its vanishing points: focal length, principal point and orthonormal room axes.
+//! The camera from its vanishing points: focal length and orthonormal room axes, given the principal point.
 
 use super::sphere::{Refined, round_covariance};
 use super::squareness::{self, Squareness};
@@ -9,11 +9,12 @@ use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{FocalSource, Perspective};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Usual focal length as a share of the image width, and the deviation of its logarithm over photos of rooms.
+/// Prior of the focal length over photos of rooms: its typical value as a share of the image width, and the standard
+/// deviation of its logarithm [origin not recorded].
 const USUAL_FOCAL: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 
-/// The error in radians of an axis that nothing but convention fixes.
+/// The error in radians of an axis that is fixed by convention alone [convention].
 pub const FREE_ERROR: f64 = 0.5;
 
 /// A camera with the vanishing point of each of its axes.
@@ -21,17 +22,17 @@ pub struct Oriented {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
-    /// For each point of the input the axis it became, if any.
+    /// For each input point, the index of the axis it became, if any.
     pub axis_of: Vec<Option<usize>>,
 }
 
-/// Names the vanishing points, finds the focal length and makes the axes orthonormal.
+/// Assigns the vanishing points to room axes, estimates the focal length and makes the axes orthonormal.
 pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -> Oriented {
     let principal = params.principal(width, height);
     let orthogonal = &found.points[..found.points.len().min(3)];
     let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, usual_focal(width));
 
-    // Directions in camera space; those far from orthogonal to a better supported one are no room axes.
+    // Drop directions far from orthogonal to a better supported direction: they are not room axes.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, p) in orthogonal.iter().enumerate() {
@@ -40,7 +41,8 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
         }
     }
 
-    // Name them: the vertical is the one nearest the image's vertical, the second horizontal the one we look along.
+    // Assign the axes: the direction nearest the image's vertical is the vertical, and of the other two the one
+    // nearest the viewing direction is the second horizontal.
     let mut named: [Option<usize>; 3] = [None; 3];
     let take = |from: &mut Vec<usize>, value: &dyn Fn(DVec3) -> f64| {
         let best = (0..from.len())
@@ -83,17 +85,18 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     Oriented { perspective, vanishing_points, squareness, axis_of }
 }
 
-/// The focal length that is expected of a photo of the given width.
+/// The prior focal length in pixels of a photo of the given width.
 pub fn usual_focal(width: usize) -> f64 {
     USUAL_FOCAL * width as f64
 }
 
-/// The focal length: as given, or else from the points and what is usual.
+/// The focal length in pixels: the given one, or else an estimate from the points and the prior.
 fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>, usual: f64) -> (f64, FocalSource) {
     match (given, focal_from_points(points, principal, usual)) {
         (Some(f), _) => (f, FocalSource::Given),
         (None, Some((log_focal, spread))) => {
-            // The usual focal length is one more observation; it decides only where the points say little.
+            // Combine with the prior by inverse variance; the prior decides only where the points constrain the focal
+            // length weakly.
             let (a, b) = (spread.powi(-2), USUAL_SPREAD.powi(-2));
             let focal = ((log_focal * a + usual.ln() * b) / (a + b)).exp();
             (focal, if a > b { FocalSource::VanishingPoints } else { FocalSource::Assumed })
@@ -102,8 +105,8 @@ fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>,
     }
 }
 
-/// The camera anew from the vanishing points of its axes, of which those without support say nothing.
-pub fn again(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> Perspective {
+/// Re-estimates the camera from the vanishing points of its axes, ignoring points without support.
+pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
     let (focal, _) = focal_length(&known, camera.principal, given, usual);
@@ -113,13 +116,14 @@ pub fn again(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> 
     Perspective { focal, axes, ..*camera }
 }
 
-/// Camera-space unit direction that vanishes in a homogeneous pixel.
+/// Unit direction in camera space whose vanishing point is the given homogeneous pixel.
 pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
     (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
 }
 
 /// The logarithm of the focal length in pixels and its standard deviation, from every pair of points that should be
-/// orthogonal: `(v1 - c) · (v2 - c) + f² w1 w2 = 0`, linear in f², each pair weighted by the certainty of its angle.
+/// orthogonal: `(v1 - c) · (v2 - c) + f² w1 w2 = 0` is linear in f², and each pair is weighted by the certainty of its
+/// angle.
 fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) -> Option<(f64, f64)> {
     let mut square = start * start;
     let mut deviation = f64::INFINITY;
@@ -151,8 +155,8 @@ fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) ->
         .then(|| (square.ln() / 2.0, deviation.max(1e-9)))
 }
 
-/// The rotation nearest to the given directions, each weighted by its certainty (Wahba's problem, by polar
-/// decomposition); what is missing follows from orthogonality, then from an upright camera.
+/// The rotation nearest to the given directions, each weighted by its certainty (Wahba's problem, solved by polar
+/// decomposition). Missing directions follow from orthogonality, then from the assumption of an upright camera.
 fn orthonormal(directions: [Option<(DVec3, f64)>; 3]) -> DMat3 {
     let [a, down, ahead] = directions;
     let down = down.map(|(d, e)| (if d.y < 0.0 { -d } else { d }, e));
@@ -181,11 +185,11 @@ fn orthonormal(directions: [Option<(DVec3, f64)>; 3]) -> DMat3 {
     polar([a, down, ahead])
 }
 
-/// `M (Mᵀ M)^(-1/2)` of the columns scaled by their certainties.
+/// `M (Mᵀ M)^(-1/2)` of the matrix `M` whose columns are scaled by their certainties.
 fn polar(columns: [(DVec3, f64); 3]) -> DMat3 {
-    // A spread of weights beyond 1e4 would only cost digits.
-    let least = columns.iter().map(|c| c.1).fold(f64::INFINITY, f64::min).max(1e-12);
-    let scaled = columns.map(|(d, e)| d * (least / e.max(least)).max(1e-4));
+    // Limit the ratio of weights to 1e4: a larger one would only lose digits.
+    let min_error = columns.iter().map(|c| c.1).fold(f64::INFINITY, f64::min).max(1e-12);
+    let scaled = columns.map(|(d, e)| d * (min_error / e.max(min_error)).max(1e-4));
     let gram = std::array::from_fn(|r| std::array::from_fn(|c| scaled[r].dot(scaled[c])));
     let (values, vectors) = symmetric_eigen::<3>(gram);
     let mut inverse_root = DMat3::ZERO;
@@ -194,7 +198,7 @@ fn polar(columns: [(DVec3, f64); 3]) -> DMat3 {
         inverse_root += DMat3::from_cols(v * v.x, v * v.y, v * v.z) * (1.0 / value.max(1e-300).sqrt());
     }
     let rotation = DMat3::from_cols(scaled[0], scaled[1], scaled[2]) * inverse_root;
-    // Rounding left by the graded weights.
+    // Remove the rounding error that unequal weights leave.
     let ahead = rotation.z_axis.normalize();
     let down = (rotation.y_axis - ahead * ahead.dot(rotation.y_axis)).normalize();
     DMat3::from_cols(down.cross(ahead), down, ahead)

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::image::{try_collect, try_push, try_vec};
 use crate::job::Job;
 
-/// Gradient magnitudes, in encoded luma per pixel: an edge must exceed the second somewhere, and the first throughout.
+/// Hysteresis thresholds of the gradient magnitude, in encoded luma per pixel: each edge pixel must exceed `WEAK`, and
+/// at least one pixel of each edge `STRONG` [origin not recorded].
 const WEAK: f32 = 0.015;
 const STRONG: f32 = 0.04;
 
@@ -19,7 +20,8 @@ pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
     let mut state = try_vec(width * height, NONE)?;
     let mut pending: Vec<u32> = Vec::new();
 
-    // Keep the pixels whose gradient is the largest across the edge, interpolated between the neighbours on either side.
+    // Non-maximum suppression: keep pixels whose gradient is largest across the edge, interpolating between the
+    // neighbours on either side.
     for y in 1..height.saturating_sub(1) {
         job.check()?;
         for x in 1..width.saturating_sub(1) {
@@ -48,7 +50,7 @@ pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
             }
         }
     }
-    // Candidates connected with a strong edge are edges too.
+    // Hysteresis: candidates connected to a strong edge are edges too.
     while let Some(i) = pending.pop() {
         let (x, y) = (i as usize % width, i as usize / width);
         for ny in y - 1..=y + 1 {

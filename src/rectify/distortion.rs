@@ -1,73 +1,75 @@
-//! Whether the lens bends what is straight: the plumb-line test (Brown 1971, "Close-range camera calibration"; Devernay and
-//! Faugeras 2001, "Straight lines have to be straight").
+//! Lens distortion by the plumb-line test (Brown 1971, "Close-range camera calibration"; Devernay and Faugeras 2001,
+//! "Straight lines have to be straight").
 //!
-//! A lens that shows r from the centre what belongs at r (1 - k r² / R²), R being half the picture's diagonal, shows a line as a curve
-//! y of t with `y (1 - k (y² + t²) / R²)` the same all along. Where it passes the centre at distance d its curvature is
-//! `2 k d / R² / (1 - 3 k d² / R²)`. So the second power of t over d tells k, line by line; what the many lines of a room say together is
-//! robust against mouldings and vaults that are bent themselves.
+//! Model: a lens shows at radius r the point that belongs at r (1 - k r² / R²), where R is half the image diagonal. A
+//! straight line then appears as a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the line passes
+//! the centre at distance d, its curvature is `2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient of the
+//! curve, divided by d, therefore yields one estimate of k per line. A robust mean over the many lines of a room
+//! rejects mouldings and vaults, which are curved themselves.
 
 use super::gradient::{Gradients, SIGMA};
 use crate::geometry::Segment;
 use glam::DVec2;
 
-/// How far the lens moves what it shows in the corners of the picture.
+/// Radial distortion of a lens, expressed as displacement in the corners of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distortion {
-    /// k: as a share of the distance from the centre, outwards; < 0 is a barrel.
+    /// k: outward displacement as a share of the distance from the centre; negative for barrel distortion.
     pub corner: f64,
-    /// Standard deviation of it, with what lenses are off from this model.
+    /// Standard deviation of `corner`, including the deviation of real lenses from this model.
     pub error: f64,
-    /// Lines that agree.
+    /// Number of lines consistent with the estimate.
     pub lines: usize,
 }
 
-/// Shortest segment that is looked at, in pixels, and how much of each end is left out, where corners bend edges.
-const SHORTEST: f64 = 30.0;
-const END: f64 = 4.0;
-/// Pixels on each side of a segment among which its edge is looked for.
-const ACROSS: i32 = 4;
-/// Least share of a segment along which its edge must be found.
-const FOUND: f64 = 0.7;
-/// Fewest lines that tell anything.
-const FEWEST: usize = 12;
-/// Least error of an edge's place in pixels: what no average takes away.
-const FLOOR: f64 = 0.01;
-/// Pixels by which an edge that is one strays from its parabola at most, root mean square.
-const RAGGED: f64 = 0.25;
-/// Limit of Tukey's biweight in standard deviations (95 % efficiency).
-const LIMIT: f64 = 4.685;
-/// Segments of one real line: both sides of a frame, its pieces.
-const TWINS: f64 = 2.0;
-/// What lenses are off from the model: views cut out of panoramas, which have no distortion but their stitching's, show as much,
-/// root mean square, where their lines agree on it (`tests/real_rectify.rs`).
-const MODEL: f64 = 0.009;
+/// Minimum segment length that is used, and the length at each end that is left out because corners bend edges there,
+/// both in pixels [origin not recorded].
+const MIN_LENGTH: f64 = 30.0;
+const TRIM: f64 = 4.0;
+/// Pixels on each side of a segment in which its edge is searched for.
+const SEARCH_WIDTH: i32 = 4;
+/// Minimum share of a segment's length along which its edge must be found [origin not recorded].
+const MIN_COVERAGE: f64 = 0.7;
+/// Minimum number of lines for an estimate.
+const MIN_LINES: usize = 12;
+/// Floor of the position error of an edge in pixels, which averaging does not reduce [origin not recorded].
+const POSITION_FLOOR: f64 = 0.01;
+/// Maximum root mean square residual, in pixels, of an edge about its parabola [origin not recorded].
+const MAX_RESIDUAL: f64 = 0.25;
+/// Limit of Tukey's biweight in standard deviations (95 % efficiency) [convention].
+const BIWEIGHT_LIMIT: f64 = 4.685;
+/// Segments per physical line: both sides of a frame, or the pieces of one line [origin not recorded].
+const SEGMENTS_PER_LINE: f64 = 2.0;
+/// Deviation of real lenses from the model: the root mean square estimate over views cut out of panoramas, which have
+/// no lens distortion apart from stitching, where their lines agree [bench: `tests/real_rectify.rs`].
+const MODEL_ERROR: f64 = 0.009;
 
-/// What the straight lines of a photo say of its lens, whose axis meets the picture in `centre`; nothing where they are few.
+/// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
+/// lines.
 pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Option<Distortion> {
     let diagonal = 0.5 * DVec2::new(gradients.width as f64, gradients.height as f64).length();
-    let said: Vec<Said> = segments.iter().filter_map(|s| Said::by(gradients, s, centre, diagonal)).collect();
-    combine(&said)
+    let estimates: Vec<LineEstimate> =
+        segments.iter().filter_map(|s| LineEstimate::by(gradients, s, centre, diagonal)).collect();
+    combine(&estimates)
 }
 
-/// What one line says.
+/// The estimate from one line.
 #[derive(Clone, Copy, Debug)]
-struct Said {
-    /// k, but for the term of the curvature that is quadratic in it.
+struct LineEstimate {
+    /// Estimate of k that neglects the quadratic term of the curvature.
     corner: f64,
-    /// One over its variance.
+    /// Inverse variance of the estimate.
     weight: f64,
     /// (d / R)².
     place: f64,
 }
 
-impl Said {
-    /// k, where it is nearly known.
-    fn given(&self, nearly: f64) -> f64 {
+impl LineEstimate {
+    /// The estimate of k with the quadratic term evaluated at an approximate k.
+    fn at_corner(&self, nearly: f64) -> f64 {
         self.corner * (1.0 - 3.0 * nearly * self.place)
     }
-}
 
-impl Said {
     fn by(gradients: &Gradients, segment: &Segment, centre: DVec2, diagonal: f64) -> Option<Self> {
         let along = (segment.b - segment.a).try_normalize()?;
         let distance = along.perp().dot(0.5 * (segment.a + segment.b) - centre);
@@ -80,37 +82,38 @@ impl Said {
     }
 }
 
-/// Where the edge is, along a segment and across it, pixel by pixel: where the gradient that points its way is steepest, which
-/// other edges nearby do not draw to their side.
+/// Positions of the edge along and across a segment, one per pixel of length: the maximum of the gradient component
+/// that agrees with the edge's polarity, so that neighbouring edges do not bias it.
 fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
     let length = segment.length();
-    if length < SHORTEST {
+    if length < MIN_LENGTH {
         return None;
     }
     let along = (segment.b - segment.a) / length;
     let across = along.perp();
-    let steps = (length - 2.0 * END) as usize;
-    let profile = |t: f64| (-ACROSS..=ACROSS).map(move |o| segment.a + along * t + across * f64::from(o));
-    // The sense of the edge, from its middle.
-    let sense: f64 = (0..steps).map(|i| slope(gradients, segment.a + along * (END + i as f64), across)).sum();
+    let steps = (length - 2.0 * TRIM) as usize;
+    let profile = |t: f64| (-SEARCH_WIDTH..=SEARCH_WIDTH).map(move |o| segment.a + along * t + across * f64::from(o));
+    // Determine the polarity of the edge from the gradient along its middle.
+    let sense: f64 = (0..steps).map(|i| slope(gradients, segment.a + along * (TRIM + i as f64), across)).sum();
     let mut places = Vec::new();
-    for t in (0..steps).map(|i| END + i as f64) {
+    for t in (0..steps).map(|i| TRIM + i as f64) {
         let slopes: Vec<f64> = profile(t).map(|at| slope(gradients, at, across) * sense.signum()).collect();
         let Some(best) = (0..slopes.len()).max_by(|&i, &k| slopes[i].total_cmp(&slopes[k])) else { continue };
-        // An edge that leaves the strip, or is none, says nothing; between pixels it is at the top of a parabola.
+        // Skip positions where the edge leaves the strip or has the wrong polarity; refine to sub-pixel precision by a
+        // parabola.
         let inside = best > 0 && best + 1 < slopes.len() && slopes[best] > 0.0;
         if inside
             && let [a, b, c] = slopes[best - 1..=best + 1]
             && a + c < 2.0 * b
         {
-            let offset = best as f64 - f64::from(ACROSS) + 0.5 * (a - c) / (a - 2.0 * b + c);
+            let offset = best as f64 - f64::from(SEARCH_WIDTH) + 0.5 * (a - c) / (a - 2.0 * b + c);
             places.push(DVec2::new(t, offset));
         }
     }
-    (places.len() as f64 >= FOUND * steps as f64).then_some(places)
+    (places.len() as f64 >= MIN_COVERAGE * steps as f64).then_some(places)
 }
 
-/// Derivative of the encoded luma along a direction, between pixels.
+/// Directional derivative of the encoded luma, interpolated between pixels.
 fn slope(gradients: &Gradients, at: DVec2, direction: DVec2) -> f64 {
     let at = at - 0.5;
     let cell = at.floor();
@@ -129,8 +132,8 @@ fn slope(gradients: &Gradients, at: DVec2, direction: DVec2) -> f64 {
     row(first) * (1.0 - f.y) + row(first + gradients.width) * f.y
 }
 
-/// The coefficient of the second power in the parabola through some points, and its variance: by polynomials that are
-/// orthogonal on them.
+/// The quadratic coefficient of the least-squares parabola through the points, and its variance, by polynomials that
+/// are orthogonal on the points.
 fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     let count = points.len() as f64;
     if points.len() < 8 {
@@ -147,41 +150,46 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     let ((tilt, _), (bend, square)) = (part(&first), part(&second));
     let residual = |p: &DVec2| p.y - mean.y - tilt * first(p) - bend * second(p);
     let noise = points.iter().map(|p| residual(p).powi(2)).sum::<f64>() / (count - 3.0);
-    // Neighbours share the Gaussian that the picture was smoothed with, whose autocorrelation is this long.
+    // Neighbouring samples are correlated by the Gaussian smoothing; this is its correlation length.
     let shared = 2.0 * std::f64::consts::PI.sqrt() * f64::from(SIGMA);
-    let variance = (noise + FLOOR * FLOOR) * shared / square;
-    (noise < RAGGED * RAGGED && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
+    let variance = (noise + POSITION_FLOOR * POSITION_FLOOR) * shared / square;
+    (noise < MAX_RESIDUAL * MAX_RESIDUAL && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
 }
 
-/// Rounds of the M-estimate: what agrees with what has been found finds it anew.
+/// Iterations of the M-estimate.
 const ROUNDS: usize = 20;
 
-/// The k that most lines agree on: an M-estimate from their weighted median.
-fn combine(said: &[Said]) -> Option<Distortion> {
-    if said.len() < FEWEST {
+/// The value of k that most lines support: an M-estimate started at the weighted median.
+fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
+    if estimates.len() < MIN_LINES {
         return None;
     }
-    let median = weighted_median(said.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
+    let median = weighted_median(estimates.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
     let start = Distortion { corner: median, error: f64::INFINITY, lines: 0 };
-    let found = (0..ROUNDS).fold(start, |found, _| agreed(said, found.corner));
-    (found.lines >= FEWEST && found.corner.is_finite() && found.error.is_finite()).then_some(found)
+    let found = (0..ROUNDS).fold(start, |found, _| m_estimate_step(estimates, found.corner));
+    (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
 }
 
-/// The mean of the lines that agree with a k about as well as most do, with the error that their disagreement tells.
-fn agreed(said: &[Said], corner: f64) -> Distortion {
-    let off = said.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
-    let limit = LIMIT * (1.4826 * weighted_median(off)).max(1.0);
+/// One step of the M-estimate: the mean of the lines within the biweight limit around `corner`, with an error derived
+/// from their scatter.
+fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
+    let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
+    let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off)).max(1.0);
     let (mut weights, mut sum, mut squares, mut lines) = (0.0, 0.0, 0.0, 0);
-    for s in said {
-        let off = s.given(corner) - corner;
+    for s in estimates {
+        let off = s.at_corner(corner) - corner;
         let residual = off * s.weight.sqrt() / limit;
         let agreement = (1.0 - residual * residual).max(0.0).powi(2);
         weights += agreement * s.weight;
-        sum += agreement * s.weight * s.given(corner);
+        sum += agreement * s.weight * s.at_corner(corner);
         squares += (agreement * s.weight * off).powi(2).max(agreement.powi(2) * s.weight);
         lines += usize::from(agreement > 0.0);
     }
-    Distortion { corner: sum / weights, error: ((TWINS * squares).sqrt() / weights).hypot(MODEL), lines }
+    Distortion {
+        corner: sum / weights,
+        error: ((SEGMENTS_PER_LINE * squares).sqrt() / weights).hypot(MODEL_ERROR),
+        lines,
+    }
 }
 
 fn weighted_median(mut values: Vec<(f64, f64)>) -> f64 {
@@ -205,7 +213,7 @@ mod tests {
     use crate::job::Monitor;
     use crate::rng::Rng;
 
-    /// A boarded wall seen aslant through a lens, its lower boards across, with noise.
+    /// A boarded wall seen obliquely through a distorting lens, with noise; its lower boards run horizontally.
     fn photo(k: f64, [width, height]: [usize; 2], seed: u64) -> Image {
         let centre = 0.5 * DVec2::new(width as f64, height as f64);
         let diagonal = centre.length();

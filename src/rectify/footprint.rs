@@ -1,29 +1,29 @@
-//! What the pixels of a run see of the source: where, and how much of it.
+//! Footprints of a run of pixels: the position and extent of each pixel in the source.
 
-/// Neighbouring pixels of a row that are worked on together.
+/// Number of neighbouring pixels of a row that are processed together.
 pub const RUN: usize = 128;
 
-/// Neighbours that share the footprint in their middle, which changes more slowly than the place.
+/// Number of neighbouring pixels that share the shape of the footprint at their middle; the shape changes more slowly
+/// than the position.
 const SHARED: usize = 8;
 
-/// Derivatives beyond it are those of pixels on the horizon.
-const STEEPEST: f32 = 1e8;
+/// Bound of the derivatives; larger ones occur only at the horizon [rounding].
+const MAX_DERIVATIVE: f32 = 1e8;
 
-/// The places in the source that the pixels of a run show, each with its footprint: the sheared rectangle that has the
-/// same second moments as the parallelogram that the pixel covers, in every direction at least as wide as a pixel of
-/// the source.
+/// Source positions of a run of pixels, each with its footprint: the sheared rectangle with the same second moments as
+/// the parallelogram that the pixel covers, widened to at least one source pixel in every direction.
 pub struct Footprints {
-    /// Whether the place is inside the source and in front of the camera.
+    /// Whether the position lies inside the source and in front of the camera.
     pub is_seen: [bool; RUN],
     pub x: [f64; RUN],
     pub y: [f64; RUN],
-    /// Length of the sides along x.
+    /// Length of the sides parallel to x.
     pub width: [f32; RUN],
-    /// Their distance along y.
+    /// Distance between these sides along y.
     pub height: [f32; RUN],
-    /// How far the middle moves along x to a pixel along y.
+    /// Shift of the centre along x per pixel along y.
     pub shear: [f32; RUN],
-    /// Square of the longest axis of the pixel's ellipse, before it was made at least 1.
+    /// Squared major axis of the pixel's ellipse, before it is widened to at least 1.
     pub longest: [f32; RUN],
 }
 
@@ -39,8 +39,8 @@ impl Footprints {
     };
 }
 
-/// The footprints of the pixels from `first` on of a row. `map` leads to the source, by columns; `front` is the sign
-/// of the third coordinate in front of the camera, `size` that of the source.
+/// Computes the footprints of the pixels of a row from `first` on. `map` is the homography to the source, column by
+/// column; `front` is the sign of the third coordinate in front of the camera; `size` is the size of the source.
 #[inline(always)]
 pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usize, to: &mut Footprints) {
     let y = row as f64 + 0.5;
@@ -60,8 +60,8 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
         let x = first as f64 + (i * SHARED + SHARED / 2) as f64;
         let per_z = 1.0 / (map[2] * x + from_z);
         let (qx, qy) = ((map[0] * x + from_x) * per_z, (map[1] * x + from_y) * per_z);
-        // The Jacobian J, and the squares of the axes of its ellipse: the eigenvalues of J Jᵀ.
-        let part = |v: f64| ((v * per_z) as f32).max(-STEEPEST).min(STEEPEST);
+        // Compute the Jacobian J and the squared axes of its ellipse, which are the eigenvalues of J Jᵀ.
+        let part = |v: f64| ((v * per_z) as f32).max(-MAX_DERIVATIVE).min(MAX_DERIVATIVE);
         let (a, b) = (part(map[0] - qx * map[2]), part(map[3] - qx * map[5]));
         let (c, d) = (part(map[1] - qy * map[2]), part(map[4] - qy * map[5]));
         let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);
@@ -70,7 +70,7 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
         let longest = 0.5 * (xx + yy) + radius;
         let shortest = determinant * determinant / longest.max(f32::MIN_POSITIVE);
 
-        // Neither below 1: J Jᵀ is scaled and a multiple of the identity added.
+        // Widen both axes to at least 1: scale J Jᵀ and add a multiple of the identity.
         let (high, low) = (longest.max(1.0), shortest.max(1.0));
         let scale = if shortest >= 1.0 {
             1.0
@@ -90,8 +90,8 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
     }
 }
 
-/// The shortest side of the footprints that are seen, the greatest width and the greatest height. None is negative,
-/// so that their bits compare as they do, and unlike them on vectors.
+/// The shortest side, the greatest width and the greatest height of the visible footprints. All sides are
+/// non-negative, so their bit patterns compare as the values do, and integer comparisons vectorise.
 #[inline(always)]
 pub fn extent(of: &Footprints) -> Option<[f32; 3]> {
     let (mut shortest, mut widest, mut highest) = (u32::MAX, 0, 0);

@@ -1,24 +1,24 @@
-//! Weighted sums of the samples about the pixels of a run.
+//! Weighted sums of the taps of a run of pixels.
 
 use super::footprint::RUN;
-use super::four::{Four, One, Three};
+use super::lanes::{GreyLanes, PixelLanes, RgbLanes};
 use super::taps::{TAPS, Taps};
 use crate::image::Image;
 use crate::simd::Level;
 use glam::Vec4;
 
-/// Up to three channels of each pixel; the lanes beyond mean nothing.
+/// Up to three channels of each pixel; the remaining lanes are undefined.
 pub type Sums = [Vec4; RUN];
 
-/// Adds the samples of all channels of an image of one or three, else of one of them.
+/// Adds the weighted taps of all channels if the image has one or three, else of the given channel.
 #[inline(always)]
 pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], to: &mut Sums) {
     match (source.channels, level) {
-        (1, _) => gather::<One>(source, taps, to),
-        // SAFETY: the processor has the instructions of its level.
+        (1, _) => gather::<GreyLanes>(source, taps, to),
+        // SAFETY: `level` is a level that the processor supports.
         #[cfg(target_arch = "x86_64")]
         (3, Level::Avx512) => unsafe { gather_wide(source, taps, to) },
-        (3, _) => gather::<Three>(source, taps, to),
+        (3, _) => gather::<RgbLanes>(source, taps, to),
         _ => {
             for i in (0..RUN).filter(|&i| is_seen[i]) {
                 one_by_one(source, channel..channel + 1, taps, i, to);
@@ -36,12 +36,12 @@ pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
 fn gather_wide(source: &Image, taps: &Taps, to: &mut Sums) {
-    gather::<super::four::Wide>(source, taps, to);
+    gather::<super::lanes::RgbLanesAvx512>(source, taps, to);
 }
 
-/// The pixels all of whose samples lie inside the source.
+/// Processes the pixels whose taps all lie inside the source.
 #[inline(always)]
-fn gather<F: Four>(source: &Image, taps: &Taps, to: &mut Sums) {
+fn gather<F: PixelLanes>(source: &Image, taps: &Taps, to: &mut Sums) {
     match (taps.is_sharp, taps.is_sheared) {
         (true, true) => gather_as::<F>(source, taps, true, true, to),
         (true, false) => gather_as::<F>(source, taps, true, false, to),
@@ -50,17 +50,18 @@ fn gather<F: Four>(source: &Image, taps: &Taps, to: &mut Sums) {
     }
 }
 
-// Loops without closures: those are functions of their own, which the compiler will not inline where it does not know yet
-// which instructions there are.
+// Plain loops without closures: a closure is a separate function, which the compiler does not inline into code
+// compiled for other instruction sets.
 #[inline(always)]
-fn gather_as<F: Four>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: bool, to: &mut Sums) {
+fn gather_as<F: PixelLanes>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: bool, to: &mut Sums) {
     let (samples, stride) = (&source.data[..], source.row_len());
     assert!(source.channels == F::CHANNELS && samples.len() == source.height * stride);
     for i in 0..RUN {
         if !taps.is_inside[i] {
             continue;
         }
-        // Maps seldom turn much: the next row's pixel lies below, and the processor cannot foresee that.
+        // Prefetch the pixel below in the next row: maps seldom rotate much, and the hardware prefetcher does not
+        // predict this.
         let below = samples.as_ptr().wrapping_add(taps.start[0][i] + TAPS * stride);
         F::prefetch(below);
         F::prefetch(below.wrapping_add(stride));
@@ -69,7 +70,7 @@ fn gather_as<F: Four>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: b
         for j in 0..TAPS {
             let start = if is_sheared { taps.start[j][i] } else { taps.start[0][i] + j * stride };
             debug_assert!(start + F::READ <= samples.len());
-            // SAFETY: that is what `is_inside` says, of an image of so many channels.
+            // SAFETY: `is_inside` guarantees that all reads of an image with this number of channels stay inside it.
             let row = unsafe { F::load(samples.as_ptr().add(start)) };
             let weights = if is_sheared { F::spread(&taps.across[j][i]) } else { F::splat(taps.down[i][j]) };
             let weighed = row.mul(weights);
@@ -82,18 +83,18 @@ fn gather_as<F: Four>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: b
             sum = sum.mul(F::spread(&taps.across[0][i]));
         }
         let value = sum.sum();
-        to[i] += if is_sharp { within(value, low.least(), high.greatest()) } else { value };
+        to[i] += if is_sharp { within(value, low.min_over_pixels(), high.max_over_pixels()) } else { value };
     }
 }
 
-/// `value` within the range of the samples, so that a lamp throws no ring of negative light; NaN stays.
+/// Clamps `value` to the range of the samples, so that a lamp has no dark ring of negative light; NaN stays NaN.
 #[inline(always)]
 fn within(value: Vec4, low: Vec4, high: Vec4) -> Vec4 {
     let raised = Vec4::select(value.cmplt(low), low, value);
     Vec4::select(raised.cmpgt(high), high, raised)
 }
 
-/// Some channels of pixel `i`, the border of the image extended.
+/// Processes some channels of pixel `i`, extending the border of the image.
 #[cold]
 #[inline(never)]
 fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: usize, to: &mut Sums) {
@@ -113,17 +114,17 @@ fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: 
     }
 }
 
-/// Writes the means of `parts` sums: three channels, or one of any number.
+/// Writes the mean over `parts` sums: three channels, or a single one of any number.
 #[inline(always)]
 pub fn store(sums: &Sums, parts: usize, channels: usize, channel: usize, mut out: &mut [f32]) {
     let share = 1.0 / parts as f32;
     if channels == 3 {
         for sum in &sums[..out.len() / 3] {
-            let four = (*sum * share).to_array();
-            // The next pixel takes the place of the fourth.
+            let lanes = (*sum * share).to_array();
+            // The fourth lane is overwritten by the next pixel.
             match out.first_chunk_mut() {
-                Some(place) => *place = four,
-                None => out.copy_from_slice(&four[..3]),
+                Some(place) => *place = lanes,
+                None => out.copy_from_slice(&lanes[..3]),
             }
             out = &mut out[3..];
         }

@@ -1,20 +1,23 @@
-//! Image gradients: luma in a perceptual encoding, a Gaussian, Scharr derivatives.
+//! Image gradients: luma in a perceptual encoding, Gaussian smoothing, Scharr derivatives.
 
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, colour, pyramid};
 use crate::job::Job;
 
-/// Standard deviation of the Gaussian in pixels: enough for JPEG blocks and sensor noise, little enough for thin lines.
+/// Standard deviation of the Gaussian in pixels: large enough to suppress JPEG blocks and sensor noise, small enough
+/// to keep thin lines [bench lines].
 pub const SIGMA: f32 = 1.2;
 
-/// Offset inside the square root that encodes luma: it ends the steep slope near black as sRGB's linear toe does.
+/// Offset inside the square root that encodes luma: it limits the slope near black, as the linear toe of sRGB does
+/// [origin not recorded].
 const TOE: f32 = 0.003;
 
-/// Largest encoded luminance over white. What is brighter is a lamp, whose outline is enough.
+/// Upper bound of encoded luminance relative to white. Brighter pixels are lamps; only their outlines matter here
+/// [origin not recorded].
 const CLIP: f32 = 4.0;
 
-/// Gradients of a photo; pixels near a value that is not finite have none.
+/// Gradients of a photo; they are zero near pixels that are not finite.
 pub struct Gradients {
     pub width: usize,
     pub height: usize,
@@ -23,7 +26,8 @@ pub struct Gradients {
     pub magnitude: Vec<f32>,
 }
 
-/// Luma encoded with a square root, the photo's white (95th percentile) being 1; NaN where the photo is not finite.
+/// Luma encoded with a square root and scaled so that the photo's white (95th percentile) is 1; NaN where the photo is
+/// not finite.
 pub fn encoded_luma(photo: &Image, job: Job) -> Result<Image> {
     let mut luma = Image::new(photo.width, photo.height, 1)?;
     exec::for_rows(&mut luma.data, photo.width, job, |y, row| {
@@ -31,7 +35,7 @@ pub fn encoded_luma(photo: &Image, job: Job) -> Result<Image> {
             *out = colour::luminance(photo.rgb(x, y));
         }
     })?;
-    // White from a subset of the pixels, spread over the whole photo.
+    // Estimate white from a subset of the pixels, spread over the whole photo.
     let step = (luma.data.len() / 65_536).max(1);
     let mut subset: Vec<f32> = luma.data.iter().step_by(step).copied().filter(|v| v.is_finite() && *v > 0.0).collect();
     let scale = if subset.is_empty() {
@@ -58,7 +62,7 @@ pub fn gradients(luma: &Image, job: Job) -> Result<Gradients> {
         }
         let (above, here, below) = (smooth.row(y - 1), smooth.row(y), smooth.row(y + 1));
         for x in 1..width - 1 {
-            // Scharr's kernel: the 3 × 3 derivative whose direction is most nearly isotropic.
+            // Scharr's kernel: the 3 × 3 derivative kernel with the most isotropic direction.
             let (l, r) = (x - 1, x + 1);
             let dx = 3.0 * (above[r] - above[l] + below[r] - below[l]) + 10.0 * (here[r] - here[l]);
             let dy = 3.0 * (below[l] - above[l] + below[r] - above[r]) + 10.0 * (below[x] - above[x]);

@@ -1,5 +1,6 @@
-//! The paper's lines (§5.1): a Hough transform in which each edge pixel votes only for the lines within a few degrees of
-//! the one across its gradient, the maxima of the accumulator, and the pieces of each line that edges cover.
+//! The paper's line detector (§5.1): a Hough transform in which each edge pixel votes only for lines perpendicular to
+//! its gradient, within a few degrees. The maxima of the accumulator are the lines; each is cut into the pieces that
+//! edge pixels cover.
 
 use super::gradient::Gradients;
 use crate::error::Result;
@@ -9,19 +10,21 @@ use crate::job::Job;
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Directions of the accumulator over half a turn: half a degree each.
+/// Angles of the accumulator over half a turn: one every half degree.
 const ANGLES: usize = 360;
 
-/// Least votes of a maximum, as a share of the image's shorter side, and the most maxima taken.
-const LEAST_VOTES: f64 = 0.06;
-const MOST_LINES: usize = 600;
+/// Minimum votes of a maximum, as a share of the image's shorter side, and the maximum number of lines returned
+/// [origin not recorded].
+const MIN_VOTES: f64 = 0.06;
+const MAX_LINES: usize = 600;
 
-/// Cells around a maximum in which no other counts: angle and distance.
-const APART: (usize, usize) = (4, 4);
+/// Half-size, in angle and distance cells, of the neighbourhood for non-maximum suppression.
+const SUPPRESSED: (usize, usize) = (4, 4);
 
-/// Distance of an edge pixel from its line, gap bridged in a piece, least length of a piece, in pixels.
-const REACH: f64 = 1.5;
-const GAP: f64 = 6.0;
+/// Maximum distance of an edge pixel from its line, and maximum gap bridged within a piece, both in pixels [origin not
+/// recorded].
+const MAX_DISTANCE: f64 = 1.5;
+const MAX_GAP: f64 = 6.0;
 
 /// A line `cos(theta) x + sin(theta) y = rho` about the image centre, `theta` in `[0, pi)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +38,8 @@ pub struct Peak {
 pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Result<Vec<Peak>> {
     let (width, height) = (gradients.width, gradients.height);
     let centre = DVec2::new(width as f64, height as f64) / 2.0;
-    let reach = centre.length().ceil() as usize + 1;
-    let rows = 2 * reach + 1;
+    let max_rho = centre.length().ceil() as usize + 1;
+    let rows = 2 * max_rho + 1;
     let mut votes = try_vec(ANGLES * rows, 0u32)?;
     let table: Vec<DVec2> = (0..ANGLES).map(|k| DVec2::from_angle(k as f64 * PI / ANGLES as f64)).collect();
     let half_band = (band / PI * ANGLES as f64).round() as isize;
@@ -49,32 +52,32 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
         let p = position(width, i) - centre;
         for k in direction - half_band..=direction + half_band {
             let k = k.rem_euclid(ANGLES as isize) as usize;
-            let rho = table[k].dot(p).round() as isize + reach as isize;
+            let rho = table[k].dot(p).round() as isize + max_rho as isize;
             votes[k * rows + rho as usize] += 1;
         }
     }
 
-    // Maxima over their neighbourhood; the accumulator closes on itself with the sign of rho changed.
-    let least = ((LEAST_VOTES * width.min(height) as f64) as u32).max(8);
+    // Find the maxima over their neighbourhoods. The accumulator wraps around in angle with the sign of rho flipped.
+    let min_votes = ((MIN_VOTES * width.min(height) as f64) as u32).max(8);
     let mut found: Vec<(u32, usize, usize)> = Vec::new();
     for k in 0..ANGLES {
         job.check()?;
         for r in 0..rows {
             let v = votes[k * rows + r];
-            if v < least {
+            if v < min_votes {
                 continue;
             }
-            let is_maximum = (-(APART.0 as isize)..=APART.0 as isize).all(|dk| {
+            let is_maximum = (-(SUPPRESSED.0 as isize)..=SUPPRESSED.0 as isize).all(|dk| {
                 let nk = k as isize + dk;
                 let mirrored = nk < 0 || nk >= ANGLES as isize;
                 let nk = nk.rem_euclid(ANGLES as isize) as usize;
-                (-(APART.1 as isize)..=APART.1 as isize).all(|dr| {
+                (-(SUPPRESSED.1 as isize)..=SUPPRESSED.1 as isize).all(|dr| {
                     let nr = r as isize + dr;
                     let nr = if mirrored { rows as isize - 1 - nr } else { nr };
                     let Some(&other) = (0..rows as isize).contains(&nr).then(|| &votes[nk * rows + nr as usize]) else {
                         return true;
                     };
-                    // Of equals the first in memory wins.
+                    // Break ties in favour of the first in memory.
                     other < v || (other == v && nk * rows + nr as usize >= k * rows + r)
                 })
             });
@@ -84,21 +87,21 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
         }
     }
     found.sort_by(|a, b| b.0.cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    found.truncate(MOST_LINES);
+    found.truncate(MAX_LINES);
     let peak = |(votes, k, r): (u32, usize, usize)| Peak {
-        rho: r as f64 - reach as f64,
+        rho: r as f64 - max_rho as f64,
         theta: k as f64 * PI / ANGLES as f64,
         votes,
     };
     Ok(found.into_iter().map(peak).collect())
 }
 
-/// The pieces of the lines that edge pixels of a like gradient cover, each refitted by least squares. An edge pixel
-/// belongs to the strongest line that claims it.
+/// The pieces of the lines that edge pixels of similar gradient direction cover, each refitted by least squares. An
+/// edge pixel belongs to the strongest line that covers it.
 pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, job: Job) -> Result<Vec<Segment>> {
     let centre = DVec2::new(gradients.width as f64, gradients.height as f64) / 2.0;
-    let least_agreement = (2.0 * band).max(5f64.to_radians()).cos();
-    let least_length = (0.02 * centre.length()).max(8.0);
+    let min_agreement = (2.0 * band).max(5f64.to_radians()).cos();
+    let min_length = (0.02 * centre.length()).max(8.0);
     let mut taken = try_vec(edges.len(), false)?;
     let mut segments = Vec::new();
     for (done, peak) in peaks.iter().enumerate() {
@@ -108,20 +111,20 @@ pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, j
         let mut support: Vec<(f64, usize)> = Vec::new();
         for (slot, &i) in edges.iter().enumerate().filter(|(slot, _)| !taken[*slot]) {
             let p = position(gradients.width, i) - centre;
-            if (normal.dot(p) - peak.rho).abs() > REACH {
+            if (normal.dot(p) - peak.rho).abs() > MAX_DISTANCE {
                 continue;
             }
             let [dx, dy] = gradients.derivative[i as usize];
             let gradient = DVec2::new(f64::from(dx), f64::from(dy)).normalize();
-            if normal.dot(gradient).abs() >= least_agreement {
+            if normal.dot(gradient).abs() >= min_agreement {
                 support.push((normal.perp_dot(p), slot));
             }
         }
         support.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for run in support.chunk_by(|a, b| b.0 - a.0 <= GAP) {
+        for run in support.chunk_by(|a, b| b.0 - a.0 <= MAX_GAP) {
             let length = run[run.len() - 1].0 - run[0].0;
-            // At least two thirds of a piece are edge.
-            if length < least_length || (run.len() as f64) < length * 2.0 / 3.0 {
+            // Require edge pixels along at least two thirds of a piece.
+            if length < min_length || (run.len() as f64) < length * 2.0 / 3.0 {
                 continue;
             }
             let points: Vec<DVec2> = run.iter().map(|&(_, slot)| refined_position(gradients, edges[slot])).collect();
@@ -132,7 +135,7 @@ pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, j
     Ok(segments)
 }
 
-/// The whole visible part of each line, as the paper has it.
+/// The whole visible part of each line, as in the paper.
 pub fn whole_lines(gradients: &Gradients, peaks: &[Peak]) -> Vec<Segment> {
     let size = DVec2::new(gradients.width as f64, gradients.height as f64);
     let line = |peak: &Peak| {
@@ -147,7 +150,8 @@ fn position(width: usize, index: u32) -> DVec2 {
     DVec2::new((index as usize % width) as f64 + 0.5, (index as usize / width) as f64 + 0.5)
 }
 
-/// An edge pixel moved along the nearer axis of its gradient to the vertex of a parabola through three magnitudes.
+/// Sub-pixel position of an edge pixel: the vertex of the parabola through three magnitudes along the image axis
+/// nearest to its gradient.
 fn refined_position(gradients: &Gradients, index: u32) -> DVec2 {
     let i = index as usize;
     let [dx, dy] = gradients.derivative[i];

@@ -1,7 +1,8 @@
-//! Three orthogonal vanishing points at once, with a focal length that may be unknown: candidates from pairs of lines,
-//! triplets from pairs of candidates and from a candidate and a line, a joint refinement of rotation and focal length.
+//! Three orthogonal vanishing points and a possibly unknown focal length, jointly: candidate points from pairs of
+//! lines, triplets from pairs of candidates or from a candidate and a line, then a joint refinement of rotation and
+//! focal length.
 
-use super::sphere::{Evidence, project, refine, unproject};
+use super::sphere::{WeightedLine, project, refine, unproject};
 use crate::error::Result;
 use crate::exec;
 use crate::geometry::linear;
@@ -9,28 +10,31 @@ use crate::job::Job;
 use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Focal lengths tried where none follows from the candidates, in half image sides: 20 to 110 degrees of view.
+/// Focal lengths tried where the candidates imply none, in half image sides: 20 to 110 degrees of view [origin not
+/// recorded].
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// The focal length expected when nothing is known (0.85 of the width), and the deviation of its logarithm.
+/// Prior of the focal length in half image sides (0.85 of the width), and the standard deviation of its logarithm
+/// [origin not recorded].
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
-/// Share of all evidence that a focal length one deviation off the usual must win back.
+/// Share of the total weight that a focal length one standard deviation from the prior must gain to be preferred
+/// [origin not recorded].
 const FOCAL_COST: f64 = 0.004;
 
-/// Pairs of lines drawn, candidates kept, lines paired with a candidate, and triplets refined.
+/// Pairs of lines drawn, candidates kept, lines paired with a candidate, triplets rescored, and triplets refined.
 const PAIRS: usize = 800;
 const CANDIDATES: usize = 8;
 const PARTNERS: usize = 40;
 const SEMIFINALISTS: usize = 256;
 const FINALISTS: usize = 12;
 
-/// Longest lines that hypotheses and semifinalists are scored on.
+/// Number of longest lines on which hypotheses (`FEW`) and semifinalists (`MANY`) are scored.
 const FEW: usize = 64;
 const MANY: usize = 200;
 
-/// An orthogonal triplet: camera-space directions as columns, the focal length in units of the frame.
+/// An orthogonal triplet: camera-space directions as columns, and the focal length in frame units.
 #[derive(Clone, Copy, Debug)]
 pub struct Triplet {
     pub axes: DMat3,
@@ -38,11 +42,11 @@ pub struct Triplet {
     pub score: f64,
 }
 
-/// The best triplet; `None` if no two lines meet in a point that can be told from them. Lines are expected longest first.
-pub fn search(lines: &[Evidence], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
+/// The best triplet; `None` if no two distinct lines intersect. Lines must be sorted by falling length.
+pub fn search(lines: &[WeightedLine], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
     let candidates = candidates(lines, focal.unwrap_or(USUAL_FOCAL), CANDIDATES, seed, job.part(0.0, 0.3))?;
     let hypotheses = hypotheses(lines, &candidates, focal);
-    // Score all on a few lines, the better ones on more, the best on all lines after refinement.
+    // Score all hypotheses on a few lines, the better ones on more, and after refinement the best on all lines.
     let few = ranked(lines, FEW, hypotheses, job.part(0.3, 0.6))?;
     let ranked = ranked(lines, MANY, few.into_iter().take(SEMIFINALISTS).collect(), job.part(0.6, 0.7))?;
     let mut finalists: Vec<Triplet> = Vec::new();
@@ -58,8 +62,8 @@ pub fn search(lines: &[Evidence], focal: Option<f64>, seed: u64, job: Job) -> Re
     Ok(refined.into_iter().max_by(|a, b| a.score.total_cmp(&b.score)))
 }
 
-/// Triplets by falling score on the longest lines.
-fn ranked(lines: &[Evidence], longest: usize, triplets: Vec<Triplet>, job: Job) -> Result<Vec<Triplet>> {
+/// Sorts triplets by falling score on the longest lines.
+fn ranked(lines: &[WeightedLine], longest: usize, triplets: Vec<Triplet>, job: Job) -> Result<Vec<Triplet>> {
     let longest = &lines[..lines.len().min(longest)];
     let scores = exec::map(triplets.len(), job, |i| score(longest, &triplets[i]))?;
     let mut ranked: Vec<(f64, Triplet)> = scores.into_iter().zip(triplets).collect();
@@ -67,14 +71,14 @@ fn ranked(lines: &[Evidence], longest: usize, triplets: Vec<Triplet>, job: Job) 
     Ok(ranked.into_iter().map(|(_, triplet)| triplet).collect())
 }
 
-/// The direction that most lines agree with.
-pub fn strongest(lines: &[Evidence], focal: f64, seed: u64, job: Job) -> Result<Option<DVec3>> {
+/// The direction that agrees with the largest weight of lines.
+pub fn strongest(lines: &[WeightedLine], focal: f64, seed: u64, job: Job) -> Result<Option<DVec3>> {
     Ok(candidates(lines, focal, 1, seed, job)?.first().map(|&p| unproject(p, focal)))
 }
 
-/// Single vanishing points of pairs of lines, each refined, the best one first; each next one is judged mainly by the
-/// lines that those before it leave unexplained.
-fn candidates(lines: &[Evidence], focal: f64, count: usize, seed: u64, job: Job) -> Result<Vec<DVec3>> {
+/// Vanishing points of single pairs of lines, each refined, best first. Each further point is scored mainly on the
+/// lines that the points before it leave unexplained.
+fn candidates(lines: &[WeightedLine], focal: f64, count: usize, seed: u64, job: Job) -> Result<Vec<DVec3>> {
     let cumulative: Vec<f64> = lines
         .iter()
         .scan(0.0, |sum, e| {
@@ -97,7 +101,7 @@ fn candidates(lines: &[Evidence], focal: f64, count: usize, seed: u64, job: Job)
     })?;
     let mut weights: Vec<f32> = lines.iter().map(|e| e.weight as f32).collect();
     let mut found: Vec<DVec3> = Vec::new();
-    // Weights only fall, so an old value bounds the present one: most points need no second look.
+    // Weights only decrease, so an earlier score is an upper bound: most points need not be scored again.
     let mut bounds = vec![f32::INFINITY; points.len()];
     for _ in 0..count {
         let mut is_fresh = vec![false; points.len()];
@@ -120,8 +124,8 @@ fn candidates(lines: &[Evidence], focal: f64, count: usize, seed: u64, job: Job)
     Ok(found)
 }
 
-/// Triplets worth a look.
-fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> Vec<Triplet> {
+/// Generates the triplets to be scored.
+fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) -> Vec<Triplet> {
     let mut out = Vec::new();
     let given = focal.map(|f| [f]);
     let focals: &[f64] = given.as_ref().map_or(&FOCALS, |f| f);
@@ -132,7 +136,7 @@ fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> V
         }
     };
     for (i, &p) in candidates.iter().enumerate() {
-        // Two candidates: orthogonality gives the focal length, unless one is nearly at infinity.
+        // Two candidates: their orthogonality determines the focal length, unless one is nearly at infinity.
         for &q in &candidates[i + 1..] {
             let square = -(p.x * q.x + p.y * q.y) / (p.z * q.z);
             let implied = square.max(0.0).sqrt();
@@ -146,7 +150,7 @@ fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> V
                 }
             }
         }
-        // A candidate by itself: all lines may run one way.
+        // A single candidate, in case all lines are parallel.
         let alone = unproject(p, focals[focals.len() / 2]);
         push(alone, alone.any_orthonormal_vector(), focals[focals.len() / 2]);
         // A candidate and a long line that does not run towards it.
@@ -161,8 +165,9 @@ fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> V
     out
 }
 
-/// Evidence that the triplet explains, less the cost of an unusual focal length, as a share of all evidence.
-fn score(lines: &[Evidence], triplet: &Triplet) -> f64 {
+/// The weight of the lines that the triplet explains as a share of all weight, minus the penalty of the focal-length
+/// prior.
+fn score(lines: &[WeightedLine], triplet: &Triplet) -> f64 {
     let points = [0, 1, 2].map(|k| project(triplet.axes.col(k), triplet.focal));
     let (mut explained, mut total) = (0.0, 0.0);
     for e in lines {
@@ -178,8 +183,8 @@ fn similar(a: &Triplet, b: &Triplet) -> bool {
     (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < 0.1
 }
 
-/// Gauss-Newton over a rotation vector and the logarithm of the focal length, robustly reweighted.
-fn refine_jointly(lines: &[Evidence], start: Triplet, focal: Option<f64>) -> Triplet {
+/// Joint Gauss-Newton refinement of a rotation vector and the logarithm of the focal length, iteratively reweighted.
+fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) -> Triplet {
     let mut best = Triplet { score: score(lines, &start), ..start };
     let mut current = best;
     for _ in 0..8 {
@@ -193,7 +198,7 @@ fn refine_jointly(lines: &[Evidence], start: Triplet, focal: Option<f64>) -> Tri
             else {
                 continue;
             };
-            // Derivative of the sine: of l . p over the distance of p, p = (dx, dy, dz / f).
+            // The sine is l · p divided by the distance of p, with p = (dx, dy, dz / f); take its derivative.
             let (l, d, p) = (e.line.line, current.axes.col(k), points[k]);
             let distance = (p.truncate() - e.line.centre * p.z).length();
             if distance < 1e-9 {
@@ -213,7 +218,7 @@ fn refine_jointly(lines: &[Evidence], start: Triplet, focal: Option<f64>) -> Tri
                 right[r] -= weight * derivative[r] * sine;
             }
         }
-        // The usual focal length is a weak observation; a given one is firm.
+        // Add the prior of the focal length as a weak observation, or a given focal length as a firm one.
         let firmness = if focal.is_some() { 1e12 } else { 0.01 / (USUAL_SPREAD * USUAL_SPREAD) } * scale;
         normal[3][3] += firmness;
         if focal.is_none() {

@@ -1,4 +1,5 @@
-//! How far a vanishing point is from a line (§5.2), in homogeneous form: finite and exact for points at infinity.
+//! Distances between a vanishing point and a line (§5.2), in homogeneous form: finite and exact for points at
+//! infinity.
 
 use crate::geometry::Segment;
 use glam::{DVec2, DVec3};
@@ -10,14 +11,14 @@ pub struct Line {
     pub centre: DVec2,
     /// Unit direction.
     pub direction: DVec2,
-    /// `x` of the paper, half the length.
+    /// Half the length; `x` in the paper.
     pub half: f64,
     /// Homogeneous line with a unit normal: `line · (x, y, 1)` is the signed distance of a point.
     pub line: DVec3,
 }
 
 impl Line {
-    /// `None` for a segment without length or with coordinates that are not finite.
+    /// `None` for a segment of zero length or with non-finite coordinates.
     pub fn new(segment: &Segment) -> Option<Self> {
         let length = segment.length();
         if !(length.is_finite() && length > 0.0) {
@@ -37,7 +38,7 @@ impl Line {
         if distance > 0.0 { (self.direction.perp_dot(away) / distance).abs() } else { 0.0 }
     }
 
-    /// Distance of the segment's endpoints from the line through its midpoint and `p`: bounded by [`Self::half`].
+    /// Distance of the segment's endpoints from the line through its midpoint and `p`; at most [`Self::half`].
     pub fn endpoint_distance(&self, p: DVec3) -> f64 {
         self.half * self.sine(p)
     }
@@ -49,12 +50,12 @@ impl Line {
         if across == 0.0 {
             return 0.0;
         }
-        // A division by zero is an infinite distance: the other one is the lesser.
+        // A division by zero yields infinity, so the other distance is the smaller.
         (across / p.z.abs()).min(self.half * across / self.direction.dot(away).abs())
     }
 }
 
-/// The part of a segment's line that lies inside the image: `s` of the paper.
+/// The part of a segment's line inside the image; `s` in the paper.
 pub fn visible(segment: &Segment, width: f64, height: f64) -> Option<Segment> {
     let line = Line::new(segment)?;
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -90,7 +91,7 @@ mod tests {
         assert!((l.sine(p) - 0.8).abs() < 1e-15);
         assert!((l.endpoint_distance(p) - 0.8).abs() < 1e-15);
         assert!((l.printed_distance(p) - 4.0 / 3.0).abs() < 1e-15);
-        // Inside the segment's reach the naive distance is the lesser.
+        // Within the segment's extent, the naive distance is the smaller.
         assert!((l.printed_distance(DVec3::new(1.1, 0.3, 1.0)) - 0.3).abs() < 1e-15);
         // Homogeneous scale and sign do not matter.
         assert_eq!(l.sine(p), l.sine(p * -2.0));

@@ -1,4 +1,5 @@
-//! Rectification: edges to lines to vanishing points to a homography to an unwarped texture ("Lighting Style Transfer", §5).
+//! Rectification: edges, lines, vanishing points, a homography, and an unwarped texture ("Lighting Style Transfer",
+//! §5).
 //!
 //! ```text
 //! photo ─▶ gradient ─▶ segments ───────▶ vanishing ─▶ camera ─▶ View ◀─ distortion ◀─ segments
@@ -7,31 +8,33 @@
 //! View + mask ─▶ plane ─▶ quad ─▶ unwarp ─▶ resample ─▶ Unwarped
 //! ```
 //!
-//! The paper's method, gradient-restricted Hough lines and successive RANSAC groups, is there as printed
-//! ([`Params::printed`]). The default differs where measurements asked for it: segments with end points instead of
-//! infinite lines, three orthogonal directions sought at once with an unknown focal length, then each refined freely on
-//! the sphere. The paper maps a rectangle of any shape onto the quadrilateral; here the focal length gives the plane its
-//! true aspect ratio.
+//! The paper's method (gradient-restricted Hough lines and successive RANSAC groups) is available as printed:
+//! [`Params::printed`]. The default differs from it where measurements favoured another choice. It uses segments with
+//! end points instead of infinite lines; it searches for three orthogonal directions and the unknown focal length
+//! jointly, then refines each direction freely on the sphere. The paper maps a rectangle of any shape onto the
+//! quadrilateral; here the focal length gives the plane its true aspect ratio.
 //!
-//! Known weaknesses. Stated errors presume five segments per independent observation and a floor of 0.2°, calibrated on
-//! re-projected panoramas: half of their true errors lie below 0.73 of the stated ones, as they should, but one in fourteen
-//! beyond 2. A direction that few lines show can be lost to chance lines of a floor, and its stated error does not say
-//! so. Short segments share a bias of about 0.01 rad on re-projected photos, whose cause is not known. Where lines are
-//! few, and noisy for their length, those of directions are up to an eighth too small (the mean square of true over stated
-//! ones is 1.3 with 14 lines an axis and a pixel of noise, 1.0 to 1.15 with more lines or less noise).
+//! Known weaknesses. Stated errors assume five segments per independent observation and an error floor of 0.2°, both
+//! calibrated on re-projected panoramas. There, half of the true errors lie below 0.73 of the stated ones, as they
+//! should, but one in fourteen lies beyond 2. Chance lines of a floor can displace a direction that few lines support,
+//! and its stated error does not show this. Short segments share a bias of about 0.01 rad on re-projected photos; its
+//! cause is unknown. Where lines are few, and noisy for their length, stated errors of directions are up to an eighth
+//! too small: the mean square of true over stated errors is 1.3 with 14 lines per axis and a pixel of noise, and 1.0
+//! to 1.15 with more lines or less noise.
 //!
-//! Not modelled: lens distortion, which is measured however ([`View::distortion`]); pixels that are not square and rooms whose
-//! walls are not at right angles, whose axes are made orthogonal; how far they are from it is measured ([`View::squareness`]).
+//! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixels that are not
+//! square; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
+//! [`View::squareness`] reports their deviation from right angles.
 
 mod biweight;
 mod camera;
 pub mod canny;
 mod distortion;
 mod footprint;
-mod four;
 mod gather;
 pub mod gradient;
 pub mod hough;
+mod lanes;
 mod manhattan;
 pub mod metric;
 mod plane;
@@ -58,29 +61,29 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Longest side of the picture in which lines are sought: larger photos are reduced, which costs no precision that
-/// lenses and walls have.
+/// Longest side, in pixels, of the image in which lines are detected. Larger photos are reduced first: lenses and
+/// walls deviate from straight lines by more than the precision lost.
 const DETECTION_SIDE: usize = 1600;
 
 /// How lines are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineDetector {
-    /// Regions of like gradient direction, with sub-pixel end points.
+    /// Regions of similar gradient direction, with sub-pixel end points.
     Regions,
-    /// The paper's gradient-restricted Hough transform of Canny edges, its lines trimmed to their edges.
+    /// The paper's gradient-restricted Hough transform of Canny edges; its lines are trimmed to the edges they cover.
     Hough,
 }
 
 /// How vanishing points are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Search {
-    /// Three orthogonal directions and the focal length at once, then each refined freely.
+    /// Three orthogonal directions and the focal length jointly; then each direction is refined freely.
     Manhattan,
-    /// The paper's: one group of lines after the other.
+    /// The paper's search: one group of lines after the other.
     Successive,
 }
 
-/// How far a vanishing point is from a line, in [`Search::Successive`].
+/// Distance between a vanishing point and a line in [`Search::Successive`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
     /// The paper's measure on the detected segment, in homogeneous form: finite at infinity.
@@ -94,13 +97,13 @@ pub struct Params {
     pub detector: LineDetector,
     pub search: Search,
     pub metric: Metric,
-    /// Half-width in radians of the band around the gradient direction that votes in the Hough transform, in
-    /// `(0, pi / 2]` (paper: 2.5°).
+    /// Half-width in radians of the band around the gradient direction that votes in the Hough transform, in `(0, pi /
+    /// 2]`; default 2.5° [paper §5.1].
     pub hough_band: f64,
     /// Focal length in pixels, if known; > 0.
     pub focal: Option<f64>,
-    /// Principal point in pixels, where the lens's axis meets the picture, which is the lens's centre as the photo has it;
-    /// the image centre if absent. Cropped photos and those of shifted lenses have it elsewhere, some outside.
+    /// Principal point in pixels: the point where the optical axis meets the image plane; the image centre if absent.
+    /// In cropped photos and photos by shifted lenses it lies elsewhere, possibly outside the image.
     pub principal: Option<DVec2>,
     pub seed: u64,
 }
@@ -146,33 +149,34 @@ impl Params {
 
 #[derive(Clone, Debug)]
 pub struct VanishingPoint {
-    /// Homogeneous pixels, unit length; third coordinate 0 = at infinity.
+    /// In homogeneous pixel coordinates, normalised to unit length; the third coordinate is 0 for a point at infinity.
     pub point: DVec3,
-    /// Number of segments that agree with it; 0 = derived from the other two.
+    /// Number of segments that run to the point; 0 if the point was derived from the other two.
     pub support: usize,
     /// Standard deviation of its direction in camera space, in radians.
     pub error: f64,
-    /// Covariance of that direction, in radians squared, whose trace is the square of `error`: lines that meet far away
-    /// fix it across them better than along.
+    /// Covariance of that direction in radians squared; its trace is the square of `error`. Lines that meet far away
+    /// constrain the direction across them better than along them.
     pub covariance: DMat3,
 }
 
-/// What the lines of a photo say about its camera.
+/// The camera geometry that the lines of a photo imply.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// Segments with the index of the room axis each runs along, if any.
+    /// Segments, each with the index of the room axis it runs along, if any.
     pub segments: Vec<(Segment, Option<usize>)>,
-    /// One for each column of `perspective.axes`.
+    /// One vanishing point for each column of `perspective.axes`.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
-    /// For each axis how far the angle between the two others is from a right one, by the lines of these two alone; absent where
-    /// one of them has no lines.
+    /// For each axis, the deviation from a right angle of the angle between the two other axes, estimated from the
+    /// lines of these two alone; absent if one of them has no lines.
     pub squareness: [Option<Squareness>; 3],
-    /// How far the lens bends straight lines; absent where a photo has too few of them, or was not seen itself.
+    /// Distortion of straight lines by the lens; absent if the photo has too few lines, or if only segments were
+    /// given.
     pub distortion: Option<Distortion>,
 }
 
-/// Finds lines, vanishing points and the camera of a linear RGB photo. Pixels that are not finite make no lines.
+/// Finds lines, vanishing points and the camera of a linear RGB photo. Pixels that are not finite yield no lines.
 ///
 /// A photo in which no two lines meet is an [`ErrorKind::Degenerate`](crate::error::ErrorKind) error.
 pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
@@ -187,7 +191,7 @@ pub fn find_segments(photo: &Image, params: &Params, job: Job) -> Result<Vec<Seg
     find_lines(photo, params, job).map(|lines| lines.segments)
 }
 
-/// The straight edges of a photo, in its pixels, and how straight they are.
+/// The straight edges of a photo, in its pixels, and the lens distortion that their curvature implies.
 struct Lines {
     segments: Vec<Segment>,
     distortion: Option<Distortion>,
@@ -228,7 +232,7 @@ fn lines_at_full_size(photo: &Image, centre: DVec2, params: &Params, job: Job) -
     Ok(Lines { segments, distortion })
 }
 
-/// The same as [`find_view`] from segments found by other means.
+/// Does the work of [`find_view`] on segments detected elsewhere.
 pub fn view_from_segments(
     segments: &[Segment],
     width: usize,
@@ -253,11 +257,11 @@ pub fn view_from_segments(
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnwarpParams {
-    /// The room axes the plane spans; found from the lines in it if absent.
+    /// The two room axes that span the plane; chosen by the lines inside the mask if absent.
     pub axes: Option<[usize; 2]>,
-    /// Longest side of the unwarped image in pixels, in `[16, 16384]`; the photo's own density decides below it.
+    /// Longest side of the unwarped image in pixels, in `[16, 16384]`; the photo's own resolution decides below it.
     pub max_side: usize,
-    /// Largest magnification of the photo, > 0: what is further away is cut off.
+    /// Largest magnification of the photo, > 0; parts of the plane farther away are cut off.
     pub max_magnification: f64,
 }
 
@@ -276,7 +280,7 @@ impl UnwarpParams {
     }
 }
 
-/// A plane of the photo as seen from straight in front of it, turned so that right and down are nearly the photo's.
+/// A plane of the photo in fronto-parallel view, rotated so that right and down are nearly those of the photo.
 #[derive(Clone, Debug)]
 pub struct Unwarped {
     /// Linear RGB.
@@ -285,11 +289,12 @@ pub struct Unwarped {
     pub valid: Image,
     /// From unwarped pixels to photo pixels.
     pub to_photo: Homography,
-    /// Size of an unwarped pixel as a share of the camera's distance from the plane: times that distance, metres.
+    /// Size of an unwarped pixel divided by the distance between camera and plane: multiply by that distance to get
+    /// metres.
     pub pixel_size: f64,
-    /// Corners of the unwarped rectangle in the photo, which may lie outside it: top left, then clockwise.
+    /// Corners of the unwarped rectangle in photo pixels (possibly outside the photo): top left, then clockwise.
     pub corners: [DVec2; 4],
-    /// Trust in the aspect ratio, in `[0, 1]`: low where the focal length had to be assumed.
+    /// Confidence in the aspect ratio, in `[0, 1]`; low where the focal length had to be assumed.
     pub aspect_confidence: f64,
     /// Expected error of each corner in unwarped pixels.
     pub corner_error: [f64; 4],

@@ -1,4 +1,4 @@
-//! Which plane of the room a mask shows, and the coordinates on it.
+//! The plane of the room that a mask shows, and the coordinates on it.
 
 use super::View;
 use crate::error::{Error, Result};
@@ -7,19 +7,19 @@ use crate::geometry::{Homography, Perspective};
 use crate::image::{Image, try_collect};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Most mask pixels looked at; more are thinned out evenly.
-const MOST_PIXELS: usize = 1 << 18;
+/// Maximum number of mask pixels used; larger masks are subsampled evenly.
+const MAX_PIXELS: usize = 1 << 18;
 
-/// Least sine of the angle between a plane and the rays that see it, for half of the mask.
-const LEAST_INCIDENCE: f64 = 0.02;
+/// Minimum median over the mask of the sine of the angle between the plane and the viewing rays [origin not recorded].
+const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.
 #[derive(Clone, Debug)]
 pub struct Plane {
-    /// Camera-space directions of the coordinates: rightwards and downwards as the photo shows them.
+    /// Camera-space directions of the plane coordinates: right and down as they appear in the photo.
     pub right: DVec3,
     pub down: DVec3,
-    /// Unit normal away from the camera.
+    /// Unit normal, pointing away from the camera.
     pub normal: DVec3,
     pub perspective: Perspective,
 }
@@ -30,21 +30,21 @@ impl Plane {
         Homography(self.perspective.intrinsics() * DMat3::from_cols(self.right, self.down, self.normal))
     }
 
-    /// Where the ray through a pixel meets the plane; `None` from the plane's horizon on.
+    /// The intersection of the ray through a pixel with the plane; `None` at the plane's horizon and beyond.
     pub fn meet(&self, pixel: DVec2) -> Option<DVec2> {
         let ray = self.perspective.ray(pixel);
         let depth = self.normal.dot(ray);
         (depth > 1e-9).then(|| DVec2::new(self.right.dot(ray), self.down.dot(ray)) / depth)
     }
 
-    /// Side in plane units of the square that a pixel sees on average: the root of the Jacobian's determinant, which is
-    /// `1 / (f² (n · ray)³)`.
+    /// Side, in plane units, of the square with the area that a pixel covers on the plane: the square root of the
+    /// determinant of the Jacobian, which is `1 / (f² (n · ray)³)`.
     pub fn pixel_side(&self, pixel: DVec2) -> f64 {
         self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal
     }
 }
 
-/// Centres of the pixels that a mask marks with at least one half.
+/// Centres of the pixels whose mask value is at least one half.
 pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
     let is_marked = |i: &usize| mask.data[i * mask.channels] >= 0.5;
     let marked = try_collect((0..mask.width * mask.height).filter(is_marked).map(|i| i as u32))?;
@@ -53,12 +53,12 @@ pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
             "the plane's mask is empty: paint a stroke on the plane that carries the lights",
         ));
     }
-    let step = marked.len().div_ceil(MOST_PIXELS);
+    let step = marked.len().div_ceil(MAX_PIXELS);
     let centre = |i: u32| DVec2::new((i as usize % mask.width) as f64 + 0.5, (i as usize / mask.width) as f64 + 0.5);
     try_collect(marked.into_iter().step_by(step).map(centre))
 }
 
-/// The plane along the given axes, or along the two that suit the mask best.
+/// The plane along the given axes, or along the two axes that fit the mask best.
 pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 2]>) -> Result<Plane> {
     let pair = match axes {
         Some([a, b]) if a < 3 && b < 3 && a != b => [a, b],
@@ -71,40 +71,41 @@ pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 
     let mut incidence = try_collect(pixels.iter().map(|&p| plane.normal.dot(view.perspective.ray(p).normalize())))?;
     let half = incidence.len() / 2;
     let median = *incidence.select_nth_unstable_by(half, f64::total_cmp).1;
-    if !(median >= LEAST_INCIDENCE) {
+    if !(median >= MIN_INCIDENCE) {
         return Err(Error::degenerate(format!(
-            "the camera sees the plane along axes {} and {} edge-on (half of the mask at less than {:.1} degrees): choose \
-             other axes, or mark a plane that the photo shows from further off it",
+            "the camera sees the plane along axes {} and {} edge-on (half of the mask at less than {:.1} degrees): \
+             choose other axes, or mark a plane that the photo shows less obliquely",
             pair[0],
             pair[1],
-            LEAST_INCIDENCE.asin().to_degrees()
+            MIN_INCIDENCE.asin().to_degrees()
         )));
     }
     Ok(plane)
 }
 
-/// The plane of two axes on the side of the camera where most of the pixels are, its coordinates turned and flipped to
-/// agree with the photo's right and down.
+/// The plane of two axes on the side of the camera where most of the pixels lie, with its coordinates rotated and
+/// flipped to agree with the photo's right and down.
 fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Plane {
     let normal = perspective.axes.col(3 - i - j);
     let ahead = pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0).count();
     let normal = if 2 * ahead >= pixels.len() { normal } else { -normal };
     let seen = || pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0);
     let centre = seen().sum::<DVec2>() / seen().count().max(1) as f64;
-    // How an axis runs in the photo near the centre of the mask.
+    // The direction of an axis in the photo near the centre of the mask.
     let runs = |axis: usize| {
         let v = perspective.vanishing_point(axis);
         (v.truncate() - centre * v.z).normalize_or_zero()
     };
     let i = if runs(i).x.abs() >= runs(j).x.abs() { i } else { j };
     let right = perspective.axes.col(i) * if runs(i).x < 0.0 { -1.0 } else { 1.0 };
-    // Not mirrored: as the camera sees it, right, down and away are right-handed.
+    // Avoid a mirror image: seen from the camera, right, down and away are right-handed.
     let down = normal.cross(right);
     Plane { right, down, normal, perspective: *perspective }
 }
 
-/// The two axes whose plane suits the mask: it lies on one side of the plane's horizon, and the lines in it run along
-/// both axes and not along the third. A mask wholly above the horizon is a ceiling unless the lines object.
+/// The two axes whose plane fits the mask best: the mask lies on one side of the plane's horizon, and the lines inside
+/// it run along both axes and not along the third. A mask entirely above the horizon is a ceiling, unless the lines
+/// contradict it.
 fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
     // Length of the segments inside the mask along each axis.
     let inside = |p: DVec2| {
@@ -130,7 +131,7 @@ fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
         let share_ahead = ahead / pixels.len() as f64;
         let one_sided = (2.0 * share_ahead - 1.0).abs();
         let lines = 1.0 - share[third] + share[i].min(share[j]);
-        // The vertical points down: no pixel of a ceiling is ahead along it.
+        // The vertical axis points down: no pixel of a ceiling lies in front of the camera along it.
         let ceiling = if third == VERTICAL && share_ahead < 0.02 { 1.5 } else { 1.0 };
         one_sided.powi(4) * lines * ceiling
     };

@@ -1,15 +1,15 @@
 //! The largest quadrilateral around a plane's mask whose sides run to the two vanishing points (§5.3): a rectangle in
-//! plane coordinates, on the camera's side of the horizon and without what is magnified too much.
+//! plane coordinates on the camera's side of the horizon, excluding parts with too large a magnification.
 
 use super::plane::Plane;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect};
 use glam::DVec2;
 
-/// Cells along each side of the grid on which the rectangle is sought.
+/// Cells along each side of the grid on which the rectangle is searched for.
 const GRID: usize = 96;
-/// What a cell that does not show the plane costs, in cells that do. Little: a hole is left out by what comes later, but
-/// a lamp at the rim is lost with the rim.
+/// Cost of a cell outside the mask relative to the gain of a cell inside it. Low, because later stages ignore holes,
+/// whereas a lamp at the rim is lost if the rim is cut off [origin not recorded].
 const HOLE: f64 = 0.25;
 
 /// A rectangle in plane coordinates.
@@ -17,13 +17,13 @@ const HOLE: f64 = 0.25;
 pub struct Rectangle {
     pub low: DVec2,
     pub high: DVec2,
-    /// Side in plane units of the smallest square that one photo pixel sees in it.
+    /// Side, in plane units, of the smallest square that one photo pixel covers in it.
     pub densest: f64,
 }
 
-/// The rectangle that holds most of the plane that the mask marks, less what it must hold besides.
+/// The rectangle that maximises the marked cells it contains minus the weighted unmarked cells.
 pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
-    // Pixels on the camera's side of the horizon, and how much of the plane each sees.
+    // Keep the pixels on the camera's side of the horizon, with the size each covers on the plane.
     let mut seen = try_collect(pixels.iter().filter_map(|&p| plane.meet(p).map(|q| (plane.pixel_side(p), q))))?;
     if seen.is_empty() {
         return Err(Error::degenerate("the mask lies beyond the plane's horizon: choose other axes"));
@@ -32,13 +32,13 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
     let densest = seen[seen.len() / 50].0;
     let farthest = densest * max_magnification;
     seen.truncate(seen.partition_point(|s| s.0 <= farthest).max(1));
-    // Room for the pixels at the rim, of which only centres were counted.
+    // Widen by half a pixel, since only pixel centres were counted.
     let rim = DVec2::splat(densest / 2.0);
     let (low, high) =
         seen.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, q)| (low.min(*q), high.max(*q)));
     let (low, high) = (low - rim, high + rim);
 
-    // Gain 1 for each cell that shows the plane, lose for each that does not, and never reach behind the camera.
+    // Score each cell: gain 1 if it shows the plane, lose `HOLE` if it does not; exclude cells behind the camera.
     let cell = (high - low) / GRID as f64;
     let to_photo = plane.to_photo();
     let mut gain = vec![[0.0f64; GRID]; GRID];
@@ -64,13 +64,13 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
     Ok(Rectangle { low: at(x0, y0), high: at(x1, y1), densest })
 }
 
-/// Whether the pixel at a position of the photo is marked.
+/// Whether the mask marks the pixel at a position of the photo.
 pub fn marks(mask: &Image, p: DVec2) -> bool {
     p.x >= 0.0 && p.y >= 0.0 && p.x <= mask.width as f64 && p.y <= mask.height as f64 && mask.sample(p.x, p.y, 0) >= 0.5
 }
 
-/// The block of cells with the greatest sum, as its first cell and the one past its last (Kadane's algorithm over every
-/// range of rows).
+/// The block of cells with the greatest sum, given by its first cell and the cell past its last (Kadane's algorithm
+/// over every range of rows).
 fn densest_block(gain: &[[f64; GRID]]) -> ([usize; 2], [usize; 2]) {
     let mut best = (f64::NEG_INFINITY, [0, 0], [GRID, GRID]);
     for top in 0..GRID {

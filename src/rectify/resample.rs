@@ -1,13 +1,13 @@
-//! Resampling through a homography: bicubic interpolation (Catmull-Rom) where the source is magnified, the mean over what
-//! a pixel covers where it is minified.
+//! Resampling through a homography: bicubic interpolation (Catmull-Rom) where the source is magnified, the mean over
+//! the pixel's footprint where it is minified.
 //!
-//! A pixel covers a parallelogram, of which the sheared rectangle with the same second moments is taken (see
-//! [`Footprints`]). Rectangles that are large in both directions are taken from a smaller level of a pyramid; what is then
-//! still longer than the samples that are taken at once is cut into equal parts, as in Feline (McCormack et al. 1999).
+//! The parallelogram that a pixel covers is replaced by the sheared rectangle with the same second moments (see
+//! [`Footprints`]). Rectangles large in both directions are sampled from a coarser level of a pyramid. Rectangles
+//! still longer than the taps cover are divided into equal parts, as in Feline (McCormack et al. 1999).
 
 use super::footprint::{Footprints, RUN, extent, locate};
 use super::gather::{store, sum};
-use super::taps::{LONGEST_SIDE, Part, Taps, weigh};
+use super::taps::{MAX_SIDE, Part, Taps, weigh};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::geometry::Homography;
@@ -17,15 +17,16 @@ use crate::simd::{Level, widest};
 use glam::{DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Most parts of a footprint for which no smaller level is taken, and most along a side where there is none.
-const MOST_PARTS: usize = 16;
+/// Maximum number of parts of a footprint before a coarser level is used, and maximum number along a side at the
+/// coarsest level.
+const MAX_PARTS: usize = 16;
 
-/// Rows that are worked on together, and of which one is looked at to find how many levels are wanted.
+/// Rows per unit of work. One row of each band is examined to find the number of pyramid levels needed.
 const BAND: usize = 8;
 
-/// Fills an image of the given size, the pixel at `p` from the source at `to_source(p)`, the source's border extended by
-/// what little reaches over it. Where that is outside the source or behind the camera the result is 0. Where one of the
-/// samples that a pixel is made of is not finite, nor is the pixel.
+/// Resamples the source to an image of the given size: the pixel at `p` shows the source at `to_source(p)`. Footprints
+/// that extend past the source's border use the border's values. Pixels whose position lies outside the source or
+/// behind the camera are 0. A pixel is not finite if one of the samples it depends on is not finite.
 pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize, job: Job) -> Result<Image> {
     if !to_source.0.is_finite() {
         return Err(Error::argument("the homography has entries that are not finite"));
@@ -61,25 +62,26 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
     Ok(out)
 }
 
-/// Where the pixels of an image are in the source.
+/// The mapping from pixels to the source.
 struct Map {
-    /// By columns.
+    /// Column by column.
     to_source: [f64; 9],
-    /// The sign of the third coordinate in front of the camera: that of the centre, which is taken to be visible.
+    /// The sign of the third coordinate in front of the camera: the sign at the image centre, which is assumed to be
+    /// visible.
     front: f64,
-    /// Of the source, and the width of the image.
+    /// Size of the source, and width of the image.
     size: [f64; 2],
     width: usize,
 }
 
 widest! {
-    /// The smallest level of the pyramid that a row would be taken from.
+    /// The coarsest pyramid level that a row needs.
     fn highest_level(map: &Map, row: usize) -> usize {
         let mut footprints = Footprints::EMPTY;
         let mut highest = 0;
         for x in (0..map.width).step_by(RUN) {
             locate(&map.to_source, map.front, map.size, row, x, &mut footprints);
-            highest = highest.max(plan(&footprints, usize::MAX).map_or(0, |p| p.level));
+            highest = highest.max(choose_sampling(&footprints, usize::MAX).map_or(0, |p| p.level));
         }
         highest
     }
@@ -96,7 +98,8 @@ widest! {
                 let out = &mut row[x * channels..(x + count) * channels];
                 locate(&map.to_source, map.front, map.size, first_row + y, x, &mut footprints);
                 footprints.is_seen[count..].fill(false);
-                let Some(Plan { level, parts: [across, down] }) = plan(&footprints, levels.len()) else { continue };
+                let sampling = choose_sampling(&footprints, levels.len());
+                let Some(Sampling { level, parts: [across, down] }) = sampling else { continue };
                 let (seen, source) = (&footprints.is_seen, levels[level]);
                 let scale = 1.0 / (1u64 << level) as f32;
                 for channel in 0..if channels == 3 { 1 } else { channels } {
@@ -113,21 +116,21 @@ widest! {
     }
 }
 
-/// Which level of the pyramid the footprints of a run are taken from, and in how many parts along x and y.
-struct Plan {
+/// The pyramid level that a run samples, and the number of parts of each footprint along x and y.
+struct Sampling {
     level: usize,
     parts: [usize; 2],
 }
 
-/// `None` where nothing is seen.
+/// `None` if no pixel is visible.
 #[inline(always)]
-fn plan(footprints: &Footprints, levels: usize) -> Option<Plan> {
+fn choose_sampling(footprints: &Footprints, levels: usize) -> Option<Sampling> {
     let [shortest, width, height] = extent(footprints)?;
     let (mut level, mut scale) = (0, 1.0);
     loop {
-        let parts = [width, height].map(|side| ((side * scale / LONGEST_SIDE).ceil() as usize).max(1));
-        if shortest * scale <= LONGEST_SIDE && parts[0].saturating_mul(parts[1]) <= MOST_PARTS || level + 1 >= levels {
-            return Some(Plan { level, parts: parts.map(|n| n.min(MOST_PARTS)) });
+        let parts = [width, height].map(|side| ((side * scale / MAX_SIDE).ceil() as usize).max(1));
+        if shortest * scale <= MAX_SIDE && parts[0].saturating_mul(parts[1]) <= MAX_PARTS || level + 1 >= levels {
+            return Some(Sampling { level, parts: parts.map(|n| n.min(MAX_PARTS)) });
         }
         (level, scale) = (level + 1, 0.5 * scale);
     }

@@ -1,5 +1,5 @@
-//! Sub-pixel line segments: pixels of like gradient direction are grown into regions, a line is fitted to each, and what
-//! chance could have made is dropped (after LSD, Grompone von Gioi et al. 2010).
+//! Sub-pixel line segments (after LSD, Grompone von Gioi et al. 2010): grow regions of similar gradient direction, fit
+//! a line to each, and reject regions that could have occurred by chance.
 
 use super::gradient::Gradients;
 use crate::error::Result;
@@ -8,23 +8,23 @@ use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Weakest gradient that counts, in encoded luma per pixel: an edge of about 9 of 255 grey levels.
-const WEAKEST: f32 = 0.01;
+/// Weakest gradient that is used, in encoded luma per pixel: an edge of about 9 of 255 grey levels [bench vp].
+const MIN_GRADIENT: f32 = 0.01;
 
-/// Half-angle within which a pixel joins a region, as in LSD: π / 8.
+/// Half-angle within which a pixel joins a region, π / 8 [convention: LSD].
 const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 
-/// Length in pixels of each end of a region that the fit leaves out.
-const END: f64 = 2.0;
+/// Length in pixels at each end of a region that the fit leaves out [origin not recorded].
+const TRIM: f64 = 2.0;
 
-/// Least share of a region's rectangle that its pixels cover: noise leaves gaps in what is straight.
-const DENSITY: f64 = 0.6;
+/// Minimum share of a region's bounding rectangle that its pixels cover; regions of noise have gaps [bench lines].
+const MIN_DENSITY: f64 = 0.6;
 
-/// The straight edges of a photo, longest chance-free regions of like gradient direction.
+/// The straight edges of a photo: statistically significant regions of similar gradient direction.
 pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     let Gradients { width, height, magnitude, .. } = gradients;
     let seeds = by_falling_magnitude(magnitude)?;
-    let used = try_collect(magnitude.iter().map(|m| !(*m >= WEAKEST)))?;
+    let used = try_collect(magnitude.iter().map(|m| !(*m >= MIN_GRADIENT)))?;
     let mut grower = Grower { gradients, used, region: Vec::new() };
     let log_tests = 2.5 * ((width * height) as f64).ln();
     let mut segments = Vec::new();
@@ -46,21 +46,21 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     Ok(segments)
 }
 
-/// Indices of the pixels with a gradient, strongest first: a counting sort over classes so fine that hardly two pixels of an edge share
-/// one, whose order would be that of the rows.
+/// Indices of the pixels with a gradient, strongest first, by a counting sort. Its classes are so narrow that hardly
+/// two pixels of an edge share one: within a class the order is that of the rows.
 fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
     const CLASSES: usize = 1 << 16;
-    let top = magnitude.iter().fold(WEAKEST, |m, &v| m.max(v));
+    let top = magnitude.iter().fold(MIN_GRADIENT, |m, &v| m.max(v));
     let class = |m: f32| CLASSES - 1 - ((m / top * CLASSES as f32) as usize).min(CLASSES - 1);
     let mut start = vec![0usize; CLASSES + 1];
-    for &m in magnitude.iter().filter(|&&m| m >= WEAKEST) {
+    for &m in magnitude.iter().filter(|&&m| m >= MIN_GRADIENT) {
         start[class(m) + 1] += 1;
     }
     for c in 0..CLASSES {
         start[c + 1] += start[c];
     }
     let mut order = try_vec(start[CLASSES], 0u32)?;
-    for (i, &m) in magnitude.iter().enumerate().filter(|(_, m)| **m >= WEAKEST) {
+    for (i, &m) in magnitude.iter().enumerate().filter(|(_, m)| **m >= MIN_GRADIENT) {
         let slot = &mut start[class(m)];
         order[*slot] = i as u32;
         *slot += 1;
@@ -88,12 +88,12 @@ impl Pixel {
 
 struct Grower<'a> {
     gradients: &'a Gradients,
-    /// Pixels of some region, and those that are too weak for any: among them the outermost.
+    /// Pixels that belong to a region already, and pixels whose gradient is too weak, including the image border.
     used: Vec<bool>,
     region: Vec<Pixel>,
 }
 
-/// A region with the rectangle around it.
+/// A region with its bounding rectangle.
 struct Found {
     segment: Segment,
     pixels: usize,
@@ -116,18 +116,19 @@ impl Found {
 }
 
 impl Grower<'_> {
-    /// The region around a seed, made dense first by a tighter tolerance, then by cutting off what is far from the seed.
+    /// The region around a seed. If it is not dense enough, first tighten the tolerance, then cut off pixels far from
+    /// the seed.
     fn straight_region(&mut self, seed: u32) -> Option<Found> {
         self.grow(seed, TOLERANCE);
         let mut found = self.fit()?;
-        if found.density() < DENSITY {
+        if found.density() < MIN_DENSITY {
             self.release();
             self.grow(seed, TOLERANCE / 2.0);
             found = self.fit()?;
         }
         let origin = Pixel::new(self.gradients.width, seed).centre();
         let mut radius = found.segment.a.distance(origin).max(found.segment.b.distance(origin));
-        while found.density() < DENSITY {
+        while found.density() < MIN_DENSITY {
             radius *= 0.75;
             let Self { used, region, .. } = self;
             region.retain(|p| {
@@ -146,11 +147,11 @@ impl Grower<'_> {
         }
     }
 
-    /// Collects the pixels connected with the seed whose gradients point the way the region does on average: ring by ring, each
-    /// compared with the average before it, so that no order of pixels matters.
+    /// Collects the pixels connected to the seed whose gradients agree with the region's mean direction. Grows ring by
+    /// ring and compares each ring with the mean before it, so that the result does not depend on the order of pixels.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
-        let least = tolerance.cos() as f32;
+        let min_cos = tolerance.cos() as f32;
         self.region.clear();
         self.region.push(Pixel::new(*width, seed));
         self.used[seed as usize] = true;
@@ -161,7 +162,7 @@ impl Grower<'_> {
                 let i = p.index as usize;
                 sum = [sum[0] + derivative[i][0] / magnitude[i], sum[1] + derivative[i][1] / magnitude[i]];
             }
-            let least_along = least * (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
+            let min_along = min_cos * (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
             for next in ring.clone() {
                 let Pixel { index, column, row } = self.region[next];
                 for (row, first) in
@@ -172,7 +173,7 @@ impl Grower<'_> {
                             continue;
                         }
                         let d = derivative[n];
-                        if d[0] * sum[0] + d[1] * sum[1] >= least_along * magnitude[n] {
+                        if d[0] * sum[0] + d[1] * sum[1] >= min_along * magnitude[n] {
                             self.used[n] = true;
                             self.region.push(Pixel { index: n as u32, column, row });
                         }
@@ -183,15 +184,16 @@ impl Grower<'_> {
         }
     }
 
-    /// Total least squares through the region, each pixel weighing its gradient: that finds an edge to a fraction of a
-    /// pixel. The ends, where corners bend the gradient, have no say. Regions of a few pixels have no direction.
+    /// Fits a line by total least squares, weighting each pixel by its gradient, which locates an edge to a fraction
+    /// of a pixel. Excludes the ends, where corners bend the gradient. `None` for regions of too few pixels to have a
+    /// direction.
     fn fit(&self) -> Option<Found> {
         if self.region.len() < 8 {
             return None;
         }
         let (centre, direction) = self.axis(|_| true)?;
         let (low, high) = self.extent(centre, direction);
-        let trim = END.min((high.x - low.x) / 4.0);
+        let trim = TRIM.min((high.x - low.x) / 4.0);
         let inner = |p: DVec2| {
             let along = direction.dot(p - centre);
             along >= low.x + trim && along <= high.x - trim
@@ -203,7 +205,7 @@ impl Grower<'_> {
         (segment.length() > found.width).then_some(found)
     }
 
-    /// Centroid and principal direction of the pixels that a condition admits.
+    /// Centroid and principal direction of the pixels that satisfy a condition.
     fn axis(&self, admits: impl Fn(DVec2) -> bool) -> Option<(DVec2, DVec2)> {
         let origin = self.region.first()?.centre();
         let (mut mass, mut sum, mut squares) = (0.0, DVec2::ZERO, [0.0; 3]);
@@ -225,7 +227,7 @@ impl Grower<'_> {
         (mass > 0.0).then(|| (origin + mean, DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))))
     }
 
-    /// Least and greatest coordinates of the region along a direction and across it.
+    /// Minimum and maximum coordinates of the region along a direction and across it.
     fn extent(&self, centre: DVec2, direction: DVec2) -> (DVec2, DVec2) {
         self.region.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
             let d = p.centre() - centre;

@@ -1,7 +1,7 @@
-//! One vanishing point on the Gaussian sphere: how well lines agree with it, its refinement and its covariance.
+//! One vanishing point on the Gaussian sphere: agreement with lines, refinement and covariance.
 //!
-//! The paper optimises `alpha = 1 - 1 / (rho + 1)`; on the sphere points at infinity are ordinary points and no
-//! coordinate is ill-conditioned there.
+//! The paper optimises `alpha = 1 - 1 / (rho + 1)`. On the sphere, points at infinity are ordinary points and all
+//! coordinates are well conditioned there.
 
 use super::biweight::Biweight;
 use super::metric::Line;
@@ -9,35 +9,38 @@ use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Largest distance of a segment's endpoints from the line to its vanishing point, in units of half the image's longer
-/// side: about 2 pixels of 640.
+/// side: about 2 pixels of 640 [origin not recorded].
 const ENDPOINT_LIMIT: f64 = 0.006;
 
-/// Largest sine of the angle between a segment and the line to its vanishing point, which short segments need besides.
+/// Largest sine of the angle between a segment and the line to its vanishing point: a second limit, which matters for
+/// short segments [origin not recorded].
 const SINE_LIMIT: f64 = 0.06;
 
-/// Squared distance of a point from the middle of a line below which there is nothing but rounding between them.
+/// Squared distance between a point and the midpoint of a line below which they coincide up to rounding [rounding].
 const COINCIDENT: f64 = 1e-18;
 
-/// Endpoint noise assumed before any residual is seen, in the same unit, and the number of segments that is worth.
+/// Prior of the endpoint noise, in the same unit, and the number of segments that the prior counts as [origin not
+/// recorded].
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
-/// Segments found per independent observation: both sides of a bar, the pieces of one edge and a row of equal things
-/// share their errors. Calibrated on photos with exact cameras, as is the next.
+/// Segments found per independent observation: both sides of a bar, the pieces of one edge and rows of equal objects
+/// share their errors. Calibrated on photos with exactly known cameras, like the next constants [bench vp].
 const PER_OBSERVATION: f64 = 5.0;
 
-/// Rounds in which the noise and the share of it that the limit shows are found from each other, the least such share, and
-/// the least slope of the biweight: beyond them noise fills the limit, and could be any. The slope is the least that costs no
-/// vanishing point of the development sets, where short lines are better than their residuals say.
+/// Iterations that estimate the noise and the share of it visible within the limit from each other; the minimum of
+/// that share; and the minimum slope of the biweight. Below these minima noise fills the whole limit and cannot be
+/// estimated. `MIN_SLOPE` is the smallest value that loses no vanishing point of the development sets, in which short
+/// lines are more precise than their residuals suggest [bench vp].
 const NOISE_ROUNDS: usize = 5;
-const LEAST_SHOWN: f64 = 0.25;
-const LEAST_SLOPE: f64 = 0.3;
+const MIN_SHOWN: f64 = 0.25;
+const MIN_SLOPE: f64 = 0.3;
 
-/// Standard deviation in radians of the direction of the room's edges themselves, which no number of lines averages out:
-/// what lenses, stitching and builders leave.
+/// Standard deviation in radians of the directions of the room's own edges, which no number of lines reduces: errors
+/// of lens, stitching and construction [bench vp].
 pub const STRAIGHTNESS: f64 = 0.0035;
 
-/// Image coordinates relative to the principal point, half the longer side being 1.
+/// Image coordinates relative to the principal point, in units of half the longer image side.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     pub principal: DVec2,
@@ -49,16 +52,16 @@ impl Frame {
         Self { principal, scale: width.max(height) as f64 / 2.0 }
     }
 
-    /// Segments as evidence, each with its index; those without length are left out.
-    pub fn evidence(&self, segments: &[Segment]) -> Vec<(usize, Evidence)> {
+    /// Segments as weighted lines, each with its index; segments of zero length are left out.
+    pub fn weighted_lines(&self, segments: &[Segment]) -> Vec<(usize, WeightedLine)> {
         let to_frame = |p: DVec2| (p - self.principal) / self.scale;
         let prepare = |s: &Segment| Line::new(&Segment { a: to_frame(s.a), b: to_frame(s.b) });
-        segments.iter().enumerate().filter_map(|(i, s)| prepare(s).map(|line| (i, Evidence::new(line)))).collect()
+        segments.iter().enumerate().filter_map(|(i, s)| prepare(s).map(|line| (i, WeightedLine::new(line)))).collect()
     }
 
-    /// A homogeneous point of the frame in homogeneous pixels of unit length.
+    /// Converts a homogeneous point of the frame to homogeneous pixels of unit length.
     pub fn to_pixels(&self, p: DVec3) -> DVec3 {
-        // A third coordinate that is nothing but rounding is a point at infinity.
+        // Treat a third coordinate that is only rounding error as a point at infinity.
         let w = if p.z.abs() <= 1e-13 * p.truncate().length() { 0.0 } else { p.z };
         (p.truncate() * self.scale + self.principal * w).extend(w).normalize()
     }
@@ -68,22 +71,23 @@ impl Frame {
     }
 }
 
-/// A line in the frame with its say: its length.
+/// A line in the frame, weighted by its length.
 #[derive(Clone, Copy, Debug)]
-pub struct Evidence {
+pub struct WeightedLine {
     pub line: Line,
     pub weight: f64,
-    /// What turns a squared sine into a squared residual whose limit is 1.
+    /// Factor from a squared sine to a squared residual whose limit is 1.
     pub stiffness: f64,
 }
 
-impl Evidence {
+impl WeightedLine {
     fn new(line: Line) -> Self {
         let stiffness = (line.half / ENDPOINT_LIMIT).powi(2) + SINE_LIMIT.powi(-2);
         Self { line, weight: 2.0 * line.half, stiffness }
     }
 
-    /// Squared residual; beyond 1 the line does not belong to the point. A line whose middle is the point belongs to it.
+    /// Squared residual; a line with a residual above 1 does not belong to the point. A line whose midpoint is the
+    /// point belongs to it.
     pub fn residual(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.line.centre * p.z;
         let distance = away.length_squared();
@@ -91,13 +95,13 @@ impl Evidence {
         if distance > COINCIDENT { self.stiffness * across * across / distance } else { 0.0 }
     }
 
-    /// Agreement in `[0, 1]`.
+    /// Degree of agreement in `[0, 1]`.
     pub fn agreement(&self, p: DVec3) -> f64 {
         (1.0 - self.residual(p)).max(0.0)
     }
 }
 
-/// The homogeneous frame point a camera-space direction vanishes in, and back; `focal` in units of the frame.
+/// The homogeneous frame point where a camera-space direction vanishes, and the inverse; `focal` in frame units.
 pub fn project(direction: DVec3, focal: f64) -> DVec3 {
     direction.truncate().extend(direction.z / focal)
 }
@@ -111,24 +115,24 @@ pub fn unproject(p: DVec3, focal: f64) -> DVec3 {
 pub struct Refined {
     /// Unit direction in camera space.
     pub direction: DVec3,
-    /// Covariance of that direction in radians squared: nothing along it.
+    /// Covariance of that direction in radians squared; zero along the direction.
     pub covariance: DMat3,
 }
 
 impl Refined {
-    /// Standard deviation of the direction in radians: of the angle to the true one, whichever way that is.
+    /// Standard deviation in radians of the angle to the true direction.
     pub fn error(&self) -> f64 {
         deviation(&self.covariance)
     }
 }
 
-/// The root of the trace of a direction's covariance, at most a right angle.
+/// The square root of the trace of a direction's covariance, at most a right angle.
 pub fn deviation(covariance: &DMat3) -> f64 {
     let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
     trace.sqrt().min(std::f64::consts::FRAC_PI_2)
 }
 
-/// The covariance of a direction that is as uncertain every way, of the given standard deviation.
+/// The isotropic covariance of a direction with the given standard deviation.
 pub fn round_covariance(direction: DVec3, error: f64) -> DMat3 {
     (DMat3::IDENTITY - outer(direction, direction)) * (0.5 * error * error)
 }
@@ -137,27 +141,28 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// A direction that another is at right angles to, but for an angle of the given variance.
+/// Expectation of a right angle between a direction and another, up to an angle of the given variance.
 #[derive(Clone, Copy, Debug)]
 pub struct RightAngle {
     pub to: DVec3,
     pub variance: f64,
 }
 
-/// The direction that the given lines agree on best, from a start near it: iteratively reweighted least squares of the
-/// sine between each line and the line to the point, Tukey's biweight leaving out what is beyond its limit. `None`
-/// where fewer than two different lines remain.
-pub fn refine(lines: &[Evidence], start: DVec3, focal: f64) -> Option<Refined> {
-    let direction = iterate(lines, start, focal, NO_MATRIX)?;
+/// The direction that fits the given lines best, from a nearby start: iteratively reweighted least squares of the sine
+/// between each line and the line to the point. Tukey's biweight rejects lines beyond its limit. `None` if fewer than
+/// two distinct lines remain.
+pub fn refine(lines: &[WeightedLine], start: DVec3, focal: f64) -> Option<Refined> {
+    let direction = iterate(lines, start, focal, ZERO_MATRIX)?;
     Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
-/// The same where right angles are expected besides: what the lines say weighs by its own covariance at the start.
-pub fn refine_near(lines: &[Evidence], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
+/// As [`refine`], with expected right angles as priors; the lines are weighted by their own covariance at the start.
+pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
     let own = covariance(lines, start, focal)?;
-    // How fast the lines' equations change is the inverse of their covariance but for a factor: in its unit.
+    // The normal matrix of the lines is the inverse of their covariance up to a factor; express the priors in its
+    // unit.
     let unit = deviation(&own.of_direction).powi(2) / own.inverse_trace;
-    let mut prior = NO_MATRIX;
+    let mut prior = ZERO_MATRIX;
     for RightAngle { to, variance } in expected {
         add_square(&mut prior, *to, unit / variance);
     }
@@ -165,7 +170,7 @@ pub fn refine_near(lines: &[Evidence], start: DVec3, focal: f64, expected: &[Rig
     Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
-fn iterate(lines: &[Evidence], start: DVec3, focal: f64, prior: [[f64; 3]; 3]) -> Option<DVec3> {
+fn iterate(lines: &[WeightedLine], start: DVec3, focal: f64, prior: [[f64; 3]; 3]) -> Option<DVec3> {
     let mut direction = start;
     for _ in 0..20 {
         let last = direction;
@@ -178,7 +183,8 @@ fn iterate(lines: &[Evidence], start: DVec3, focal: f64, prior: [[f64; 3]; 3]) -
     Some(direction)
 }
 
-const NO_MATRIX: [[f64; 3]; 3] = [[0.0; 3]; 3];
+/// The zero matrix: a system without priors [convention].
+const ZERO_MATRIX: [[f64; 3]; 3] = [[0.0; 3]; 3];
 
 fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {
     let v = v.to_array();
@@ -189,80 +195,88 @@ fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {
     }
 }
 
-/// Row of the least-squares problem.
+/// One row of the least-squares problem.
 struct Row {
-    /// Derivative of the line's sine by the direction.
+    /// Derivative of the line's sine with respect to the direction.
     gradient: DVec3,
-    /// Of the line if it had no residual, and what the biweight leaves of it.
-    say: f64,
+    /// Weight of the line at zero residual, and after the biweight.
+    base_weight: f64,
     weight: f64,
-    /// Variance of the sine under unit noise of the endpoints: of the segment's direction, and of its midpoint as the
-    /// point sees it, which matters for segments near their vanishing point.
+    /// Variance of the sine under unit endpoint noise: of the segment's direction, plus that of its midpoint as seen
+    /// from the point, which matters for segments near their vanishing point.
     variance: f64,
-    /// Variance under that noise of the residual whose limit is 1.
-    spread: f64,
+    /// Variance of the normalised residual (limit 1) under that noise.
+    residual_variance: f64,
     sine: f64,
 }
 
-fn row(evidence: &Evidence, direction: DVec3, focal: f64) -> Option<Row> {
+fn row(weighted: &WeightedLine, direction: DVec3, focal: f64) -> Option<Row> {
     let p = project(direction, focal);
-    let bisquare = evidence.agreement(p).powi(2);
-    let distance = (p.truncate() - evidence.line.centre * p.z).length();
+    let bisquare = weighted.agreement(p).powi(2);
+    let distance = (p.truncate() - weighted.line.centre * p.z).length();
     if !(bisquare > 0.0 && distance > 1e-9) {
         return None;
     }
-    let (l, half) = (evidence.line.line, evidence.line.half);
+    let (l, half) = (weighted.line.line, weighted.line.half);
     let nearness = (half * p.z / distance).powi(2);
-    // Endpoint noise alone would ask for no more than the stiffness; but long segments are rarely anything but edges.
-    let say = evidence.weight.sqrt() * evidence.stiffness / (1.0 + nearness);
+    // Endpoint noise alone would justify the stiffness as weight. The exponent of the length is larger because long
+    // segments are rarely false detections.
+    let base_weight = weighted.weight.sqrt() * weighted.stiffness / (1.0 + nearness);
     let variance = (1.0 + nearness) / (half * half);
     Some(Row {
         gradient: DVec3::new(l.x, l.y, l.z / focal) / distance,
-        say,
-        weight: bisquare * say,
+        base_weight,
+        weight: bisquare * base_weight,
         variance,
-        spread: evidence.stiffness * variance,
-        sine: evidence.line.sine(p),
+        residual_variance: weighted.stiffness * variance,
+        sine: weighted.line.sine(p),
     })
 }
 
-fn smallest_eigenvector(lines: &[Evidence], direction: DVec3, focal: f64, mut normal: [[f64; 3]; 3]) -> Option<DVec3> {
+fn smallest_eigenvector(
+    lines: &[WeightedLine],
+    direction: DVec3,
+    focal: f64,
+    mut normal: [[f64; 3]; 3],
+) -> Option<DVec3> {
     for Row { gradient, weight, .. } in lines.iter().filter_map(|e| row(e, direction, focal)) {
         add_square(&mut normal, gradient, weight);
     }
     let (values, vectors) = symmetric_eigen(normal);
-    // Two lines that coincide fix no point.
+    // Two coincident lines do not determine a point.
     (values[1] > values[2] * 1e-12 && values[2] > 0.0).then(|| DVec3::from_array(vectors[0]).normalize())
 }
 
 struct Covariance {
-    /// Of the direction, with what lines share and what they all have.
+    /// Covariance of the direction, including correlation between lines and the common error [`STRAIGHTNESS`].
     of_direction: DMat3,
-    /// Trace of the inverse of how fast the equations change in the tangent plane.
+    /// Trace of the inverse normal matrix in the tangent plane.
     inverse_trace: f64,
 }
 
-/// Variance of the endpoint noise that leaves the residuals of the lines that the limit admits.
+/// Variance of the endpoint noise, estimated from the residuals of the lines within the limit.
 fn endpoint_noise(rows: &[Row]) -> f64 {
     let count = rows.len() as f64;
     let squares: f64 = rows.iter().map(|row| row.sine * row.sine / row.variance).sum();
-    // A direction is two numbers, fitted to independent observations: their segments are no more than these.
+    // A direction has two degrees of freedom, fitted to independent observations: subtract the segments that
+    // correspond to them.
     let freedom = (count - 2.0 * PER_OBSERVATION).max(0.0) + PRIOR_COUNT;
     let seen = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / freedom;
-    // The limit hides the largest ones.
+    // Correct for the residuals that the limit truncates.
     let mut noise = seen;
     for _ in 0..NOISE_ROUNDS {
-        let shown = rows.iter().map(|row| Biweight::of_noise(noise * row.spread).square).sum::<f64>() / count;
-        noise = seen / shown.max(LEAST_SHOWN);
+        let shown =
+            rows.iter().map(|row| Biweight::of_noise(noise * row.residual_variance).square).sum::<f64>() / count;
+        noise = seen / shown.max(MIN_SHOWN);
     }
     noise
 }
 
-/// The sandwich formula `A⁻¹ B A⁻¹` of an M-estimator in the tangent plane (Huber, "Robust Statistics", 1981, §6.3), with
-/// `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, `c` being a line's say and `g` its gradient. For ψ′ and ψ² the means are taken
-/// that independent endpoint noise of the size of the residuals leads one to expect: few lines' own vary too much, and the
-/// lines that have most say have the least residuals because they have it.
-fn covariance(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<Covariance> {
+/// The sandwich formula `A⁻¹ B A⁻¹` of an M-estimator in the tangent plane (Huber, "Robust Statistics", 1981, §6.3),
+/// with `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight and `g` its gradient. ψ′ and ψ²
+/// are replaced by their expectations under independent endpoint noise of the estimated size: the sample values of few
+/// lines vary too much, and the lines of largest weight have the smallest residuals because of their weight.
+fn covariance(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Option<Covariance> {
     let (e1, e2) = direction.any_orthonormal_pair();
     let rows: Vec<Row> = lines.iter().filter_map(|e| row(e, direction, focal)).collect();
     if rows.len() < 2 {
@@ -270,9 +284,10 @@ fn covariance(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<Covari
     }
     let noise = endpoint_noise(&rows);
     let (mut n, mut m) = ([0.0; 3], [0.0; 3]);
-    for Row { gradient, say, variance, spread, .. } in &rows {
-        let expected = Biweight::of_noise(noise * spread);
-        let (slope, square) = (say * expected.slope.max(LEAST_SLOPE), say * say * variance * expected.influence);
+    for Row { gradient, base_weight, variance, residual_variance, .. } in &rows {
+        let expected = Biweight::of_noise(noise * residual_variance);
+        let (slope, square) =
+            (base_weight * expected.slope.max(MIN_SLOPE), base_weight * base_weight * variance * expected.influence);
         let (u, v) = (gradient.dot(e1), gradient.dot(e2));
         for (i, product) in [u * u, u * v, v * v].into_iter().enumerate() {
             n[i] += slope * product;

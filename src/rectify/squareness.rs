@@ -1,14 +1,14 @@
-//! Whether the room stands at right angles, and its pixels are square: how far the angles between its directions are from right
-//! ones, where each direction is found on its own lines alone.
+//! Tests whether the room has right angles and the camera square pixels: deviations from right angles between the
+//! room's directions, where each direction is estimated from its own lines alone.
 //!
-//! Walls that meet at other angles show here, and so do pixels that are not square and an axis of the lens that is elsewhere than
-//! thought. Not all photos tell: pixels of any shape are right where two directions run along the picture's sides.
+//! Walls at other angles show here; so do non-square pixels and a wrong principal point. Some photos cannot reveal
+//! this: where two directions run parallel to the image sides, any pixel aspect ratio is consistent.
 
 use super::camera::{USUAL_SPREAD, usual_focal};
 use super::sphere::Refined;
 use glam::DVec3;
 
-/// How far the angle between two directions is from a right one.
+/// Deviation from a right angle of the angle between two directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Squareness {
     /// In radians; > 0 where the angle between the axes is obtuse.
@@ -17,11 +17,11 @@ pub struct Squareness {
     pub error: f64,
 }
 
-/// Two of the directions, under the focal length they were found with.
+/// Two of the directions, for the focal length they were estimated with.
 struct Pair {
-    /// The third.
+    /// Index of the third direction.
     beside: usize,
-    /// Cosine of the angle between them, and its derivative by the logarithm of the focal length.
+    /// Cosine of the angle between them, and its derivative with respect to the logarithm of the focal length.
     cosine: f64,
     slope: f64,
     variance: f64,
@@ -36,18 +36,19 @@ impl Pair {
         Self { beside, cosine, slope, variance: along(a, q) + along(b, p) }
     }
 
-    /// What the pair says of the focal length, if its angle is a right one: information, and that times the logarithm by which the focal length
-    /// would have to grow.
-    fn of_focal(&self) -> [f64; 2] {
+    /// The pair's constraint on the focal length if its angle is a right angle: the information, and the information
+    /// times the required change of the logarithm of the focal length.
+    fn focal_constraint(&self) -> [f64; 2] {
         let weight = 1.0 / self.variance.max(1e-24);
         [weight * self.slope * self.slope, -weight * self.cosine * self.slope]
     }
 }
 
-/// For each axis the angle between the two others, of directions that point as the axes do; nothing where one of them is unknown.
+/// For each axis, the angle between the two other axes; `None` if one of them is unknown. The directions point the
+/// same way as the axes.
 ///
-/// `focal` is the one they were found with, in pixels. Unless it was given, each angle is judged under the focal length that the other
-/// angles and photos of that width in general lead one to expect.
+/// `focal` is the focal length in pixels they were estimated with. Unless it was given by the user, each angle is
+/// evaluated at the focal length expected from the other angles and the prior for photos of that width.
 pub fn measure(directions: &[Option<Refined>; 3], focal: f64, is_given: bool, width: usize) -> [Option<Squareness>; 3] {
     let pair = |beside: usize| {
         let [a, b] = [(beside + 1) % 3, (beside + 2) % 3].map(|k| directions[k].as_ref());
@@ -60,8 +61,9 @@ pub fn measure(directions: &[Option<Refined>; 3], focal: f64, is_given: bool, wi
         let [growth, variance] = if is_given {
             [0.0, 0.0]
         } else {
-            let others = pairs.iter().flatten().filter(|p| p.beside != pair.beside).map(Pair::of_focal);
-            let [information, pull] = others.fold(usual, |sum, said| [sum[0] + said[0], sum[1] + said[1]]);
+            let others = pairs.iter().flatten().filter(|p| p.beside != pair.beside).map(Pair::focal_constraint);
+            let [information, pull] =
+                others.fold(usual, |sum, constraint| [sum[0] + constraint[0], sum[1] + constraint[1]]);
             [pull / information, 1.0 / information]
         };
         let cosine = (pair.cosine + pair.slope * growth).clamp(-1.0, 1.0);

@@ -1,5 +1,5 @@
-//! The paper's search (§5.2): RANSAC finds one group of converging lines after the other among those that remain, each
-//! point then optimised over `(alpha, theta)`.
+//! The paper's search (§5.2): RANSAC finds one group of converging lines after another among the remaining lines, and
+//! optimises each point over `(alpha, theta)`.
 
 use super::metric::{Line, visible};
 use super::sphere::Frame;
@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 /// Pairs of lines drawn for each point.
 const DRAWS: usize = 600;
 
-/// At most `count` vanishing points in homogeneous pixels, in the order they were found.
+/// At most `count` vanishing points in homogeneous pixels, in the order of detection.
 pub fn search(
     frame: &Frame,
     segments: &[Segment],
@@ -32,7 +32,7 @@ pub fn search(
             Metric::VisibleLine => visible(s, w, h).and_then(|s| Line::new(&s)),
         })
         .collect();
-    // Inlier limits that measure best on labelled photos, in pixels of a picture 640 wide.
+    // Inlier limits in pixels of an image 640 pixels wide, the best in measurements on labelled photos [bench vp].
     let limit = w.max(h) / 640.0 * if params.metric == Metric::Segment { 1.5 } else { 8.0 };
     let distance = |line: &Line, p: DVec3| match params.metric {
         Metric::Segment => line.endpoint_distance(p),
@@ -44,7 +44,7 @@ pub fn search(
         if lines.len() < 2 {
             break;
         }
-        // The pair of lines whose meeting point most lines agree with.
+        // Draw pairs of lines and keep the intersection that agrees with the most lines.
         let votes = exec::map(DRAWS, job.part(round as f64 / count as f64, (round + 1) as f64 / count as f64), |k| {
             let mut rng = Rng::new(params.seed, &[round as u64, k as u64]);
             let (a, b) = (lines[rng.below(lines.len())].line, lines[rng.below(lines.len())].line);
@@ -66,29 +66,30 @@ pub fn search(
     Ok(found)
 }
 
-/// The homogeneous point at `(alpha, theta)` about an origin: `rho = alpha / (1 - alpha)`, so `alpha = 1` is infinity.
+/// The homogeneous point at `(alpha, theta)` about an origin: `rho = alpha / (1 - alpha)`, so that `alpha = 1` is at
+/// infinity.
 pub fn from_alpha(alpha: f64, theta: f64, origin: DVec2) -> DVec3 {
     let w = 1.0 - alpha;
     (DVec2::from_angle(theta) * alpha + origin * w).extend(w)
 }
 
-/// `alpha = 1 - 1 / (rho + 1)` and the angle of a homogeneous point.
+/// `alpha = 1 - 1 / (rho + 1)` and the polar angle of a homogeneous point.
 pub fn to_alpha(p: DVec3, origin: DVec2) -> (f64, f64) {
     let away = (p.truncate() - origin * p.z) * if p.z < 0.0 { -1.0 } else { 1.0 };
     let rho = away.length();
     (rho / (rho + p.z.abs()), away.to_angle())
 }
 
-/// Pattern search over `(alpha, theta)` from a start; the steps of alpha shrink towards 1 as those of rho grow.
+/// Pattern search over `(alpha, theta)`; steps of alpha shrink towards 1, where steps of rho grow.
 fn regress(start: DVec3, origin: DVec2, loss: impl Fn(DVec3) -> f64) -> DVec3 {
     let (mut alpha, mut theta) = to_alpha(start, origin);
     let mut best = loss(start);
     let mut point = start;
     let mut step = 0.2;
     while step > 1e-9 {
-        let reach = (1.0 - alpha).max(1e-9) * step;
+        let alpha_step = (1.0 - alpha).max(1e-9) * step;
         let turn = step * 0.3;
-        let tries = [(reach, 0.0), (-reach, 0.0), (0.0, turn), (0.0, -turn)];
+        let tries = [(alpha_step, 0.0), (-alpha_step, 0.0), (0.0, turn), (0.0, -turn)];
         let next = tries
             .iter()
             .map(|(da, dt)| ((alpha + da).clamp(0.0, 1.0), theta + dt))

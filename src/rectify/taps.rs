@@ -1,44 +1,46 @@
-//! The 4 × 4 samples about each pixel of a run, and their weights.
+//! The 4 × 4 source samples (taps) around each pixel of a run, and their filter weights.
 //!
-//! Where the source is magnified the weights are those of bicubic interpolation (Catmull-Rom). Where it is minified a
-//! sample weighs by the share of the footprint that falls on it: row by row, as the footprint is a sheared rectangle.
-//! Both are the same for a footprint of one pixel but for what the cubic sharpens, which fades out in between.
+//! Where the source is magnified, the weights are those of bicubic interpolation (Catmull-Rom). Where it is minified,
+//! each sample is weighted by the share of the footprint that covers it, row by row, since the footprint is a sheared
+//! rectangle. For a footprint of one pixel both filters agree except for the sharpening terms of the cubic, which fade
+//! out in between.
 
 use super::footprint::{Footprints, RUN};
-use super::four::MOST_READ;
+use super::lanes::MAX_READ;
 use crate::image::Image;
 
-/// Samples along each side.
+/// Taps along each side.
 pub const TAPS: usize = 4;
 
-/// Longest side of a rectangle that they hold wherever it lies.
-pub const LONGEST_SIDE: f32 = 3.0;
+/// Longest side of a rectangle that the taps cover at any sub-pixel position: `TAPS - 1` [convention].
+pub const MAX_SIDE: f32 = 3.0;
 
-/// Square of a pixel's longest axis in the source up to which cubics interpolate, and from which on they have no part.
+/// Range of the squared major axis of a pixel's footprint, in source pixels, over which the cubic filter fades out:
+/// full weight up to `SHARP`, no weight from `SOFT` on [origin not recorded].
 const SHARP: f32 = 1.0;
 const SOFT: f32 = 1.5;
 
-/// One of the equal parts of every footprint of a run, which together are the whole.
+/// One of the equal parts into which every footprint of a run is divided.
 #[derive(Clone, Copy)]
 pub struct Part {
-    /// Its number along x and y, and how many there are.
+    /// Index of the part along x and y, and the number of parts along x and y.
     pub at: [usize; 2],
     pub of: [usize; 2],
-    /// Pixels of the level of the pyramid it is taken from to a pixel of the source.
+    /// Pixels of the pyramid level in use per pixel of the source.
     pub scale: f32,
 }
 
 pub struct Taps {
-    /// The first of the four rows, and the first column of each.
+    /// Index of the first of the four rows, and the first column of each row.
     pub line: [i32; RUN],
     pub column: [[i32; RUN]; TAPS],
-    /// Where the samples of each row begin among those of all, if they are inside.
+    /// Offset of each row's first sample in the image data; valid if the row lies inside the image.
     pub start: [[usize; RUN]; TAPS],
-    /// Weights of the rows, and of the columns, the same in each row; if some are sheared, of the columns of each row, which
-    /// all together sum to 1.
+    /// Weights of the rows (`down`) and of the columns (`across`), which are equal for all rows. If `is_sheared`,
+    /// `across` alone counts: it holds the weights of each row's columns, and all of them together sum to 1.
     pub down: [[f32; TAPS]; RUN],
     pub across: [[[f32; TAPS]; RUN]; TAPS],
-    /// Whether the pixel is seen and all of its samples lie inside the source.
+    /// Whether the pixel is visible and all its taps lie inside the source.
     pub is_inside: [bool; RUN],
     pub is_sheared: bool,
     /// Whether some weights are negative.
@@ -57,19 +59,19 @@ impl Taps {
         is_sharp: false,
     };
 
-    /// The weight of column `k` of row `j` of pixel `i`.
+    /// The weight of column `k` in row `j` of pixel `i`.
     pub fn weight(&self, i: usize, j: usize, k: usize) -> f32 {
         if self.is_sheared { self.across[j][i][k] } else { self.down[i][j] * self.across[0][i][k] }
     }
 }
 
-/// Length of a sample's side that a side of the given length covers whose middle is `offset` away.
+/// Length of overlap between a sample of unit width and an interval of the given length whose centre is `offset` away.
 #[inline(always)]
 fn overlap(offset: f32, length: f32) -> f32 {
     (0.5 * length + 0.5 - offset.abs()).max(0.0).min(length.min(1.0))
 }
 
-/// What Catmull-Rom's weights are beyond those of a straight line, `t` of the way from the second sample to the third.
+/// The difference between Catmull-Rom and linear weights at fraction `t` of the way from the second tap to the third.
 #[inline(always)]
 fn sharpening(t: f32) -> [f32; TAPS] {
     let u = 1.0 - t;
@@ -77,17 +79,18 @@ fn sharpening(t: f32) -> [f32; TAPS] {
     [first, last - 2.0 * first, first - 2.0 * last, last]
 }
 
-/// Which weights a run takes.
+/// The filter that a run uses.
 #[derive(Clone, Copy, PartialEq)]
 enum Filter {
-    /// Cubics alone: no pixel is larger than one of the source.
+    /// Cubic weights alone: every footprint is within one source pixel.
     Cubic,
-    /// Overlaps and what is left of the cubics.
+    /// Overlap weights plus the faded sharpening terms of the cubic.
     Fading,
     Overlap,
 }
 
-/// Weights along one direction; `at` is how far the middle is beyond that of the second sample.
+/// Computes weights along one direction; `at` is the distance of the footprint's centre beyond the centre of the
+/// second tap.
 #[inline(always)]
 fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], filter: Filter, to: &mut [[f32; RUN]; TAPS]) {
     let [first, second, third, fourth] = to;
@@ -117,15 +120,17 @@ fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], filter: Fil
     }
 }
 
-/// A whole number as an integer. A sum puts it into the last bits, which goes on vectors as a cast does not.
+/// Converts a whole number to an integer by an addition that shifts it into the low bits: unlike a cast, this
+/// vectorises.
 #[inline(always)]
 fn integer(whole: f64) -> i32 {
     (whole + 1.5 * (1u64 << 52) as f64).to_bits() as i32
 }
 
-/// The same, within four millions.
+/// As [`integer`], in single precision; the value is clamped to ±4 million.
 #[inline(always)]
 fn integer_of_single(whole: f32) -> i32 {
+    /// Adding it moves a whole number into the low bits of the mantissa [rounding].
     const SHIFT: f32 = 12_582_912.0;
     (whole.max(-4e6).min(4e6) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }
@@ -146,7 +151,7 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
         let (column, line) = (at_x.floor(), at_y.floor());
         (x[i], y[i]) = ((at_x - column) as f32, (at_y - line) as f32);
         (left[i], taps.line[i]) = (integer(column) - 1, integer(line) - 1);
-        (width[i], height[i]) = ((w * share[0]).min(LONGEST_SIDE), (h * share[1]).min(LONGEST_SIDE));
+        (width[i], height[i]) = ((w * share[0]).min(MAX_SIDE), (h * share[1]).min(MAX_SIDE));
         sharp[i] = can_be_sharp * ((SOFT - footprints.longest[i]) / (SOFT - SHARP)).max(0.0).min(1.0);
     }
     let any = |values: &[f32; RUN]| values.iter().fold(0, |any, v| any | v.to_bits()) != 0;
@@ -189,18 +194,19 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
             taps.start[j][i] = start as usize;
         }
     }
-    // Columns move one way from row to row. What is read beyond four pixels of three channels is the next row's, if any.
-    let most = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
-    let beyond = if channels == 3 { MOST_READ.div_ceil(3) - TAPS } else { 0 } as i32;
+    // First columns grow or shrink monotonically from row to row, so checking the first row and the last suffices. A
+    // load of three channels reads past the fourth pixel; in the last row that must stay inside the image.
+    let last_start = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
+    let beyond = if channels == 3 { MAX_READ.div_ceil(3) - TAPS } else { 0 } as i32;
     for i in 0..RUN {
         let (a, b, line) = (taps.column[0][i], taps.column[TAPS - 1][i], taps.line[i]);
-        let last = most[0] - if line == most[1] { beyond } else { 0 };
-        let is_inside = (a.min(b) >= 0) & (a.max(b) <= last) & (line >= 0) & (line <= most[1]);
+        let last = last_start[0] - if line == last_start[1] { beyond } else { 0 };
+        let is_inside = (a.min(b) >= 0) & (a.max(b) <= last) & (line >= 0) & (line <= last_start[1]);
         taps.is_inside[i] = footprints.is_seen[i] & is_inside;
     }
 }
 
-/// Four weights of each pixel, which were computed for one pixel after the other.
+/// Transposes weights computed tap by tap into four weights per pixel.
 #[inline(always)]
 fn side_by_side(weight: impl Fn(usize, usize) -> f32, to: &mut [[f32; TAPS]; RUN]) {
     for (i, to) in to.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! The whole stage on rooms and planes whose cameras are known.
+//! Tests of the whole stage on rooms and planes with known cameras.
 
 use super::sphere::STRAIGHTNESS;
 use super::vanishing::from_segments;
@@ -72,19 +72,19 @@ fn exact_segments_give_exact_vanishing_points_and_the_camera() {
 
 #[test]
 fn errors_under_noise_are_as_stated() {
-    // From what leaves the weights as they are to what the limit of the lines hides much of.
+    // From noise that leaves the weights unchanged to noise that the inlier limit largely truncates.
     for (noise, per_axis) in [(0.25, 14), (0.5, 40), (1.0, 14), (1.0, 40)] {
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..40 {
             let truth = camera(0.5, 0.3, 0.05, 700.0);
             let params = Params { focal: Some(700.0), seed, ..Params::default() };
-            // Five segments per independent observation, as the stated errors presume.
+            // Repeat each segment five times: stated errors assume five segments per independent observation.
             let segments = room(&truth, [per_axis; 3], noise, seed).repeat(5);
             let view = view_of(&segments, &params).unwrap();
             for v in &view.vanishing_points {
                 let found = direction_of(&truth, v.point);
                 let error = (0..3).map(|k| angle(found, truth.axes.col(k))).fold(9.0, f64::min);
-                // These edges are straight.
+                // The generated edges are perfectly straight: remove the allowance for crooked ones.
                 sum += error * error / (v.error * v.error - STRAIGHTNESS * STRAIGHTNESS);
                 count += 1.0;
             }
@@ -181,7 +181,7 @@ fn sets_without_a_vanishing_point_are_refused() {
 
 #[test]
 fn segments_through_their_point_repeated_ones_and_worthless_ones_do_no_harm() {
-    // All through one point, a third of them with their middle there.
+    // All segments pass through one point; a third of them have their midpoint there.
     let point = DVec2::new(310.0, 240.0);
     let through = |i: usize| {
         let d = DVec2::from_angle(0.13 * i as f64);
@@ -219,7 +219,8 @@ fn a_hundred_thousand_segments_take_their_time_but_not_more() {
     assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.02);
 }
 
-/// A linear photo of a ceiling in the plane `y = -1` that ends 6 units from the camera's axes, with lamps of 0.3 × 0.15 every 0.6 × 0.4 units.
+/// A linear photo of a ceiling in the plane `y = -1` that ends 6 units from the camera's axes, with lamps of 0.3 ×
+/// 0.15 units every 0.6 × 0.4 units.
 fn ceiling(camera: &Perspective) -> Image {
     const SUB: usize = 3;
     let lamp = |p: DVec2| {
@@ -254,11 +255,11 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
     let photo = ceiling(&truth);
     let mask = Image::from_fn(SIZE.0, SIZE.1, |_, _| [1.0f32]).unwrap();
     let monitor = Monitor::default();
-    // Exact segments: this is about the unwarping alone, not about how well lines are found in pixels.
+    // Use exact segments: this test concerns the unwarping alone, not the line detection.
     let view = view_of(&room(&truth, [30, 30, 30], 0.0, 4), &Params::default()).unwrap();
     assert!((view.perspective.focal / 560.0 - 1.0).abs() < 0.02, "{}", view.perspective.focal);
     let flat = unwarp(&photo, &view, &mask, &UnwarpParams::default(), monitor.job()).unwrap();
-    // Sides of the rectangle in true units: the plane's distance is 1, so a pixel's size is known too.
+    // The sides of the rectangle in true units: the plane's distance is 1, so the pixel size is known too.
     let corner = flat.corners.map(|c| on_ceiling(&truth, c));
     let (across, down) = (corner[1] - corner[0], corner[3] - corner[0]);
     let (w, h) = (flat.image.width as f64, flat.image.height as f64);
@@ -267,8 +268,8 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
     assert!((across.length() / down.length() * h / w - 1.0).abs() < 0.01);
     assert!(across.normalize().dot(down.normalize()).abs() < 0.01);
     assert!(flat.aspect_confidence > 0.8);
-    // Valid texels lie on the camera's side, and show the lamps where they are; far ones, many to a pixel of the photo,
-    // count by the share of it they show.
+    // Valid texels lie on the camera's side and show the lamps at their true positions. Weight each texel by the photo
+    // area it shows: many distant texels share a pixel.
     let mut agree = (0.0, 0.0);
     for y in 0..flat.image.height {
         for x in 0..flat.image.width {
@@ -287,7 +288,7 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
         }
     }
     assert!(agree.1 > 10_000.0 && agree.0 > 0.95 * agree.1, "{agree:?}");
-    // A homography from the corners, as the paper has it, is the same map.
+    // The homography from the corners, as in the paper, is the same map.
     let rectangle = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
     let paper = Homography::from_corners(rectangle, flat.corners).unwrap();
     let p = DVec2::new(0.3 * w, 0.7 * h);
@@ -303,7 +304,7 @@ fn expected_corner_errors_hold_over_noisy_lines() {
     for focal in [Some(560.0), None] {
         let mut shares = Vec::new();
         for seed in 0..60 {
-            // Five segments per independent observation, as the stated errors presume.
+            // Repeat each segment five times: stated errors assume five segments per independent observation.
             let segments = room(&truth, [14, 14, 14], 1.0, seed).repeat(5);
             let view = view_of(&segments, &Params { focal, seed, ..Params::default() }).unwrap();
             let flat = unwarp(&photo, &view, &mask, &params, Monitor::default().job()).unwrap();
@@ -311,7 +312,7 @@ fn expected_corner_errors_hold_over_noisy_lines() {
             let found = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
             let (found, exact) =
                 (centred(found), centred(flat.corners.map(|c| on_ceiling(&truth, c) / flat.pixel_size)));
-            // The axes are named and point as the photo has it: the true ones that come nearest.
+            // The naming and orientation of axes follow the photo: use the true axes nearest to them.
             let turns = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
                 .into_iter()
                 .flat_map(|u| [(u, u.perp()), (u, -u.perp())])
@@ -324,8 +325,8 @@ fn expected_corner_errors_hold_over_noisy_lines() {
         let at = |p: f64| shares[(p * shares.len() as f64) as usize];
         let mean_square = shares.iter().map(|s| s * s).sum::<f64>() / shares.len() as f64;
         println!("{focal:?}: mean square {mean_square:.2}, half below {:.2}, 95 % below {:.2}", at(0.5), at(0.95));
-        // Expected errors are root mean squares. Four times 60 corners, of which those of one view are alike: 0.12 is one
-        // standard deviation.
+        // Expected errors are root mean squares. There are four times 60 corners, and the four of one view are
+        // correlated: the standard deviation is 0.12.
         assert!((0.7..1.4).contains(&mean_square) && at(0.95) < 2.3);
     }
 }
@@ -391,7 +392,7 @@ fn images_without_lines_are_refused_and_never_crash() {
             let error = find_view(image, &params, Monitor::default().job()).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Degenerate);
         }
-        // Noise; noise of one bit; all but a corner saturated; every third pixel not finite.
+        // Noise; binary noise; saturation in all but a corner; every third pixel not finite.
         let odd = |x: usize, y: usize| if (x + y) % 3 == 0 { f32::NAN } else { noise(x, y) };
         for image in [
             Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap(),
@@ -426,7 +427,7 @@ fn planes_that_cannot_be_unwarped_say_why() {
     ] {
         assert_eq!(run(&mask(&|_, y| y < 200), bad).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
-    // A single marked pixel, and ceilings that touch the horizon and reach across it.
+    // A single marked pixel, and ceilings that touch the horizon and extend past it.
     assert!(run(&mask(&|x, y| x == 400 && y == 10), horizontal.clone()).is_ok());
     for lowest in [300, 400] {
         let across = run(&mask(&|_, y| y < lowest), horizontal.clone()).unwrap();
@@ -434,7 +435,7 @@ fn planes_that_cannot_be_unwarped_say_why() {
     }
 }
 
-/// A room whose horizontal directions enclose another angle than a right one, seen with pixels of another height than width.
+/// A room whose horizontal directions are not at a right angle, seen with non-square pixels.
 fn skewed(truth: &Perspective, skew: f64, tall: f64, noise: f64, seed: u64) -> Vec<Segment> {
     let turned = Perspective { axes: truth.axes * DMat3::from_rotation_y(skew), ..*truth };
     let mut segments = room(truth, [0, 40, 40], noise, seed);
@@ -447,23 +448,24 @@ fn skewed(truth: &Perspective, skew: f64, tall: f64, noise: f64, seed: u64) -> V
 
 #[test]
 fn right_angles_are_found_right_within_what_is_stated() {
-    // Without the focal length stated errors are on the safe side: an error of one direction moves its angle and the focal length that
-    // the others tell alike, which is not counted.
+    // Without a given focal length, the stated errors are conservative: an error of one direction changes its angle
+    // and the focal length that the others imply in the same sense, which the estimate ignores.
     for (focal, range) in [(Some(700.0), 0.6..1.4), (None, 0.2..1.4)] {
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..60 {
             let truth = camera(0.5, 0.3, 0.05, 700.0);
-            // Five segments per independent observation, as the stated errors presume.
+            // Repeat each segment five times: stated errors assume five segments per independent observation.
             let segments = skewed(&truth, 0.0, 1.0, 0.5, 2 * seed).repeat(5);
             let view = view_of(&segments, &Params { focal, seed, ..Params::default() }).unwrap();
             for found in view.squareness {
                 let found = found.unwrap();
-                // These edges are straight, which takes half of two directions' allowance from the angle between them.
+                // The generated edges are perfectly straight, which removes half of two directions' allowance from the
+                // angle between them.
                 sum += found.angle * found.angle / (found.error * found.error - STRAIGHTNESS * STRAIGHTNESS);
                 count += 1.0;
             }
         }
-        // Squares of 180 ratios, by three of 60 independent views: a standard deviation of 0.11 to 0.18.
+        // Squares of 180 ratios, three for each of 60 independent views: the standard deviation is 0.11 to 0.18.
         let ratio = sum / count;
         println!("focal length {focal:?}: {ratio:.2}");
         assert!(range.contains(&ratio), "{focal:?}: {ratio}");
@@ -489,7 +491,7 @@ fn walls_at_other_angles_and_pixels_that_are_not_square_show() {
     }
     let (_, ratios) = worst(&skewed(&truth, 0.0, 1.25, 0.3, 9), Some(700.0));
     assert!(ratios.iter().any(|r| r.abs() > 3.0), "{ratios:?}");
-    // Of one pair alone nothing is known but with the focal length.
+    // A single pair of axes reveals nothing unless the focal length is given.
     let pair: Vec<Segment> = room(&truth, [0, 40, 40], 0.3, 5);
     let [unknown, given] = [None, Some(700.0)].map(|focal| worst(&pair, focal).0.squareness[0].unwrap());
     assert!(unknown.error > 5.0 * given.error && given.angle.abs() < 3.0 * given.error, "{unknown:?} {given:?}");

@@ -1,5 +1,5 @@
-//! Texture unwarping (§5.3): the homography of the plane from the room axes and the focal length, so that the aspect
-//! ratio is true, and its expected error.
+//! Texture unwarping (§5.3): the homography of the plane from the room axes and the focal length, which gives the true
+//! aspect ratio, and the expected error of the homography.
 
 use super::camera::{self, FREE_ERROR, USUAL_SPREAD, usual_focal};
 use super::plane::{Plane, choose, marked_pixels};
@@ -21,12 +21,12 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     job.check()?;
     job.report(0.1);
 
-    // The densest part of the photo decides the size of a pixel, unless the image became too large.
+    // The best-resolved part of the photo decides the size of a pixel, unless the image would become too large.
     let size = rectangle.high - rectangle.low;
     let pixel_size = rectangle.densest.max(size.max_element() / params.max_side as f64);
     let side = |length: f64| ((length / pixel_size).round() as usize).clamp(1, params.max_side);
     let (width, height) = (side(size.x), side(size.y));
-    // Square pixels; what rounding adds or takes is shared by both ends.
+    // Keep pixels square; distribute the rounding of the size over both ends.
     let spare = size - DVec2::new(width as f64, height as f64) * pixel_size;
     let to_plane = DMat3::from_translation(rectangle.low + spare / 2.0) * DMat3::from_scale(DVec2::splat(pixel_size));
     let to_photo = Homography(plane.to_photo().0 * to_plane).rescaled();
@@ -34,7 +34,7 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     let mut image = resample::warp(&photo.to_rgb()?, &to_photo, width, height, job.part(0.1, 0.8))?;
     let mut valid = resample::warp(&mask.channel(0)?, &to_photo, width, height, job.part(0.8, 1.0))?;
     for (pixel, valid) in image.data.chunks_exact_mut(3).zip(&mut valid.data) {
-        // What the photo does not know is not shown.
+        // Mark pixels that are not finite as invalid, and show them black.
         *valid = if *valid >= 0.5 && pixel.iter().all(|v| v.is_finite()) { 1.0 } else { 0.0 };
         if pixel.iter().any(|v| !v.is_finite()) {
             pixel.fill(0.0);
@@ -61,13 +61,14 @@ struct Uncertainty {
     corner_error: [f64; 4],
 }
 
-/// Carries the covariances of the vanishing points and the uncertainty of the focal length over to the rectified corners, to
-/// first order: each is moved by a little and the camera found anew, focal length and axes, as it was found from them.
+/// Propagates the covariances of the vanishing points and the uncertainty of the focal length to the rectified
+/// corners, to first order: perturb each input slightly and re-estimate the camera (focal length and axes) from the
+/// perturbed inputs.
 fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64, width: usize) -> Uncertainty {
     let camera = &view.perspective;
     let usual = usual_focal(width);
     let points = &view.vanishing_points;
-    let nominal = camera::again(camera, points, usual);
+    let nominal = camera::reestimate(camera, points, usual);
     let flat = |found: &Perspective| {
         let turn = found.axes * nominal.axes.transpose();
         rectified(&plane.seen_by(turn, camera.focal * found.focal / nominal.focal), corners)
@@ -82,11 +83,12 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64,
             let mut points = points.clone();
             let ray = camera::direction(point.point, camera.principal, camera.focal);
             points[k].point = (camera.intrinsics() * (ray + step * SMALL)).normalize();
-            moved.push(flat(&camera::again(camera, &points, usual)));
+            moved.push(flat(&camera::reestimate(camera, &points, usual)));
         }
     }
-    moved.push(flat(&camera::again(camera, points, usual * (USUAL_SPREAD * SMALL).exp())));
-    // One point says nothing of the turn about it: that stays as uncertain as an axis that convention fixes.
+    moved.push(flat(&camera::reestimate(camera, points, usual * (USUAL_SPREAD * SMALL).exp())));
+    // A single point leaves the rotation about it free: give that rotation the uncertainty of an axis fixed by
+    // convention.
     if points.iter().filter(|p| p.support > 0).count() < 2 {
         for axis in (0..3).filter(|&k| points[k].support > 0).map(|k| camera.axes.col(k)) {
             let turn = DMat3::from_quat(DQuat::from_axis_angle(axis, FREE_ERROR * SMALL));
@@ -103,21 +105,21 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64,
         }
         aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
     }
-    // One half where the aspect ratio is uncertain by 10 %.
+    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio [convention].
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 
-/// Share of a standard deviation that is the step of the finite differences.
+/// Step of the finite differences as a share of a standard deviation [rounding].
 const SMALL: f64 = 1e-3;
 
-/// Vectors whose squares add up to a covariance.
+/// Vectors whose outer products sum to the covariance.
 fn deviations(covariance: &DMat3) -> [DVec3; 3] {
     let rows = covariance.to_cols_array_2d();
     let (values, vectors) = symmetric_eigen::<3>(rows);
     std::array::from_fn(|k| DVec3::from_array(vectors[k]) * values[k].max(0.0).sqrt())
 }
 
-/// Plane coordinates of photo points relative to their mean, which is of no consequence.
+/// Plane coordinates of photo points relative to their mean; the translation does not matter.
 fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
     let inverse = plane.to_photo().inverse();
     let at = corners.map(|c| inverse.apply(c));
@@ -126,7 +128,7 @@ fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
 }
 
 impl Plane {
-    /// The plane after the camera's axes turned and its focal length changed.
+    /// The plane as seen after the camera's axes rotated and its focal length changed.
     fn seen_by(&self, turn: DMat3, focal: f64) -> Self {
         Self {
             right: turn * self.right,

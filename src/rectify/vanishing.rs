@@ -1,46 +1,50 @@
-//! Vanishing points from line segments (§5.2): up to three directions, orthogonal where the search is Manhattan's, each
-//! then refined freely with its own covariance.
+//! Vanishing points from line segments (§5.2): up to three directions, orthogonal in the Manhattan search, each then
+//! refined freely with its own covariance.
 
-use super::sphere::{Evidence, Frame, Refined, RightAngle, project, refine, refine_near, round_covariance, unproject};
+use super::sphere::{
+    Frame, Refined, RightAngle, WeightedLine, project, refine, refine_near, round_covariance, unproject,
+};
 use super::{Params, Search, VanishingPoint, manhattan, successive};
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Segment;
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Lines used to search and refine; further ones, the shortest, are only assigned.
-const MOST_LINES: usize = 2500;
+/// Maximum number of lines used to search and refine; further (shorter) lines are only assigned.
+const MAX_LINES: usize = 2500;
 
-/// A direction less certain than this, in radians, is none.
-const WORST_ERROR: f64 = 0.2;
+/// Directions with a larger error, in radians, are rejected [origin not recorded].
+const MAX_ERROR: f64 = 0.2;
 
-/// How far from a right angle two directions of a room are, in radians, and by how much the logarithm of the focal length
-/// is off while they are refined.
+/// Prior standard deviations: of the angle between two room directions about a right angle, in radians, and of the
+/// logarithm of the focal length during their refinement [bench vp].
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
 
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
 pub struct Vanishing {
-    /// The first three at most are near orthogonal; best supported first among them.
+    /// At most the first three are nearly orthogonal; these are sorted by falling support.
     pub points: Vec<VanishingPoint>,
-    /// For each segment the point it runs to.
+    /// For each segment, the index of the point it runs to.
     pub members: Vec<Option<usize>>,
-    /// The direction of each as its own lines have it, without the right angles, in a camera of the focal length below.
+    /// Each direction estimated from its own lines without priors on right angles, for a camera of the focal length
+    /// below.
     pub(super) free: Vec<Refined>,
-    /// Focal length in pixels under which the points are most nearly orthogonal; a weak guess from one finite point.
+    /// Focal length in pixels for which the points are most nearly orthogonal; a weak guess if there is one finite
+    /// point only.
     pub focal: f64,
 }
 
-/// A direction with the right angles that the others lead one to expect, and without.
+/// A direction refined with priors on right angles to the others (`expected`), and without (`free`).
 #[derive(Clone, Copy)]
 struct Found {
     expected: Refined,
     free: Refined,
 }
 
-/// Finds at most `count` vanishing points of segments in an image of the given size. Segments without length or with
-/// coordinates that are not finite take no part. An error if no point can be found.
+/// Finds at most `count` vanishing points of segments in an image of the given size. Segments of zero length or with
+/// non-finite coordinates are ignored. Returns an error if no point can be found.
 pub fn from_segments(
     segments: &[Segment],
     width: usize,
@@ -52,9 +56,9 @@ pub fn from_segments(
     params.check()?;
     check_range("count of vanishing points", count, 1, 64)?;
     let frame = Frame::new(width, height, params.principal(width, height));
-    let mut evidence = frame.evidence(segments);
-    evidence.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
-    let lines: Vec<Evidence> = evidence.iter().take(MOST_LINES).map(|(_, e)| *e).collect();
+    let mut weighted_lines = frame.weighted_lines(segments);
+    weighted_lines.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
+    let lines: Vec<WeightedLine> = weighted_lines.iter().take(MAX_LINES).map(|(_, e)| *e).collect();
 
     let given = params.focal.map(|f| f / frame.scale);
     let mut focal = given.unwrap_or(manhattan::USUAL_FOCAL);
@@ -66,13 +70,13 @@ pub fn from_segments(
                 let axes = [0, 1, 2].map(|k| triplet.axes.col(k));
                 found = refine_freely(&lines, &axes, focal);
             }
-            // Directions beside the three, from the lines that run along none of them.
+            // Find further directions from the lines that run along none of the three.
             while found.len() < count && !found.is_empty() {
                 let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
-                let rest: Vec<Evidence> =
+                let rest: Vec<WeightedLine> =
                     lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
                 let Some(start) = manhattan::strongest(&rest, focal, params.seed, job.part(0.8, 0.9))? else { break };
-                let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < WORST_ERROR) else { break };
+                let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < MAX_ERROR) else { break };
                 found.push(Found { expected: point, free: point });
             }
         }
@@ -81,18 +85,18 @@ pub fn from_segments(
             found.extend(points.iter().map(|&p| {
                 let direction = unproject(frame.from_pixels(p), focal);
                 let covariance = refine(&lines, direction, focal)
-                    .map_or_else(|| round_covariance(direction, WORST_ERROR), |r| r.covariance);
+                    .map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);
                 let point = Refined { direction, covariance };
                 Found { expected: point, free: point }
             }));
         }
     }
 
-    // Assign every segment to the point it agrees with best, and count.
+    // Assign every segment to the point it agrees with best, and count the support of each point.
     let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
     let mut members = vec![None; segments.len()];
     let mut support = vec![(0usize, 0.0f64); points.len()];
-    for (index, e) in &evidence {
+    for (index, e) in &weighted_lines {
         let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
             members[*index] = Some(k);
@@ -100,15 +104,15 @@ pub fn from_segments(
         }
     }
 
-    // Keep what at least two lines support; the longest support comes first within the orthogonal three.
+    // Keep points with at least two lines; sort by falling support within the orthogonal three.
     let mut order: Vec<usize> = (0..points.len()).filter(|&k| support[k].0 >= 2).collect();
     order.sort_by(|&a, &b| (a >= 3).cmp(&(b >= 3)).then(support[b].1.total_cmp(&support[a].1)));
     order.truncate(count);
     if order.is_empty() {
         return Err(Error::degenerate(format!(
-            "no lines found that meet in a vanishing point ({} usable segments): use a photo with straight edges of the \
-             room in focus",
-            evidence.len()
+            "no lines found that meet in a vanishing point ({} usable segments): use a photo that shows straight edges \
+             of the room in focus",
+            weighted_lines.len()
         )));
     }
     for member in &mut members {
@@ -128,10 +132,10 @@ pub fn from_segments(
     Ok(Vanishing { points, members, free, focal: focal * frame.scale })
 }
 
-/// Refines each direction on the lines that run along it more nearly than along the others, then once more with the
-/// right angles that the others, as their own lines have them, lead one to expect: those help where a direction has few
-/// lines. Directions that no two lines fix, or that drift into another, are dropped.
-fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
+/// Refines each direction on the lines that agree with it better than with the others; then once more with priors on
+/// right angles to the others' own estimates, which help where a direction has few lines. Drops directions that no two
+/// lines determine and directions that drift into another.
+fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Found> {
     let mut current: Vec<Refined> =
         axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();
     for _ in 0..3 {
@@ -157,15 +161,15 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
     for found in squared {
         let r = &found.expected;
         let apart = kept.iter().all(|k| k.expected.direction.dot(r.direction).abs() < 0.9);
-        if apart && r.error() < WORST_ERROR {
+        if apart && r.error() < MAX_ERROR {
             kept.push(found);
         }
     }
     kept
 }
 
-/// For each direction the lines that agree with it, and with none better.
-fn nearest(lines: &[Evidence], directions: &[Refined], focal: f64) -> Vec<Vec<Evidence>> {
+/// For each direction, the lines that agree with it better than with any other.
+fn nearest(lines: &[WeightedLine], directions: &[Refined], focal: f64) -> Vec<Vec<WeightedLine>> {
     let points: Vec<DVec3> = directions.iter().map(|r| project(r.direction, focal)).collect();
     let mut groups = vec![Vec::new(); points.len()];
     for e in lines {

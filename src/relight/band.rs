@@ -1,5 +1,5 @@
-//! Band-limited look-ups of a texture that repeats, with their slopes: cubic B-splines on a pyramid, between whose levels it
-//! is interpolated. Unlike texels and bilinear filters these have slopes everywhere that gradients need.
+//! Band-limited look-ups of a repeating texture with their derivatives: cubic B-splines on the levels of a pyramid,
+//! interpolated linearly between levels. Unlike texels and bilinear filters, they are differentiable everywhere.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid};
@@ -16,17 +16,17 @@ struct Level {
     texels: Vec<DVec3>,
 }
 
-/// A value and how it changes along the texture's coordinates and with the level.
+/// A filtered value with its partial derivatives by texture coordinates and by pyramid level.
 #[derive(Clone, Copy)]
-pub(super) struct Look {
+pub(super) struct TextureSample {
     pub value: DVec3,
-    pub along_u: DVec3,
-    pub along_v: DVec3,
-    pub along_level: DVec3,
+    pub d_du: DVec3,
+    pub d_dv: DVec3,
+    pub d_dlevel: DVec3,
 }
 
 impl Pyramid {
-    /// Negative values count as 0.
+    /// Negative values are clamped to 0.
     pub fn new(image: &Image, job: Job) -> Result<Self> {
         let mut image = image.to_rgb()?;
         image.data.iter_mut().for_each(|v| *v = v.max(0.0));
@@ -38,10 +38,10 @@ impl Pyramid {
         Ok(Self { levels })
     }
 
-    /// At texture coordinates, filtered so that a texel of level 0 has `2^level` its size.
-    pub fn look_up(&self, uv: DVec2, level: f64) -> Look {
-        let most = (self.levels.len() - 1) as f64;
-        let within = level.clamp(0.0, most);
+    /// The texture at `uv`, filtered so that a texel of level 0 grows to `2^level` times its side.
+    pub fn look_up(&self, uv: DVec2, level: f64) -> TextureSample {
+        let last = (self.levels.len() - 1) as f64;
+        let within = level.clamp(0.0, last);
         let fine = within as usize;
         let share = within - fine as f64;
         let a = self.levels[fine].look_up(uv);
@@ -50,11 +50,11 @@ impl Pyramid {
         }
         let b = self.levels[fine + 1].look_up(uv);
         let between = |a: DVec3, b: DVec3| a + (b - a) * share;
-        Look {
+        TextureSample {
             value: between(a.value, b.value),
-            along_u: between(a.along_u, b.along_u),
-            along_v: between(a.along_v, b.along_v),
-            along_level: b.value - a.value,
+            d_du: between(a.d_du, b.d_du),
+            d_dv: between(a.d_dv, b.d_dv),
+            d_dlevel: b.value - a.value,
         }
     }
 }
@@ -65,9 +65,9 @@ impl Level {
         Self { width: image.width, height: image.height, texels }
     }
 
-    fn look_up(&self, uv: DVec2) -> Look {
+    fn look_up(&self, uv: DVec2) -> TextureSample {
         let (x, y) = (Taps::new(uv.x, self.width), Taps::new(uv.y, self.height));
-        let (mut value, mut along_u, mut along_v) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        let (mut value, mut d_du, mut d_dv) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
         for j in 0..4 {
             let row = &self.texels[y.texels[j] * self.width..][..self.width];
             let (mut sum, mut slope) = (DVec3::ZERO, DVec3::ZERO);
@@ -77,14 +77,14 @@ impl Level {
                 slope += texel * x.slopes[i];
             }
             value += sum * y.weights[j];
-            along_u += slope * y.weights[j];
-            along_v += sum * y.slopes[j];
+            d_du += slope * y.weights[j];
+            d_dv += sum * y.slopes[j];
         }
-        Look { value, along_u, along_v, along_level: DVec3::ZERO }
+        TextureSample { value, d_du, d_dv, d_dlevel: DVec3::ZERO }
     }
 }
 
-/// The texels that a cubic B-spline draws on, with its weights and their slopes along the coordinate.
+/// The four texels under a cubic B-spline, with its weights and their derivatives by the coordinate.
 struct Taps {
     texels: [usize; 4],
     weights: [f64; 4],
@@ -128,23 +128,25 @@ mod tests {
         const H: f64 = 1e-6;
         for _ in 0..100 {
             let (uv, level) = (DVec2::new(rng.next_f64() * 4.0 - 2.0, rng.next_f64()), rng.next_f64() * 3.0);
-            let look = pyramid.look_up(uv, level);
+            let sample = pyramid.look_up(uv, level);
             let step = |uv: DVec2, level: f64| pyramid.look_up(uv, level).value;
             let differences = [
                 (step(uv + DVec2::X * H, level) - step(uv - DVec2::X * H, level)) / (2.0 * H),
                 (step(uv + DVec2::Y * H, level) - step(uv - DVec2::Y * H, level)) / (2.0 * H),
                 (step(uv, level + H) - step(uv, level - H)) / (2.0 * H),
             ];
-            for (slope, difference) in [look.along_u, look.along_v, look.along_level].into_iter().zip(differences) {
+            for (slope, difference) in [sample.d_du, sample.d_dv, sample.d_dlevel].into_iter().zip(differences) {
                 assert!((slope - difference).abs().max_element() < 1e-5, "{slope} {difference}");
             }
-            // It repeats, and the last level is the mean.
-            assert!((look.value - step(uv + 1.0, level)).abs().max_element() < 1e-9);
+            // The texture repeats, and the last level is its mean.
+            assert!((sample.value - step(uv + 1.0, level)).abs().max_element() < 1e-9);
             assert!((step(uv, 99.0).x - mean).abs() < 1e-6);
         }
-        // A plane of one colour stays as it is.
+        // A constant texture stays constant.
         let flat = Pyramid::new(&Image::from_fn(5, 3, |_, _| [0.7]).unwrap(), monitor.job()).unwrap();
-        let look = flat.look_up(DVec2::new(0.3, 0.9), 0.4);
-        assert!((look.value - f64::from(0.7f32)).abs().max_element() < 1e-7 && look.along_u.abs().max_element() < 1e-6);
+        let sample = flat.look_up(DVec2::new(0.3, 0.9), 0.4);
+        assert!(
+            (sample.value - f64::from(0.7f32)).abs().max_element() < 1e-7 && sample.d_du.abs().max_element() < 1e-6
+        );
     }
 }

@@ -1,21 +1,21 @@
-//! How light is told apart by where it came from: one bin for the emission, for each lamp, or for each cell of its surface.
+//! Bins of light by source: one for the whole emission, one per lamp, or one per cell of the emissive surface.
 
 use super::lamps::Lamps;
 use crate::render::{LightSource, PathSink, World};
 use glam::{DVec3, Vec2, Vec3};
 
 pub(super) struct Bins<'a> {
-    /// For each mesh, whether it belongs to the emission that is solved for.
+    /// For each mesh, whether it belongs to the emission to solve for.
     of_emitter: Vec<bool>,
     division: Division<'a>,
 }
 
 pub(super) enum Division<'a> {
-    /// All of it is one bin.
+    /// One bin for all of the emission.
     Whole,
-    /// A bin for each lamp; what belongs to none counts as other light.
+    /// One bin per lamp; light outside the lamps counts as background.
     Lamps(&'a Lamps),
-    /// Cells of the square of texture coordinates, which repeats.
+    /// One bin per cell of the unit square of texture coordinates, which repeats.
     Cells { width: usize, height: usize },
 }
 
@@ -32,7 +32,7 @@ impl<'a> Bins<'a> {
         }
     }
 
-    /// The bin of a light, if it has one.
+    /// The bin of a light source, if it has one.
     #[inline]
     fn find(&self, source: LightSource) -> Option<usize> {
         let (mesh, triangle, uv) = match (source, &self.division) {
@@ -51,14 +51,14 @@ impl<'a> Bins<'a> {
     }
 }
 
-/// The cell that holds a point of texture coordinates.
+/// The cell at texture coordinates.
 #[inline]
 fn cell(uv: Vec2, width: usize, height: usize) -> usize {
     let at = |t: f32, n: usize| ((t.rem_euclid(1.0) * n as f32) as usize).min(n - 1);
     at(uv.y, height) * width + at(uv.x, width)
 }
 
-/// Sorts the light of one path.
+/// Adds the contributions of one path to the bins.
 pub(super) struct Sorter<'a> {
     bins: &'a Bins<'a>,
     factor: Vec3,
@@ -67,7 +67,7 @@ pub(super) struct Sorter<'a> {
 }
 
 impl<'a> Sorter<'a> {
-    /// `factor` leads from the light that arrives to what is matched.
+    /// `factor` converts incident light to the quantity to match.
     pub fn new(bins: &'a Bins<'a>, factor: Vec3, sums: &'a mut [DVec3], others: &'a mut DVec3) -> Self {
         Self { bins, factor, sums, others }
     }

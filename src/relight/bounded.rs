@@ -1,79 +1,81 @@
-//! Least squares within bounds, for few equations and any number of unknowns.
+//! Bounded least squares for few equations and any number of unknowns.
 //!
-//! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The pull `λ > 0` towards `p` makes the answer unique, however
-//! many unknowns are alike. Its conditions of optimality say `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: as many
-//! equations in `z` as there are rows. They are the gradient of a convex function of `z`, piecewise quadratic, that Newton's
-//! method with an exact line search minimises in a few steps. Every step solves for the unknowns that are not at a bound:
-//! the primal-dual active set method (Hintermüller, Ito and Kunisch 2002), on the small side of the problem.
+//! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The Tikhonov term, `λ > 0`, makes the solution unique even
+//! for identical columns. The optimality conditions are `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: as many
+//! equations in `z` as there are rows. They are the gradient of a convex, piecewise quadratic function of `z`, which
+//! Newton's method with an exact line search minimises in a few steps. Each step solves for the unknowns between their
+//! bounds: this is the primal-dual active set method (Hintermüller, Ito and Kunisch 2002) in the dual of the problem,
+//! which is small.
 
 use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
 pub(super) struct Problem<'a> {
-    /// Row after row.
+    /// `A`, row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    /// `λ` > 0.
-    pub pull: f64,
-    /// `p`, for every unknown.
+    /// `λ`, positive.
+    pub regularisation: f64,
+    /// `p`, one value per unknown.
     pub preferred: &'a [f64],
-    /// `u`, ≥ 0, may be infinite.
+    /// `u`, non-negative; may be infinite.
     pub upper: &'a [f64],
 }
 
-/// Newton steps: each but the last few changes which unknowns are at a bound.
-const STEPS: usize = 200;
-/// Residual, relative to the right-hand side, that is rounding only.
-const ROUNDING: f64 = 1e-12;
-/// Residual that counts as settled all the same.
-const FLICKER: f64 = 1e-8;
+/// Largest number of Newton steps; all but the last few change the active set. [convention]
+const MAX_STEPS: usize = 200;
+/// Residual relative to the right-hand side that counts as zero. [rounding]
+const CONVERGED: f64 = 1e-12;
+/// Residual that is accepted after the last step, when an unknown at its bound keeps changing state. [rounding]
+const CONVERGED_AT_BOUND: f64 = 1e-8;
 
-/// At a bound, or between them.
+/// The state of an unknown.
 #[derive(Clone, Copy, PartialEq)]
 enum State {
-    Least,
-    Between,
-    Most,
+    AtLower,
+    Free,
+    AtUpper,
 }
 
 impl Problem<'_> {
     /// # Errors
-    /// `Internal` if the method does not end, which it must.
+    /// `Internal` if the method does not converge, which cannot happen in theory.
     pub fn solve(&self) -> Result<Vec<f64>> {
-        let (m, lambda) = (self.right.len(), self.pull);
+        let (m, lambda) = (self.right.len(), self.regularisation);
         let size = self.right.iter().map(|b| b.abs()).fold(0.0, f64::max);
         let mut z = vec![0.0; m];
         let mut gradient = self.gradient(lambda, &z);
         let scale = size.max(norm(&gradient));
-        for _ in 0..STEPS {
-            if norm(&gradient) <= ROUNDING * scale {
+        for _ in 0..MAX_STEPS {
+            if norm(&gradient) <= CONVERGED * scale {
                 return Ok(self.clipped(&z));
             }
             let states = self.states(&z);
             let step = self.newton_step(lambda, &states, &gradient);
             let t = self.line_search(lambda, &z, &step, &gradient);
             z.iter_mut().zip(&step).for_each(|(z, d)| *z += t * d);
-            // Where no unknown came to a bound or left one, the function is a parabola, and the step ends at its foot.
-            if t > 1.0 - ROUNDING && self.states(&z) == states {
+            // If the active set did not change, the function is a parabola along the step, and the step ends at its
+            // minimum.
+            if t > 1.0 - CONVERGED && self.states(&z) == states {
                 return Ok(self.clipped(&z));
             }
             gradient = self.gradient(lambda, &z);
         }
-        // At a bound to rounding an unknown may flicker.
-        if norm(&gradient) <= FLICKER * scale {
+        // Accept a small residual: an unknown at its bound may change state by rounding.
+        if norm(&gradient) <= CONVERGED_AT_BOUND * scale {
             return Ok(self.clipped(&z));
         }
         Err(Error::new(ErrorKind::Internal, "the powers of the groups did not settle"))
     }
 
-    /// Where each unknown is.
+    /// The states of the unknowns.
     fn states(&self, z: &[f64]) -> Vec<State> {
         let state = |(x, u): (f64, &f64)| match x {
-            x if x <= 0.0 => State::Least,
-            x if x >= *u => State::Most,
-            _ => State::Between,
+            x if x <= 0.0 => State::AtLower,
+            x if x >= *u => State::AtUpper,
+            _ => State::Free,
         };
-        self.free(z).into_iter().zip(self.upper).map(state).collect()
+        self.unclipped(z).into_iter().zip(self.upper).map(state).collect()
     }
 
     fn row(&self, i: usize) -> &[f64] {
@@ -82,7 +84,7 @@ impl Problem<'_> {
     }
 
     /// `p + Aᵀ z`
-    fn free(&self, z: &[f64]) -> Vec<f64> {
+    fn unclipped(&self, z: &[f64]) -> Vec<f64> {
         let mut x = self.preferred.to_vec();
         for (i, &z) in z.iter().enumerate().filter(|(_, z)| **z != 0.0) {
             x.iter_mut().zip(self.row(i)).for_each(|(x, a)| *x += a * z);
@@ -91,7 +93,7 @@ impl Problem<'_> {
     }
 
     fn clipped(&self, z: &[f64]) -> Vec<f64> {
-        let mut x = self.free(z);
+        let mut x = self.unclipped(z);
         x.iter_mut().zip(self.upper).for_each(|(x, u)| *x = x.clamp(0.0, *u));
         x
     }
@@ -102,12 +104,12 @@ impl Problem<'_> {
         (0..self.right.len()).map(|i| lambda * z[i] + dot(self.row(i), &x) - self.right[i]).collect()
     }
 
-    /// `−(λ I + Σ a aᵀ)⁻¹ g` over the unknowns between their bounds.
+    /// `−(λ I + Σ a aᵀ)⁻¹ g`, where the sum is over the unknowns between their bounds.
     fn newton_step(&self, lambda: f64, states: &[State], gradient: &[f64]) -> Vec<f64> {
         let m = gradient.len();
         let mut hessian = vec![0.0; m * m];
         for i in 0..m {
-            let count = |(a, state): (&f64, &State)| if *state == State::Between { *a } else { 0.0 };
+            let count = |(a, state): (&f64, &State)| if *state == State::Free { *a } else { 0.0 };
             let between: Vec<f64> = self.row(i).iter().zip(states).map(count).collect();
             for k in 0..=i {
                 hessian[i * m + k] = dot(&between, self.row(k));
@@ -119,8 +121,8 @@ impl Problem<'_> {
         step
     }
 
-    /// Where along the step the function is least: its derivative grows linearly, and steeper or flatter from where an
-    /// unknown leaves a bound or comes to one.
+    /// The minimum along the step: the derivative is piecewise linear, and its slope changes where an unknown leaves a
+    /// bound or reaches one.
     fn line_search(&self, lambda: f64, z: &[f64], step: &[f64], gradient: &[f64]) -> f64 {
         let along = {
             let mut along = vec![0.0; self.preferred.len()];
@@ -130,7 +132,7 @@ impl Problem<'_> {
             along
         };
         let mut slope = Slope { start: dot(gradient, step), growth: lambda * dot(step, step), changes: Vec::new() };
-        for ((x, v), u) in self.free(z).iter().zip(&along).zip(self.upper).filter(|((_, v), _)| **v != 0.0) {
+        for ((x, v), u) in self.unclipped(z).iter().zip(&along).zip(self.upper).filter(|((_, v), _)| **v != 0.0) {
             let (enters, leaves) = if *v > 0.0 { (-x / v, (u - x) / v) } else { ((u - x) / v, -x / v) };
             slope.add(enters, leaves, v * v);
         }
@@ -139,7 +141,7 @@ impl Problem<'_> {
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Eight sums side by side: each addition to a single one would wait for the one before.
+    // Use eight partial sums: with a single one, each addition would wait for the previous one.
     let mut sums = [0.0; 8];
     let (eights_of_a, rest_of_a) = a.as_chunks::<8>();
     let (eights_of_b, rest_of_b) = b.as_chunks::<8>();
@@ -156,13 +158,13 @@ fn norm(v: &[f64]) -> f64 {
     dot(v, v).sqrt()
 }
 
-/// Solves a positive definite system given by its lower half, in place.
+/// Solves a positive definite system, given by its lower triangle, in place (Cholesky).
 fn solve_cholesky(a: &mut [f64], x: &mut [f64]) {
     let m = x.len();
     for i in 0..m {
         for k in 0..=i {
             let rest = a[i * m + k] - dot(&a[i * m..i * m + k], &a[k * m..k * m + k]);
-            // Rounding may leave nothing of a small pivot.
+            // Bound small pivots away from zero against rounding.
             a[i * m + k] = if i == k { rest.max(f64::EPSILON * a[i * m + i]).sqrt() } else { rest / a[k * m + k] };
         }
     }
@@ -180,41 +182,48 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
-    /// The pull is relative to the mean square of a row.
-    fn solve(rows: usize, matrix: &[f64], right: &[f64], pull: f64, preferred: &[f64], upper: &[f64]) -> Vec<f64> {
-        let pull = pull * dot(matrix, matrix) / rows as f64;
-        Problem { matrix, right, pull, preferred, upper }.solve().unwrap()
+    /// `regularisation` is relative to the mean square of a row.
+    fn solve(
+        rows: usize,
+        matrix: &[f64],
+        right: &[f64],
+        regularisation: f64,
+        preferred: &[f64],
+        upper: &[f64],
+    ) -> Vec<f64> {
+        let regularisation = regularisation * dot(matrix, matrix) / rows as f64;
+        Problem { matrix, right, regularisation, preferred, upper }.solve().unwrap()
     }
 
     const FREE: f64 = f64::INFINITY;
 
     #[test]
     fn closed_forms() {
-        // One equation, one unknown: a x = b, pulled a little to p.
+        // One equation in one unknown: a x = b, slightly regularised towards p.
         let x = solve(1, &[2.0], &[6.0], 1e-9, &[0.0], &[FREE]);
         assert!((x[0] - 6.0 * 2.0 / (4.0 + 4e-9)).abs() < 1e-12);
-        // Identical unknowns share alike; the one nearest to what is preferred is chosen among equals.
+        // Identical unknowns get equal shares beyond their preferred values.
         let x = solve(1, &[1.0, 1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0, 3.0], &[FREE; 3]);
         assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 1.0).abs() < 1e-7 && (x[2] - 4.0).abs() < 1e-7, "{x:?}");
-        // Bounds: the first can give no more than 1, so the second gives the rest.
+        // The first unknown is bounded by 1, so the second gives the rest.
         let x = solve(1, &[1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0], &[1.0, FREE]);
         assert!(x[0] == 1.0 && (x[1] - 5.0).abs() < 1e-7, "{x:?}");
-        // Negative light would be needed: off.
+        // A negative solution is clipped to 0.
         assert_eq!(solve(1, &[1.0], &[-6.0], 1e-9, &[1.0], &[FREE]), [0.0]);
-        // Beyond what all can give: all at their bounds.
+        // An unreachable right-hand side puts all unknowns at their bounds.
         assert_eq!(solve(1, &[1.0, 2.0], &[100.0], 1e-9, &[1.0, 1.0], &[3.0, 4.0]), [3.0, 4.0]);
         // Two equations: [[2, 1], [1, 3]] x = [5, 10] has x = [1, 3].
         let x = solve(2, &[2.0, 1.0, 1.0, 3.0], &[5.0, 10.0], 1e-10, &[0.0, 0.0], &[FREE; 2]);
         assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 3.0).abs() < 1e-8, "{x:?}");
-        // No equation at all.
+        // Without equations, the solution is the preferred value.
         assert_eq!(
-            Problem { matrix: &[], right: &[], pull: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
+            Problem { matrix: &[], right: &[], regularisation: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
             [0.5]
         );
     }
 
-    /// The conditions of Karush, Kuhn and Tucker hold at the answer of random problems of all shapes, and of groups that
-    /// differ by twelve orders of magnitude.
+    /// The Karush-Kuhn-Tucker conditions hold at the solutions of random problems of all shapes, with columns that
+    /// differ by up to twelve orders of magnitude.
     #[test]
     fn conditions_of_optimality() {
         let mut rng = Rng::new(3, &[]);
@@ -227,9 +236,9 @@ mod tests {
             let preferred = vec![1.0; n];
             let upper: Vec<f64> =
                 (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 3.0 * rng.next_f64() }).collect();
-            let pull = 10f64.powf(-9.0 * rng.next_f64());
-            let x = solve(m, &matrix, &right, pull, &preferred, &upper);
-            let lambda = pull * matrix.iter().map(|a| a * a).sum::<f64>() / m as f64;
+            let regularisation = 10f64.powf(-9.0 * rng.next_f64());
+            let x = solve(m, &matrix, &right, regularisation, &preferred, &upper);
+            let lambda = regularisation * matrix.iter().map(|a| a * a).sum::<f64>() / m as f64;
             for j in 0..n {
                 let slope: f64 =
                     (0..m).map(|i| matrix[i * n + j] * (dot(&matrix[i * n..][..n], &x) - right[i])).sum::<f64>()

@@ -1,56 +1,56 @@
-//! The least of a smooth function of a few numbers within bounds: projected BFGS (Nocedal and Wright 2006, chapter 6; Bertsekas
-//! 1982 for the projection).
+//! Bounded minimisation of a smooth function of a few variables: projected BFGS (Nocedal and Wright 2006, chapter 6;
+//! Bertsekas 1982 for the projection).
 
 use crate::job::Job;
 
-/// What the numbers may be.
+/// Bounds of the variables.
 pub(super) struct Bounds<const N: usize> {
-    pub least: [f64; N],
-    pub most: [f64; N],
-    /// After which the function repeats; numbers that may be all of that are not bounded.
+    pub min: [f64; N],
+    pub max: [f64; N],
+    /// Period of the function in each variable. A variable whose range covers a period is unbounded.
     pub period: [f64; N],
 }
 
-/// Most steps.
-const STEPS: usize = 60;
-/// Most halvings of a step.
-const HALVINGS: usize = 30;
-/// How much of the forecast a step must bring (Armijo).
-const SUFFICIENT: f64 = 1e-4;
-/// Length of the first step, as a share of what the numbers may be.
-const FIRST: f64 = 0.05;
-/// Changes that end the search, relative.
-const SETTLED: f64 = 1e-10;
+/// Largest number of steps. [judged, not recorded]
+const MAX_STEPS: usize = 60;
+/// Largest number of halvings of a step. [convention]
+const MAX_HALVINGS: usize = 30;
+/// Smallest accepted decrease relative to the linear prediction (Armijo condition). [convention]
+const ARMIJO: f64 = 1e-4;
+/// Length of the first step. [judged, not recorded]
+const FIRST_STEP: f64 = 0.05;
+/// Relative decrease below which the search ends. [judged, not recorded]
+const MIN_RELATIVE_GAIN: f64 = 1e-10;
 
 impl<const N: usize> Bounds<N> {
     fn is_open(&self, i: usize) -> bool {
-        self.most[i] - self.least[i] >= self.period[i] * (1.0 - 1e-12)
+        self.max[i] - self.min[i] >= self.period[i] * (1.0 - 1e-12)
     }
 
     pub fn nearest(&self, x: [f64; N]) -> [f64; N] {
-        std::array::from_fn(|i| if self.is_open(i) { x[i] } else { x[i].clamp(self.least[i], self.most[i]) })
+        std::array::from_fn(|i| if self.is_open(i) { x[i] } else { x[i].clamp(self.min[i], self.max[i]) })
     }
 
-    /// At a share of the way.
+    /// The point at relative positions `share` in the ranges of the variables.
     pub fn between(&self, share: [f64; N]) -> [f64; N] {
-        std::array::from_fn(|i| self.least[i] + share[i] * (self.most[i] - self.least[i]))
+        std::array::from_fn(|i| self.min[i] + share[i] * (self.max[i] - self.min[i]))
     }
 
-    /// The same within the bounds, by whole periods.
+    /// The same point within the bounds, moved by whole periods.
     pub fn wrapped(&self, x: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
-            if self.is_open(i) { self.least[i] + (x[i] - self.least[i]).rem_euclid(self.period[i]) } else { x[i] }
+            if self.is_open(i) { self.min[i] + (x[i] - self.min[i]).rem_euclid(self.period[i]) } else { x[i] }
         })
     }
 
-    /// Whether a number can follow its slope.
+    /// Whether a variable may move along the negative gradient.
     fn is_free(&self, i: usize, x: &[f64; N], slope: &[f64; N]) -> bool {
-        let held = x[i] <= self.least[i] && slope[i] >= 0.0 || x[i] >= self.most[i] && slope[i] <= 0.0;
-        self.is_open(i) || self.least[i] < self.most[i] && !held
+        let held = x[i] <= self.min[i] && slope[i] >= 0.0 || x[i] >= self.max[i] && slope[i] <= 0.0;
+        self.is_open(i) || self.min[i] < self.max[i] && !held
     }
 }
 
-/// Goes down from `x`; `f` gives the value and its slopes. Ends early where it is cancelled.
+/// Minimises from `x`; `f` returns the value and its gradient. Ends early if the job is cancelled.
 pub(super) fn run<const N: usize>(
     bounds: &Bounds<N>,
     mut x: [f64; N],
@@ -59,7 +59,7 @@ pub(super) fn run<const N: usize>(
 ) -> [f64; N] {
     let (mut value, mut slope) = f(x);
     let mut inverse: Option<[[f64; N]; N]> = None;
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         if job.is_cancelled() {
             break;
         }
@@ -69,52 +69,53 @@ pub(super) fn run<const N: usize>(
         if length == 0.0 || !length.is_finite() {
             break;
         }
-        // Newton's direction by the inverse there is, or straight down.
-        let mut step = steepest.map(|s| s * FIRST / length);
+        // Take the quasi-Newton direction if it descends, else the steepest descent.
+        let mut step = steepest.map(|s| s * FIRST_STEP / length);
         if let Some(inverse) = &inverse {
             let newton = std::array::from_fn(|i| if free[i] { dot(&inverse[i], &steepest) } else { 0.0 });
             if dot(&newton, &slope) < 0.0 {
                 step = newton;
             }
         }
-        // Half of it as often as it takes to go down.
+        // Halve the step until the Armijo condition holds.
         let mut next = None;
-        for halving in 0..HALVINGS {
+        for halving in 0..MAX_HALVINGS {
             let share = 0.5f64.powi(halving as i32);
             let to = bounds.nearest(std::array::from_fn(|i| x[i] + share * step[i]));
-            let moved: [f64; N] = std::array::from_fn(|i| to[i] - x[i]);
+            let step_taken: [f64; N] = std::array::from_fn(|i| to[i] - x[i]);
             let (there, slope_there) = f(to);
-            if there <= value + SUFFICIENT * dot(&moved, &slope) {
-                next = Some((to, moved, there, slope_there));
+            if there <= value + ARMIJO * dot(&step_taken, &slope) {
+                next = Some((to, step_taken, there, slope_there));
                 break;
             }
         }
-        let Some((to, moved, there, slope_there)) = next else { break };
-        let turned: [f64; N] = std::array::from_fn(|i| slope_there[i] - slope[i]);
-        update(&mut inverse, &moved, &turned);
+        let Some((to, step_taken, there, slope_there)) = next else { break };
+        let gradient_change: [f64; N] = std::array::from_fn(|i| slope_there[i] - slope[i]);
+        update(&mut inverse, &step_taken, &gradient_change);
         let gain = value - there;
         (x, value, slope) = (to, there, slope_there);
-        if gain <= SETTLED * value.abs() {
+        if gain <= MIN_RELATIVE_GAIN * value.abs() {
             break;
         }
     }
     x
 }
 
-/// The BFGS update of the inverse of the second derivatives, after a step along which the slopes turned.
-fn update<const N: usize>(inverse: &mut Option<[[f64; N]; N]>, moved: &[f64; N], turned: &[f64; N]) {
-    let curvature = dot(moved, turned);
-    if !(curvature > 1e-12 * dot(moved, moved).sqrt() * dot(turned, turned).sqrt()) {
+/// BFGS update of the inverse Hessian from a step and the change of the gradient.
+fn update<const N: usize>(inverse: &mut Option<[[f64; N]; N]>, step_taken: &[f64; N], gradient_change: &[f64; N]) {
+    let curvature = dot(step_taken, gradient_change);
+    if !(curvature > 1e-12 * dot(step_taken, step_taken).sqrt() * dot(gradient_change, gradient_change).sqrt()) {
         return;
     }
-    // At first the curvature that was met, in all directions.
-    let scale = curvature / dot(turned, turned);
+    // Initialise with the observed curvature in all directions.
+    let scale = curvature / dot(gradient_change, gradient_change);
     let h = inverse.get_or_insert(std::array::from_fn(|i| std::array::from_fn(|j| if i == j { scale } else { 0.0 })));
-    let along: [f64; N] = std::array::from_fn(|i| dot(&h[i], turned));
-    let gain = (1.0 + dot(turned, &along) / curvature) / curvature;
+    let along: [f64; N] = std::array::from_fn(|i| dot(&h[i], gradient_change));
+    let gain = (1.0 + dot(gradient_change, &along) / curvature) / curvature;
     for i in 0..N {
         for j in 0..N {
-            h[i][j] += gain * moved[i] * moved[j] - (along[i] * moved[j] + moved[i] * along[j]) / curvature;
+            h[i][j] += gain * step_taken[i] * step_taken[j]
+                - (along[i] * step_taken[j] + step_taken[i] * along[j]) / curvature;
         }
     }
 }
@@ -128,7 +129,7 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
 
-    /// Rosenbrock's valley, whose least is at (1, 1); within x <= 0.5 it is at (0.5, 0.25).
+    /// Rosenbrock's function has its minimum at (1, 1); within x <= 0.5 it is at (0.5, 0.25).
     #[test]
     fn a_valley_with_and_without_bounds() {
         let valley = |[x, y]: [f64; 2]| {
@@ -136,14 +137,14 @@ mod tests {
             (a * a + 100.0 * b * b, [-2.0 * a - 400.0 * x * b, 200.0 * b])
         };
         let monitor = Monitor::default();
-        for (most, expected) in [(3.0, [1.0, 1.0]), (0.5, [0.5, 0.25])] {
-            let bounds = Bounds { least: [-3.0; 2], most: [most, 3.0], period: [f64::INFINITY; 2] };
+        for (max, expected) in [(3.0, [1.0, 1.0]), (0.5, [0.5, 0.25])] {
+            let bounds = Bounds { min: [-3.0; 2], max: [max, 3.0], period: [f64::INFINITY; 2] };
             let found = run(&bounds, [-1.2, 1.0], valley, monitor.job());
             assert!(found.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-4), "{found:?}");
         }
-        // A wave has no bounds over its period, and a number that may not change stays.
+        // A wave over its whole period is unbounded, and a variable with equal bounds is fixed.
         let wave = |[x, y]: [f64; 2]| ((x - 3.0).cos(), [-(x - 3.0).sin(), 1.0 + y]);
-        let bounds = Bounds { least: [-3.2, 0.7], most: [3.2, 0.7], period: [std::f64::consts::TAU, 1.0] };
+        let bounds = Bounds { min: [-3.2, 0.7], max: [3.2, 0.7], period: [std::f64::consts::TAU, 1.0] };
         let found = run(&bounds, [2.9, 0.7], wave, monitor.job());
         let wrapped = bounds.wrapped(found);
         assert!((wrapped[0] - (3.0 - std::f64::consts::PI)).abs() < 1e-4 && wrapped[1] == 0.7, "{found:?} {wrapped:?}");

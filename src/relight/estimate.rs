@@ -1,30 +1,31 @@
-//! What independent batches say: means, intervals, and intervals of what is calculated from them.
+//! Statistics of independent batches: means, confidence intervals, and intervals of derived quantities.
 
-/// Batches of an estimate. Their spread gives the interval: with 32, Student's t is within 4 % of the normal quantile.
+/// Number of batches of an estimate. With 32, Student's t is within 4 % of the normal quantile.
+/// [judged, not recorded]
 pub const BATCHES: usize = 32;
 
-/// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom.
+/// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom. [convention]
 pub(super) const STUDENT_T: f64 = 2.039_513;
 
 pub(super) fn mean(values: &[f64; BATCHES]) -> f64 {
     values.iter().sum::<f64>() / BATCHES as f64
 }
 
-/// Of the mean.
+/// Standard error of the mean.
 pub(super) fn standard_error(values: &[f64; BATCHES]) -> f64 {
     let centre = mean(values);
     let n = BATCHES as f64;
     (values.iter().map(|v| (v - centre) * (v - centre)).sum::<f64>() / (n - 1.0) / n).sqrt()
 }
 
-/// The mean of all batches but one.
+/// The mean without one batch.
 pub(super) fn without(mean: f64, part: f64) -> f64 {
     let n = BATCHES as f64;
     (n * mean - part) / (n - 1.0)
 }
 
-/// The jackknife over batches: from an answer calculated from all of them, and the answers without each, the answer
-/// without the bias of order 1/n, and what each batch alone says, whose mean that is (Efron 1982, §2).
+/// The jackknife over batches (Efron 1982, §2): pseudo-values from the result of all batches and the results without
+/// each batch. Their mean is the result without its bias of order 1/n, and their variance gives its standard error.
 pub(super) fn pseudo_values(whole: f64, without: &[f64; BATCHES]) -> [f64; BATCHES] {
     let n = BATCHES as f64;
     without.map(|w| n * whole - (n - 1.0) * w)

@@ -1,19 +1,19 @@
-//! Powers of groups of lamps, within bounds, that come nearest to several goals.
+//! Powers of groups of lamps that best meet several goals, within bounds.
 //!
-//! Radiance is linear in the powers `x`, so the nearest ones minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and channels,
-//! `s` the brightness of a goal, with a small pull towards equal lamps that settles what the goals leave open ("Painting
-//! with light", Schoeneman et al. 1993, solves the same sum without it). With one group and one goal this is the closed
-//! form of [`super::run`].
+//! Radiance is linear in the powers `x`. The best powers minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and
+//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which decides what
+//! the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without it). With one
+//! group and one goal this is the closed form of [`super::run`].
 //!
-//! A goal may be a limit, which counts only where it is broken ([`Sense`]).
+//! A goal may be a limit, which counts only where it is violated ([`Sense`]).
 //!
-//! The least squares are between goals, each a mean over many paths: texels, whose noise would make the answer dark, are
-//! never compared one by one.
+//! The residuals are those of goals, each a mean over many paths. Single texels are never compared: their noise would
+//! bias the powers towards dark.
 
-use super::Reach;
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
 use super::sided::{self, Problem, Sense};
+use super::solution::TargetStatus;
 use super::steps::Terms;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::exec;
@@ -24,64 +24,63 @@ use glam::DVec3;
 /// Luminance of linear RGB ([`crate::image::colour::luminance`]).
 pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
 
-/// Most levels that a group can be dimmed to.
+/// Largest number of dimming levels. [convention]
 pub const MAX_LEVELS: usize = 4096;
 
-/// What may change of a group.
+/// Which changes of a group are allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
-    /// Its power alone: all channels are multiplied alike.
+    /// One power for all channels.
     Kept,
-    /// Each channel for itself.
+    /// A power for each channel.
     Free,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroupParams {
     pub colour: Colour,
-    /// Largest multiplier of each group, ≥ 0, infinite for none; empty if none has a bound.
-    pub most: Vec<f64>,
-    /// Multipliers that there are, each ≥ 0, at most [`MAX_LEVELS`]; empty if all are. Groups get those that together are
-    /// best for the goals ([`super::steps`]); their intervals are wider by the steps: they still hold what the powers would
-    /// be without any.
+    /// Largest multiplier of each group, ≥ 0, may be infinite; empty for no bounds.
+    pub max_scale: Vec<f64>,
+    /// Available multipliers, each ≥ 0, at most [`MAX_LEVELS`]; empty for continuous dimming. Groups get the levels
+    /// that together best meet the goals ([`super::steps`]). Their intervals include the distance to the continuous
+    /// powers.
     pub levels: Vec<f64>,
-    /// How much missing the goals weighs against lamps that differ, in `[1e-9, 1e3]`: small values meet the goals, large
-    /// ones keep the lamps equal.
+    /// Weight of the regularisation towards equal lamps, in `[1e-9, 1e3]`: small values meet the goals, large values
+    /// keep the lamps equal.
     pub evenness: f64,
-    /// A goal counts as met when it is missed by no more than this share of itself, in `[1e-6, 1]`, or by its noise.
+    /// Largest relative miss with which a goal counts as met, in `[1e-6, 1]`; the noise is added to it.
     pub tolerance: f64,
 }
 
 impl Default for GroupParams {
     fn default() -> Self {
-        Self { colour: Colour::Kept, most: Vec::new(), levels: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
+        Self { colour: Colour::Kept, max_scale: Vec::new(), levels: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
     }
 }
 
-/// What one goal gets.
+/// The result for one goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// Mean radiance, in cd/m² per channel.
     pub achieved: DVec3,
-    /// Half-widths of 95 % intervals: how far the truth may be from `achieved`, the powers as they are.
+    /// Half-widths of the 95 % confidence intervals of `achieved`, for fixed powers.
     pub half_width: DVec3,
-    pub reach: [Reach; 3],
+    pub status: [TargetStatus; 3],
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroupSolution {
-    /// What to multiply the emission of each group with, ≥ 0.
+    /// Multipliers of the emission of each group, ≥ 0.
     pub scale: Vec<DVec3>,
-    /// Half-widths of the 95 % confidence intervals of `scale`, from the paths, and where there are levels from the steps to
-    /// them; 0 at a bound.
+    /// Half-widths of the 95 % confidence intervals of `scale`, including rounding to levels; 0 at a bound.
     pub half_width: Vec<DVec3>,
     pub outcomes: Vec<Outcome>,
-    /// Why the goals are not all met, if they are not; the powers then are the nearest that the bounds allow.
+    /// Why goals are missed, if any are; the powers are then the best within the bounds.
     pub unreachable: Option<String>,
 }
 
-/// Solves for the powers of groups of lamps. `responses` are those to the groups ([`Responses::grouped`]), traced for the
-/// same goals; their targets and weights may differ.
+/// Solves for the powers of groups of lamps. `responses` are the responses to the groups ([`Responses::grouped`]),
+/// traced for the same goals; only the targets and weights of the goals may differ.
 ///
 /// # Errors
 /// `Unreachable` if no goal gets light from any group; parameters out of range; cancelled.
@@ -111,10 +110,10 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams,
     Ok(GroupSolution { scale, half_width, outcomes, unreachable })
 }
 
-/// Groups that are worked on at once, of as many as there may be.
-const RUN: usize = 1024;
+/// Number of groups processed per task. [judged, not recorded]
+const GROUPS_PER_RUN: usize = 1024;
 
-/// The power of each group: one list for all channels, or one for each of the three.
+/// The power of each group: one list for all channels, or one list per channel.
 struct Powers(Vec<Vec<f64>>);
 
 impl Powers {
@@ -125,15 +124,16 @@ impl Powers {
         }
     }
 
-    /// Half-widths of 95 % intervals, from the powers without each batch: [`super::estimate::pseudo_values`] of all groups
-    /// at once, which spread `n - 1` times as far as the answers that they come from.
+    /// Half-widths of 95 % intervals, from the powers without each batch: the jackknife of
+    /// [`super::estimate::pseudo_values`] for all groups at once. Pseudo-values spread `n - 1` times as far as the
+    /// results they come from.
     fn jackknife(&self, without: &[Self], job: Job) -> Result<Self> {
         let n = BATCHES as f64;
         let width = |list: usize| {
             let mut widths = try_vec(self.0[list].len(), 0.0)?;
-            exec::for_runs(&mut widths, RUN, job, |first, widths| {
+            exec::for_runs(&mut widths, GROUPS_PER_RUN, job, |first, widths| {
                 let answers = || without.iter().map(|powers| &powers.0[list][first..]);
-                let mut means = [0.0; RUN];
+                let mut means = [0.0; GROUPS_PER_RUN];
                 for answer in answers() {
                     means.iter_mut().zip(answer).for_each(|(mean, power)| *mean += power / n);
                 }
@@ -173,14 +173,14 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
     }
     check_range("evenness", params.evenness, 1e-9, 1e3)?;
     check_range("tolerance", params.tolerance, 1e-6, 1.0)?;
-    if !params.most.is_empty() && params.most.len() != responses.lamps() {
+    if !params.max_scale.is_empty() && params.max_scale.len() != responses.lamps() {
         return Err(Error::argument(format!(
             "bounds are given for {} of {} groups",
-            params.most.len(),
+            params.max_scale.len(),
             responses.lamps()
         )));
     }
-    params.most.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))?;
+    params.max_scale.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))?;
     if params.levels.len() > MAX_LEVELS {
         return Err(Error::argument(format!("there are {} levels; at most {MAX_LEVELS} may be", params.levels.len())));
     }
@@ -193,7 +193,7 @@ struct System<'a> {
     params: &'a GroupParams,
 }
 
-/// What the goals say of the powers, row after row.
+/// The system of equations of the goals, row by row.
 #[derive(Default)]
 struct Equations {
     groups: usize,
@@ -204,29 +204,29 @@ struct Equations {
 
 impl Equations {
     fn solve(&self, upper: &[f64], evenness: f64) -> Result<Vec<f64>> {
-        // Equal lamps that come nearest, where the goals leave it open.
+        // Regularise towards the best powers that are equal for all lamps.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
-        let equal = sided::all_alike(&together, &self.right, &self.senses);
+        let equal = sided::common_power(&together, &self.right, &self.senses);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
         let Self { matrix, right, senses, .. } = self;
-        Problem { matrix, right, senses, pull: evenness, preferred: &preferred, upper }.solve()
+        Problem { matrix, right, senses, regularisation: evenness, preferred: &preferred, upper }.solve()
     }
 }
 
 /// Mean responses.
 struct Measured {
-    /// For each goal, of each group.
+    /// For each goal the response to each group.
     rows: Vec<Vec<DVec3>>,
     background: Vec<DVec3>,
 }
 
 impl System<'_> {
-    /// Of all batches.
+    /// Means over all batches.
     fn means(&self, job: Job) -> Result<Measured> {
         let n = BATCHES as f64;
         let mean = |goal: usize| {
             let mut means = try_vec(self.responses.lamps(), DVec3::ZERO)?;
-            exec::for_runs(&mut means, RUN, job, |first, means| {
+            exec::for_runs(&mut means, GROUPS_PER_RUN, job, |first, means| {
                 for b in 0..BATCHES {
                     means.iter_mut().zip(&self.responses.batch(goal, b)[first..]).for_each(|(s, r)| *s += *r);
                 }
@@ -242,9 +242,9 @@ impl System<'_> {
         })
     }
 
-    /// Of all batches but one.
+    /// Means over all batches but one.
     fn means_without(&self, all: &Measured, batch: usize) -> Measured {
-        // What is left of nothing may be less than nothing by rounding.
+        // Clamp to 0: the remainder may be negative by rounding.
         let rest = |mean: &DVec3, part: DVec3| {
             let n = BATCHES as f64;
             ((*mean * n - part) / (n - 1.0)).max(DVec3::ZERO)
@@ -264,7 +264,7 @@ impl System<'_> {
         self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.evenness))
     }
 
-    /// The powers in steps.
+    /// The powers rounded to levels.
     fn stepped(&self, measured: &Measured, whole: &[DVec3]) -> Vec<DVec3> {
         let upper = self.upper();
         let mut levels = self.params.levels.clone();
@@ -274,16 +274,20 @@ impl System<'_> {
             let Equations { matrix, right, senses, .. } = &self.equations(measured, channels);
             Ok(Terms { matrix, right, senses }.round(&x, &levels, &upper))
         };
-        // Rounding cannot fail.
+        // `round` returns no errors.
         self.by_channels(round).map_or_else(|_| whole.to_vec(), |powers| powers.colours())
     }
 
     /// Largest power of each group.
     fn upper(&self) -> Vec<f64> {
-        if self.params.most.is_empty() { vec![f64::INFINITY; self.responses.lamps()] } else { self.params.most.clone() }
+        if self.params.max_scale.is_empty() {
+            vec![f64::INFINITY; self.responses.lamps()]
+        } else {
+            self.params.max_scale.clone()
+        }
     }
 
-    /// What a solution for some channels says of all.
+    /// Solves for all channels together, or for each channel, and collects the powers.
     fn by_channels(&self, solve: impl Fn(&[usize]) -> Result<Vec<f64>>) -> Result<Powers> {
         let channels: &[&[usize]] = match self.params.colour {
             Colour::Kept => &[&[0, 1, 2]],
@@ -292,7 +296,7 @@ impl System<'_> {
         channels.iter().map(|channels| solve(channels)).collect::<Result<_>>().map(Powers)
     }
 
-    /// All goals in some channels.
+    /// The equations of all goals in some channels.
     fn equations(&self, measured: &Measured, channels: &[usize]) -> Equations {
         let mut equations = Equations { groups: self.responses.lamps(), ..Equations::default() };
         for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
@@ -301,7 +305,7 @@ impl System<'_> {
                 Aspect::Colour => channels.iter().map(|&c| (DVec3::AXES[c], goal.sense[c])).collect(),
                 Aspect::Luminance => vec![(LUMINANCE, goal.sense[0])],
             };
-            // A goal of darkness is measured by what all lamps would bring.
+            // Relate a goal of darkness to the light of all lamps.
             let bright = target.max_element();
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };
@@ -330,27 +334,27 @@ impl System<'_> {
             let allowed = self.params.tolerance * brightest + STUDENT_T * standard_error(&batches);
             let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r.dot(part) == 0.0));
             match () {
-                () if miss.abs() <= allowed => Reach::Met,
-                () if miss > 0.0 => Reach::TooBright,
-                () if dark => Reach::Dark,
-                () => Reach::TooDim,
+                () if miss.abs() <= allowed => TargetStatus::Met,
+                () if miss > 0.0 => TargetStatus::TooBright,
+                () if dark => TargetStatus::Dark,
+                () => TargetStatus::TooDim,
             }
         };
-        let reach = match goal_of.aspect {
+        let status = match goal_of.aspect {
             Aspect::Colour => std::array::from_fn(|c| judge(DVec3::AXES[c], goal_of.sense[c])),
             Aspect::Luminance => [judge(LUMINANCE, goal_of.sense[0]); 3],
         };
-        Ok(Outcome { achieved: all.mean, half_width: all.half_width(), reach })
+        Ok(Outcome { achieved: all.mean, half_width: all.half_width(), status })
     }
 
-    /// The reason why goals are missed.
+    /// The reason why goals are missed, if any are.
     fn explain(&self, outcomes: &[Outcome], scale: &[DVec3]) -> Option<String> {
         let missed: Vec<usize> = (0..outcomes.len())
-            .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].reach.iter().any(|r| *r != Reach::Met))
+            .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].status.iter().any(|r| *r != TargetStatus::Met))
             .collect();
         let &first = missed.first()?;
         let outcome = &outcomes[first];
-        let channel = outcome.reach.iter().position(|r| *r != Reach::Met)?;
+        let channel = outcome.status.iter().position(|r| *r != TargetStatus::Met)?;
         let side = match self.goals[first].sense[channel] {
             Sense::Exactly => "",
             Sense::AtLeast => "at least ",
@@ -361,12 +365,14 @@ impl System<'_> {
             Aspect::Luminance => ("luminance", LUMINANCE),
         };
         let off = scale.iter().all(|x| x[channel] == 0.0);
-        let full =
-            !self.params.most.is_empty() && scale.iter().zip(&self.params.most).all(|(x, most)| x[channel] >= *most);
-        let why = match outcome.reach[channel] {
-            Reach::Dark => "no light of these lamps finds its way there",
-            Reach::TooBright if off => "the other lights alone are brighter: dim or remove them, or raise the target",
-            Reach::TooDim if full => "all groups are at their largest power: allow more, or lower the target",
+        let full = !self.params.max_scale.is_empty()
+            && scale.iter().zip(&self.params.max_scale).all(|(x, max)| x[channel] >= *max);
+        let why = match outcome.status[channel] {
+            TargetStatus::Dark => "no light of these lamps finds its way there",
+            TargetStatus::TooBright if off => {
+                "the other lights alone are brighter: dim or remove them, or raise the target"
+            }
+            TargetStatus::TooDim if full => "all groups are at their largest power: allow more, or lower the target",
             _ if self.goals.iter().all(|g| g.aspect == Aspect::Luminance) => {
                 "the goals ask for different things of the same groups: divide them further, or weigh the goals"
             }

@@ -1,21 +1,22 @@
-//! Importance: what a point of the emission's surface means to the target.
+//! The importance map: how much each point of the emissive surface contributes to the target.
 //!
-//! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`. Paths from the target,
-//! in a scene whose surface emits evenly, find the integrals of `I` over the cells of the surface's texture coordinates,
-//! once. Then any texture, however it is scaled, turned and shifted, costs one dot product, without a path.
+//! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`. Paths from the
+//! target, in a scene with uniform emission on the surface, estimate the integrals of `I` over the cells of the
+//! surface's texture coordinates once. After that, any texture at any scale, rotation and offset costs one dot product,
+//! without tracing.
 //!
-//! Cells limit the band: within one, `I` counts as constant. For matt surroundings it is smooth, and the error falls with
-//! the square of the cell; [`Importance::respond`] says how large it is.
+//! Cells limit the bandwidth: within a cell, `I` is taken as constant. In matt surroundings `I` is smooth, and the
+//! error is proportional to the squared size of a cell; [`Importance::respond`] estimates it.
 
 use super::bins::{Bins, Division};
 use super::estimate::BATCHES;
-use super::placement::Cells;
+use super::params::Params;
 use super::responses::{Estimate, Goal};
 use super::sided::Sense;
+use super::solution::Solution;
 use super::solve::{self, Measured};
 use super::target::Sampler;
 use super::transport::{Batches, Stop};
-use super::{Params, Solution};
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::Image;
@@ -27,10 +28,10 @@ use std::sync::Arc;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapParams {
-    /// Cells along u and v, each in `[1, 512]`.
+    /// Number of cells along u and v, each in `[1, 512]`.
     pub width: usize,
     pub height: usize,
-    /// When to stop, by the interval of the response to an even emission; `quantity` is not used.
+    /// Stopping conditions, for the interval of the response to uniform emission; `quantity` is ignored.
     pub tracing: Params,
 }
 
@@ -40,45 +41,55 @@ impl Default for MapParams {
     }
 }
 
-/// The map, in independent batches.
+/// The importance map, in independent batches.
 #[derive(Clone, Debug)]
 pub struct Importance {
     width: usize,
     height: usize,
-    /// Of each batch the cells row by row: the target's mean radiance where a cell emits 1 cd/m² and nothing else does.
+    /// For each batch the cells, row by row: the target's mean radiance if only that cell emits, 1 cd/m².
     batches: Vec<Vec<DVec3>>,
-    /// The target's mean radiance under all other light, of each batch.
+    /// For each batch the target's mean radiance under all other light.
     background: Vec<DVec3>,
-    /// Paths traced.
+    /// Number of paths traced.
     pub paths: u32,
 }
 
-/// What a texture would mean to the target.
+/// The response of the target to a texture.
 #[derive(Clone, Debug)]
 pub struct Response {
-    /// Mean radiance of the target in cd/m² per channel, where the texture's values are cd/m².
+    /// Mean radiance of the target in cd/m² per channel, for texture values in cd/m².
     pub light: Estimate,
-    /// What cells of twice the side change, a third of which the cells themselves are off where `I` is smooth: noise
-    /// included.
+    /// Change of the result with cells of twice the side, noise included. Where `I` is smooth, the error of the result
+    /// is a third of it.
     pub band_error: DVec3,
     measured: Vec<DVec3>,
 }
 
-/// Most cells along each side: a map of so many takes 200 MB.
+/// The mean importance map.
+pub(super) struct Cells {
+    pub width: usize,
+    pub height: usize,
+    pub importance: Vec<DVec3>,
+}
+
+/// Largest number of cells along each side: such a map takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// Points looked up along each side of a cell: at least so many, fewer where cells are many, and at most so many. Texels
-/// that cells cut would else count too much or too little, all of a periodic pattern alike.
-const LEAST_LOOK_UPS: usize = 16;
+/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells if that is less; at most 64. With
+/// too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
+/// [judged, not recorded]
+const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
-const MOST_LOOK_UPS: usize = 64;
+const MAX_LOOK_UPS: usize = 64;
 
 impl Importance {
-    /// Traces the importance of a goal on the surfaces of the emitting material, which need texture coordinates; the
-    /// goal's target and weight are not used. Points of the target that emit in the scene as it is are left out.
+    /// Traces the importance of a goal on the surfaces of the emitting material, which must have texture coordinates.
+    /// The target and the weight of the goal are ignored. Points of the target that emit in the original scene are
+    /// excluded.
     ///
     /// # Errors
-    /// Parameters out of range, a material or a target that is not there, surfaces without texture coordinates; cancelled.
+    /// Parameters out of range; a material or a target that does not exist; surfaces without texture coordinates;
+    /// cancelled.
     pub fn trace(scene: &Arc<Scene>, emitter: usize, goal: &Goal, params: &MapParams, job: Job) -> Result<Self> {
         check_range("width", params.width, 1, MAX_CELLS)?;
         check_range("height", params.height, 1, MAX_CELLS)?;
@@ -92,7 +103,7 @@ impl Importance {
         let stop = Stop::new(tracing);
         let mut growth = f64::INFINITY;
         loop {
-            batches.trace_round(growth, stop.most, job.part(0.1, 1.0))?;
+            batches.trace_round(growth, stop.max_paths, job.part(0.1, 1.0))?;
             let map = Self::of(&batches, params);
             let error = Estimate::of(|b| map.batches[b].iter().sum()).error();
             match stop.growth(error, batches.paths()) {
@@ -116,14 +127,14 @@ impl Importance {
         }
     }
 
-    /// Cells along u and v.
+    /// Number of cells along u and v.
     pub fn size(&self) -> (usize, usize) {
         (self.width, self.height)
     }
 
-    /// The map at no more than `most` cells along each side, its batches together: what cells mean adds up.
-    pub(super) fn cells(&self, most: usize) -> Cells {
-        let (width, height) = (self.width.min(most), self.height.min(most));
+    /// The mean map over all batches, reduced to at most `max_cells` cells along each side by adding cells.
+    pub(super) fn cells(&self, max_cells: usize) -> Cells {
+        let (width, height) = (self.width.min(max_cells), self.height.min(max_cells));
         let mut importance = vec![DVec3::ZERO; width * height];
         for batch in &self.batches {
             for (i, value) in batch.iter().enumerate() {
@@ -139,13 +150,13 @@ impl Importance {
         self.background.iter().sum::<DVec3>() / BATCHES as f64
     }
 
-    /// A map that is known.
+    /// A map of given values, for tests.
     #[cfg(test)]
     pub(super) fn even(width: usize, height: usize, cells: Vec<DVec3>, background: DVec3) -> Self {
         Self { width, height, batches: vec![cells; BATCHES], background: vec![background; BATCHES], paths: 0 }
     }
 
-    /// The map as an image of `width × height` cells: the target's mean radiance where a cell emits 1 cd/m².
+    /// The map as an image of `width × height` cells: the target's mean radiance if only that cell emits, 1 cd/m².
     pub fn image(&self) -> Result<Image> {
         let mut image = Image::new(self.width, self.height, 3)?;
         for (i, pixel) in image.data.chunks_exact_mut(3).enumerate() {
@@ -155,9 +166,9 @@ impl Importance {
         Ok(image)
     }
 
-    /// The target's mean radiance under a texture on the surface, in cd/m² as its values are. `placement` leads from the
-    /// surface's texture coordinates to those of the texture (as `KHR_texture_transform` has it), which continues as it
-    /// wraps.
+    /// The response of the target to a texture on the surface, in the unit of its values. `placement` transforms the
+    /// surface's texture coordinates to those of the texture (as `KHR_texture_transform`), which wraps according to its
+    /// mode.
     ///
     /// # Errors
     /// A placement that is not finite; cancelled.
@@ -169,10 +180,10 @@ impl Importance {
         Ok(Response { light, band_error: self.coarse(&emission) - light.mean, measured })
     }
 
-    /// The scale of a texture that meets a target, as [`super::run`] finds it by tracing.
+    /// The scale of a texture that meets a target; the equivalent of tracing with [`super::run`].
     ///
     /// # Errors
-    /// `Unreachable` as there.
+    /// `Unreachable`, as in [`super::run`].
     pub fn solve(&self, response: &Response, target: Vec3) -> Result<Solution> {
         for channel in target.to_array() {
             check_range("target", channel, 0.0, f32::MAX)?;
@@ -187,13 +198,13 @@ impl Importance {
         if !placement.is_finite() {
             return Err(Error::argument(format!("placement is {placement}; it must be finite")));
         }
-        // At least as many look-ups as a cell has texels: along its sides and as the placement stretches it.
+        // Look up at least as many points as a cell covers texels, along each side of the transformed cell.
         let cell = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let texels = Vec2::new(texture.image.width as f32, texture.image.height as f32);
         let along = |side: Vec2, cells: usize| {
             let length = (placement.transform_vector2(side) * texels).abs().max_element().ceil();
-            let least = (LOOK_UPS_ACROSS / cells).clamp(4, LEAST_LOOK_UPS);
-            (length as usize).clamp(least, MOST_LOOK_UPS)
+            let min = (LOOK_UPS_ACROSS / cells).clamp(4, MIN_LOOK_UPS);
+            (length as usize).clamp(min, MAX_LOOK_UPS)
         };
         let (nu, nv) = (along(Vec2::X * cell.x, self.width), along(Vec2::Y * cell.y, self.height));
         let rows = exec::map(self.height, job, |y| {
@@ -235,7 +246,7 @@ impl Importance {
     }
 }
 
-/// The scene with the emitting surfaces lit evenly, by a white texture of a texel per cell.
+/// The scene with uniform emission on the emissive surfaces: a white texture with one texel per cell.
 fn evenly_lit(scene: &Arc<Scene>, emitter: usize, params: &MapParams) -> Result<Scene> {
     if emitter >= scene.materials.len() {
         return Err(Error::argument(format!(

@@ -1,5 +1,5 @@
-//! Which lamp a point of the emission belongs to: by the texels of its texture, or by the pieces of its meshes. Lights without
-//! a surface, such as luminaires, are lamps by themselves.
+//! The lamps of an emission: connected patches of its texture, connected pieces of its meshes, or punctual lights such
+//! as luminaires.
 
 use crate::error::{Error, Result};
 use crate::image::patches::Patches;
@@ -7,37 +7,37 @@ use crate::image::{Image, try_vec};
 use crate::scene::{PunctualLight, Scene};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-/// Lamps of an emission, counted from 0.
+/// The lamps of an emission, numbered from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lamps {
     count: usize,
-    /// One more than the number of the lamp, 0 for none; as `division` says.
+    /// For each texel or triangle, the number of its lamp plus one, or 0.
     labels: Vec<u32>,
     division: Division,
-    /// Centre of each lamp: in texture coordinates, z being 0, or in metres.
+    /// Centre of each lamp: texture coordinates with z = 0, or metres.
     centres: Vec<Vec3>,
-    /// Area of each lamp in texels or m²; of a light a number of its kind.
+    /// Area of each lamp in texels or m²; for punctual lights a number of their kind.
     sizes: Vec<f32>,
 }
 
-/// Lamps of a type differ in area by less than this share from one to the next larger one.
+/// Relative gap in area, from one lamp to the next larger one, that separates two types. [judged, not recorded]
 const TYPE_GAP: f32 = 0.25;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Division {
-    /// A label per texel, which repeats as the texture does.
+    /// A label per texel; the texture repeats.
     Texels { width: usize, height: usize },
-    /// A label per triangle; the first of each mesh.
+    /// A label per triangle; `first` has the index of each mesh's first triangle.
     Triangles { first: Vec<usize> },
-    /// No labels: the scene's lights without a surface, as they are numbered.
+    /// The punctual lights of the scene; no labels.
     Lights,
 }
 
 impl Lamps {
-    /// The lamps that a label image tells apart: each texel holds one more than the number of its lamp, or 0.
+    /// Lamps from a label image: each texel has the number of its lamp plus one, or 0.
     ///
     /// # Errors
-    /// `InvalidArgument` if the labels do not fill `width × height`, or there are none.
+    /// `InvalidArgument` if the number of labels is not `width × height`, or no texel is labelled.
     pub fn of_labels(width: usize, height: usize, labels: Vec<u32>) -> Result<Self> {
         if width == 0 || height == 0 || labels.len() != width * height {
             return Err(Error::argument(format!(
@@ -54,13 +54,13 @@ impl Lamps {
         Self::numbered(width, height, labels, count)
     }
 
-    /// Every 8-connected patch of texels that emit is a lamp.
+    /// Lamps from a texture: every 8-connected patch of emissive texels is a lamp.
     pub fn of_texture(texture: &Image) -> Result<Self> {
         let Patches { labels, count } = Patches::of(texture)?;
         Self::numbered(texture.width, texture.height, labels, count)
     }
 
-    /// The lamps of labels from 0 to `count`.
+    /// Lamps from labels between 0 and `count`.
     fn numbered(width: usize, height: usize, labels: Vec<u32>, count: usize) -> Result<Self> {
         let mut sums = try_vec(count, (DVec2::ZERO, 0.0f64))?;
         for (y, row) in labels.chunks_exact(width).enumerate() {
@@ -76,7 +76,7 @@ impl Lamps {
         Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
     }
 
-    /// Every connected piece of the meshes that have the emitting material is a lamp: triangles that share a vertex.
+    /// Lamps from meshes: every piece of the emissive meshes that is connected by shared vertices is a lamp.
     pub fn of_meshes(scene: &Scene, emitter: usize) -> Result<Self> {
         let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         let mut labels = try_vec(triangles, 0u32)?;
@@ -113,7 +113,7 @@ impl Lamps {
         Self { count: centres.len(), labels, division: Division::Triangles { first }, centres, sizes }.checked()
     }
 
-    /// Every light without a surface is a lamp; no surface is.
+    /// Lamps from punctual lights: each of them is a lamp; surfaces are not.
     pub fn of_lights(scene: &Scene) -> Result<Self> {
         let place = |light: &PunctualLight| match *light {
             PunctualLight::Point { position, .. }
@@ -143,26 +143,26 @@ impl Lamps {
         self.count
     }
 
-    /// Centre of each lamp: texture coordinates of a lamp of texels, metres of a lamp of
-    /// triangles and of a light, 0 of one that is infinitely far away.
+    /// Centre of each lamp: texture coordinates for patches of a texture, metres for pieces of meshes and punctual
+    /// lights, 0 for directional lights.
     pub fn centres(&self) -> &[Vec3] {
         &self.centres
     }
 
-    /// The group of each lamp, where a group is all lamps together.
+    /// A single group of all lamps.
     pub fn together(&self) -> (Vec<u32>, usize) {
         (vec![0; self.count], 1)
     }
 
-    /// The group of each lamp, where every lamp is one.
+    /// A group for each lamp.
     pub fn each(&self) -> (Vec<u32>, usize) {
         ((0..self.count as u32).collect(), self.count)
     }
 
-    /// A texture whose lamps are multiplied, each with its own scale; what belongs to no lamp stays.
+    /// A texture with each lamp multiplied by its own scale; texels outside the lamps stay unchanged.
     ///
     /// # Errors
-    /// `InvalidArgument` unless the lamps are texels of a texture of this size, and there is a scale for each.
+    /// `InvalidArgument` unless the lamps are patches of a texture of this size and there is a scale for each of them.
     pub fn scaled(&self, texture: &Image, scale: &[DVec3]) -> Result<Image> {
         let fits = match &self.division {
             Division::Texels { width, height } => (*width, *height) == (texture.width, texture.height),
@@ -184,13 +184,13 @@ impl Lamps {
         Ok(scaled)
     }
 
-    /// Groups the lamps that lie in a row: whose centres differ by less than `tolerance` along an axis. Returns the group
-    /// of each lamp and the number of groups; groups are numbered along the axis.
+    /// Groups lamps in rows: successive centres along an axis that differ by at most `tolerance` belong to one row.
+    /// Returns the group of each lamp and the number of groups, numbered along the axis.
     pub fn rows(&self, axis: usize, tolerance: f32) -> (Vec<u32>, usize) {
         self.chained(|i| self.centres[i][axis.min(2)], |a, b| b - a > tolerance)
     }
 
-    /// Groups the lamps in the order of a number: a new group begins where it `leaps` from one to the next.
+    /// Groups lamps sorted by a number; a new group begins where `leaps` holds between two successive lamps.
     fn chained(&self, number: impl Fn(usize) -> f32, leaps: impl Fn(f32, f32) -> bool) -> (Vec<u32>, usize) {
         let mut order: Vec<usize> = (0..self.count).collect();
         order.sort_by(|&a, &b| number(a).total_cmp(&number(b)).then(a.cmp(&b)));
@@ -202,14 +202,14 @@ impl Lamps {
         (groups, group as usize + 1)
     }
 
-    /// Groups the lamps by type: those of about the same area; points, spots, and luminaires by their distribution. Groups
-    /// are numbered from the smallest lamps on.
+    /// Groups lamps by type: surfaces of about equal area; punctual lights of one kind; luminaires of one distribution.
+    /// Groups are numbered from the smallest lamps on.
     pub fn types(&self) -> (Vec<u32>, usize) {
         let gap = if self.division == Division::Lights { 0.0 } else { TYPE_GAP };
         self.chained(|i| self.sizes[i], |a, b| b > a * (1.0 + gap))
     }
 
-    /// The lamp that a light without a surface is.
+    /// The lamp of a punctual light.
     #[inline]
     pub(super) fn find_light(&self, index: u32) -> Option<usize> {
         (self.division == Division::Lights).then_some(index as usize)
@@ -219,7 +219,7 @@ impl Lamps {
     pub(super) fn find(&self, mesh: u32, triangle: u32, uv: Vec2) -> Option<usize> {
         let label = match &self.division {
             Division::Texels { width, height } => {
-                // As the texture itself is looked up (`scene::texture`).
+                // Look up texels like the texture itself (`scene::texture`).
                 let at = |t: f32, n: usize| ((t * n as f32).floor() as i64).rem_euclid(n as i64) as usize;
                 self.labels[at(uv.y, *height) * width + at(uv.x, *width)]
             }
@@ -230,7 +230,7 @@ impl Lamps {
     }
 }
 
-/// Which vertices hang together (union-find, Tarjan 1975, with path halving).
+/// Connected vertices (union-find, Tarjan 1975, with path halving).
 struct Pieces(Vec<u32>);
 
 impl Pieces {
@@ -251,8 +251,8 @@ impl Pieces {
 
     fn join(&mut self, triangle: &[u32; 3]) {
         let roots = triangle.map(|v| self.root(v));
-        let least = roots.into_iter().min().unwrap_or(0);
-        roots.into_iter().for_each(|r| self.0[r as usize] = least);
+        let lowest = roots.into_iter().min().unwrap_or(0);
+        roots.into_iter().for_each(|r| self.0[r as usize] = lowest);
     }
 }
 
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn patches_of_texels_and_pieces_of_meshes_are_lamps() {
-        // Two patches, one of them joined by a corner only.
+        // Two patches; one of them is connected only at a corner.
         let rows = ["#....", ".#..#", "....#"];
         let image = Image::from_fn(5, 3, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
         let lamps = Lamps::of_texture(&image).unwrap();
@@ -274,13 +274,13 @@ mod tests {
         assert_eq!([at(-0.5, 1.5), at(5.5, 0.5)], [Some(1), Some(0)]);
         assert!((lamps.centres()[1] - Vec3::new(0.9, 2.0 / 3.0, 0.0)).length() < 1e-6);
         assert!(Lamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
-        // Two texels each are one type; so are four and five, but not two and three.
+        // Lamps of equal area are one type, so are areas of four and five texels, but not two and three.
         assert_eq!(lamps.types(), (vec![0, 0], 1));
         let labels = vec![1, 1, 0, 2, 2, 2, 0, 3, 3];
         assert_eq!(Lamps::of_labels(9, 1, labels).unwrap().types(), (vec![0, 1, 0], 2));
         let labels = vec![1, 1, 1, 1, 0, 2, 2, 2, 2, 2, 0, 3, 3, 3, 3];
         assert_eq!(Lamps::of_labels(15, 1, labels).unwrap().types(), (vec![0; 3], 1));
-        // Each is multiplied for itself.
+        // Each lamp is multiplied by its own scale.
         let scaled = lamps.scaled(&image, &[DVec3::splat(2.0), DVec3::new(1.0, 0.0, 3.0)]).unwrap();
         assert_eq!(
             [scaled.rgb(0, 0), scaled.rgb(4, 2), scaled.rgb(2, 0)],
@@ -296,7 +296,7 @@ mod tests {
         let lamps = Lamps::of_meshes(&scene, 0).unwrap();
         assert_eq!([0, 1, 2].map(|t| lamps.find(0, t, Vec2::ZERO)), [Some(0), Some(1), Some(0)]);
         assert_eq!(lamps.rows(0, 1.0).1, 2);
-        // Of lights the kind is what counts.
+        // Punctual lights are grouped by kind, not by intensity.
         let point = |intensity: f32| PunctualLight::Point { position: Vec3::X, intensity: Vec3::splat(intensity) };
         let sun = PunctualLight::Directional { direction: Vec3::X, illuminance: Vec3::ONE };
         let lights = Scene { lights: vec![sun, point(1.0), point(9.0)], ..Scene::default() };

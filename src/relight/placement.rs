@@ -1,17 +1,17 @@
-//! Where a texture should lie: its offset, scale and rotation on the surface, by gradient on the map of importance.
+//! Placement of a texture: its offset, scale and rotation on the surface, by gradient descent on the importance map.
 //!
-//! The light of a placement is a dot product with the map, so its gradient is one too. The texture is looked up at the
-//! centres of cells, band-limited to their size ([`super::band`]): then slopes exist and say where to go. A texture repeats,
-//! so there are many places where small changes do not help: the search starts from many, evenly spread, first from where
-//! the texture lies, and follows the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7). What it
-//! finds is compared by [`Importance::respond`], texel by texel.
+//! The light of a placement is a dot product with the map, and so is its gradient. The texture is looked up at the
+//! centres of the cells, band-limited to their size ([`super::band`]), which makes it differentiable. As textures
+//! repeat, there are many local optima. The search evaluates many evenly distributed starting points, the current
+//! placement first, and descends from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
+//! [`Importance::respond`] compares the results at full resolution.
 //!
-//! The map's noise is the same for all placements; the best of many profits from it by a small part of its interval.
+//! All placements share the map's noise; the best of many is overestimated by a small part of its interval.
 
 use super::band::Pyramid;
 use super::descent::{self, Bounds};
 use super::groups::LUMINANCE;
-use super::importance::{Importance, Response};
+use super::importance::{Cells, Importance, Response};
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::Image;
@@ -21,23 +21,23 @@ use crate::scene::Texture;
 use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
 use std::f64::consts::TAU;
 
-/// What a placement should do.
+/// The goal of a placement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
-    /// Bring the target's mean radiance nearest to this, in cd/m² per channel, ≥ 0, all other light included.
+    /// The mean radiance of the target nearest to this value, in cd/m² per channel, ≥ 0, all other light included.
     Radiance(Vec3),
-    /// As much luminance as possible.
-    Most,
-    /// As little.
-    Least,
+    /// The largest luminance.
+    Brightest,
+    /// The smallest luminance.
+    Darkest,
 }
 
-/// How a texture lies on a surface: from the surface's texture coordinates to its own it is scaled and then turned about the
-/// centre `(½, ½)`, and shifted.
+/// The placement of a texture: the surface's texture coordinates are scaled and then rotated about the centre `(½, ½)`,
+/// and offset, to those of the texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     pub offset: DVec2,
-    /// How often the texture repeats along the surface's u and v.
+    /// Number of repetitions of the texture along the surface's u and v.
     pub scale: DVec2,
     /// In radians.
     pub rotation: f64,
@@ -46,7 +46,7 @@ pub struct Pose {
 impl Pose {
     pub const IDENTITY: Self = Self { offset: DVec2::ZERO, scale: DVec2::ONE, rotation: 0.0 };
 
-    /// The placement as [`Importance::respond`] takes it.
+    /// The placement as a matrix for [`Importance::respond`].
     pub fn matrix(&self) -> DMat3 {
         let turned = DMat2::from_angle(self.rotation) * DMat2::from_diagonal(self.scale);
         let centre = DVec2::splat(0.5);
@@ -66,20 +66,20 @@ impl Pose {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceParams {
     pub aim: Aim,
-    /// What may be: offsets in `[-16, 16]`, scales in `[1/64, 64]`, rotations in `[-2π, 2π]`; where both are the same,
-    /// nothing changes. Offsets over a whole period or more, and rotations over a whole turn, have no bounds.
-    pub least: Pose,
-    pub most: Pose,
-    /// Places the search starts from, in `[1, 4096]`.
+    /// Bounds: offsets in `[-16, 16]`, scales in `[1/64, 64]`, rotations in `[-2π, 2π]`. Parameters with equal bounds
+    /// are fixed. Offsets over at least a period and rotations over at least a full turn are unbounded.
+    pub min: Pose,
+    pub max: Pose,
+    /// Number of starting points, in `[1, 4096]`.
     pub starts: usize,
     pub seed: u64,
 }
 
 impl Default for PlaceParams {
-    /// Any offset, at the scale and rotation there are.
+    /// Any offset, at the current scale and rotation.
     fn default() -> Self {
         let shifted = |by: f64| Pose { offset: DVec2::splat(by), ..Pose::IDENTITY };
-        Self { aim: Aim::Most, least: shifted(-0.5), most: shifted(0.5), starts: 64, seed: 1 }
+        Self { aim: Aim::Brightest, min: shifted(-0.5), max: shifted(0.5), starts: 64, seed: 1 }
     }
 }
 
@@ -87,43 +87,44 @@ impl Default for PlaceParams {
 #[derive(Clone, Debug)]
 pub struct Placement {
     pub pose: Pose,
-    /// What it means to the target.
+    /// The response of the target.
     pub response: Response,
 }
 
-/// Most cells along each side that the search works on.
-const CELLS: usize = 64;
-/// Starts that are followed.
-const FOLLOWED: usize = 8;
+/// Largest number of cells along each side of the map used for the search. [judged, not recorded]
+const MAX_CELLS: usize = 64;
+/// Number of starting points that are descended from. [judged, not recorded]
+const MAX_DESCENTS: usize = 8;
 
 impl Importance {
-    /// The target's light under a placed texture, band-limited as the search sees it, and how that changes with the offset
-    /// along u and v, the scale along both, and the rotation. Other light does not count.
+    /// The target's light under a placed texture, band-limited as in the search, without other light; and its
+    /// derivatives by the offset along u and v, the scale along both, and the rotation.
     ///
     /// # Errors
     /// Cancelled.
     pub fn slope(&self, texture: &Image, pose: &Pose, job: Job) -> Result<(DVec3, [DVec3; 5])> {
-        Ok(self.search(texture, Aim::Most, job)?.light(pose.numbers()))
+        Ok(self.search(texture, Aim::Brightest, job)?.light(pose.numbers()))
     }
 
     fn search(&self, texture: &Image, aim: Aim, job: Job) -> Result<Search> {
         Ok(Search {
             pyramid: Pyramid::new(texture, job)?,
-            cells: self.cells(CELLS),
+            cells: self.cells(MAX_CELLS),
             texels: DVec2::new(texture.width as f64, texture.height as f64),
             background: self.background(),
             aim,
         })
     }
 
-    /// Finds the placement of a texture, which repeats, in cd/m² as its values are.
+    /// Finds the best placement of a repeating texture with values in cd/m².
     ///
     /// # Errors
     /// Parameters out of range; cancelled.
     pub fn place(&self, texture: &Image, params: &PlaceParams, job: Job) -> Result<Placement> {
         let bounds = params.bounds()?;
         let search = self.search(texture, params.aim, job.part(0.0, 0.1))?;
-        // Where the texture lies, or as near to that as may be, and places that fill the space of what may be evenly.
+        // Start from the current placement, clamped to the bounds, and from a low-discrepancy sequence within the
+        // bounds.
         let mut rng = Rng::new(params.seed, &[]);
         let shift: [f64; 5] = std::array::from_fn(|_| rng.next_f64());
         let start = |index: usize| match index {
@@ -133,7 +134,7 @@ impl Importance {
         let values = exec::map(params.starts, job.part(0.1, 0.3), |i| search.value(start(i)))?;
         let mut order: Vec<usize> = (0..params.starts).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
-        order.truncate(FOLLOWED);
+        order.truncate(MAX_DESCENTS);
         if !order.contains(&0) {
             order.push(0);
         }
@@ -141,7 +142,7 @@ impl Importance {
             descent::run(&bounds, start(order[i]), |at| search.slope(at), job)
         })?;
 
-        // The search has seen the texture blurred: the light itself decides.
+        // Select the best result at full resolution: the search used a blurred texture.
         let texture = Texture::new("placed", texture.clone());
         let mut best: Option<(f64, Placement)> = None;
         for (i, numbers) in found.into_iter().enumerate() {
@@ -150,7 +151,7 @@ impl Importance {
                 job.part(0.8 + 0.2 * i as f64 / order.len() as f64, 0.8 + 0.2 * (i + 1) as f64 / order.len() as f64);
             let response = self.respond(&texture, &pose.matrix().as_mat3(), part)?;
             let value = search.judge(response.light.mean).0;
-            if best.as_ref().is_none_or(|(least, _)| value < *least) {
+            if best.as_ref().is_none_or(|(min, _)| value < *min) {
                 best = Some((value, Placement { pose, response }));
             }
         }
@@ -158,7 +159,7 @@ impl Importance {
     }
 }
 
-/// Powers of the root of `x⁶ = x + 1`: a sequence that fills five dimensions evenly (Roberts 2018).
+/// Powers of the root of `x⁶ = x + 1`: a low-discrepancy sequence in five dimensions (Roberts 2018). [convention]
 const KRONECKER: [f64; 5] = [
     0.881_271_462_333_504_6,
     0.776_639_390_326_789_7,
@@ -175,19 +176,19 @@ impl PlaceParams {
                 check_range("target", channel, 0.0, f32::MAX)?;
             }
         }
-        let (least, most) = (self.least.numbers(), self.most.numbers());
+        let (min, max) = (self.min.numbers(), self.max.numbers());
         let (scale, offset) = (("scale", 1.0 / 64.0, 64.0), ("offset", -16.0, 16.0));
         for (i, (name, low, high)) in [offset, offset, scale, scale, ("rotation", -TAU, TAU)].into_iter().enumerate() {
-            check_range(name, least[i], low, high)?;
-            check_range(name, most[i], low, high)?;
-            if least[i] > most[i] {
+            check_range(name, min[i], low, high)?;
+            check_range(name, max[i], low, high)?;
+            if min[i] > max[i] {
                 return Err(Error::argument(format!(
                     "{name} is to be between {} and {}; the first must not be larger",
-                    least[i], most[i]
+                    min[i], max[i]
                 )));
             }
         }
-        Ok(Bounds { least, most, period: [1.0, 1.0, f64::INFINITY, f64::INFINITY, TAU] })
+        Ok(Bounds { min, max, period: [1.0, 1.0, f64::INFINITY, f64::INFINITY, TAU] })
     }
 }
 
@@ -199,32 +200,25 @@ struct Search {
     aim: Aim,
 }
 
-/// A map of importance, its batches together.
-pub(super) struct Cells {
-    pub width: usize,
-    pub height: usize,
-    pub importance: Vec<DVec3>,
-}
-
 impl Search {
     fn value(&self, numbers: [f64; 5]) -> f64 {
         self.slope(numbers).0
     }
 
-    /// How bad a placement is, and how that changes with its numbers.
+    /// The cost of a placement and its gradient.
     fn slope(&self, numbers: [f64; 5]) -> (f64, [f64; 5]) {
         let (light, slopes) = self.light(numbers);
         let (value, by_light) = self.judge(light);
         (value, slopes.map(|slope| slope.dot(by_light)))
     }
 
-    /// The target's light under a placement, and how that changes with its numbers.
+    /// The target's light under a placement and its derivatives.
     fn light(&self, numbers: [f64; 5]) -> (DVec3, [DVec3; 5]) {
         let pose = Pose::of(numbers);
         let rotation = DMat2::from_angle(pose.rotation);
         let Cells { width, height, importance } = &self.cells;
         let cell = DVec2::new(1.0 / *width as f64, 1.0 / *height as f64);
-        // A cell covers as many texels; the level that makes them one.
+        // Choose the pyramid level at which a cell covers one texel.
         let texels = pose.scale.element_product() * (cell * self.texels).element_product();
         let level = 0.5 * texels.log2();
         let by_scale = DVec2::splat(0.5 / std::f64::consts::LN_2) / pose.scale;
@@ -233,14 +227,14 @@ impl Search {
             let from = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5) * cell - 0.5;
             let scaled = from * pose.scale;
             let turned = rotation * scaled;
-            let look = self.pyramid.look_up(turned + pose.offset + 0.5, level);
-            light += importance * look.value;
-            let along = |way: DVec2| look.along_u * way.x + look.along_v * way.y;
+            let sample = self.pyramid.look_up(turned + pose.offset + 0.5, level);
+            light += importance * sample.value;
+            let along = |way: DVec2| sample.d_du * way.x + sample.d_dv * way.y;
             let changes = [
-                look.along_u,
-                look.along_v,
-                along(rotation.x_axis * from.x) + look.along_level * by_scale.x,
-                along(rotation.y_axis * from.y) + look.along_level * by_scale.y,
+                sample.d_du,
+                sample.d_dv,
+                along(rotation.x_axis * from.x) + sample.d_dlevel * by_scale.x,
+                along(rotation.y_axis * from.y) + sample.d_dlevel * by_scale.y,
                 along(turned.perp()),
             ];
             slopes.iter_mut().zip(changes).for_each(|(slope, change)| *slope += importance * change);
@@ -248,11 +242,11 @@ impl Search {
         (light, slopes)
     }
 
-    /// How bad a light is, and how that changes with it.
+    /// The cost of the target's light and its gradient.
     fn judge(&self, light: DVec3) -> (f64, DVec3) {
         match self.aim {
-            Aim::Most => (-light.dot(LUMINANCE), -LUMINANCE),
-            Aim::Least => (light.dot(LUMINANCE), LUMINANCE),
+            Aim::Brightest => (-light.dot(LUMINANCE), -LUMINANCE),
+            Aim::Darkest => (light.dot(LUMINANCE), LUMINANCE),
             Aim::Radiance(target) => {
                 let miss = light + self.background - target.as_dvec3();
                 (0.5 * miss.length_squared(), miss)

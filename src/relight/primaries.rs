@@ -1,40 +1,42 @@
-//! Light from given primaries: how strongly to drive the LEDs of a luminaire (RGB, RGBW, tunable white, …) for a colour.
+//! Colour mixing: the drives of the LEDs of a luminaire (RGB, RGBW, tunable white, …) for a given colour.
 //!
-//! Light adds up and cannot be negative, so the colours there are form a cone, or a part of it where drives are bounded. The
-//! nearest of them is a least squares problem of three equations ([`super::bounded`]), in linear light. Of several mixtures
-//! of the same colour it is the one of least squared drives, which spreads the load.
+//! Light is additive and non-negative: the reachable colours form a cone, or a part of it with bounded drives. The
+//! nearest reachable colour is a least squares problem of three equations in linear light ([`super::bounded`]). Among
+//! mixtures of equal colour, it selects the smallest sum of squared drives, which spreads the load.
 
 use super::bounded::Problem;
 use crate::error::{Error, Result, check_range};
 use crate::image::colour;
 use glam::DVec3;
 
-/// Most primaries of a luminaire.
+/// Largest number of primaries of a luminaire. [convention]
 pub const MAX_PRIMARIES: usize = 64;
 
-/// How large squared drives count beside the colour: enough to choose between mixtures that are alike.
-const PULL: f64 = 1e-9;
-/// A miss, relative to the colour, that counts as none.
-const REACHED: f64 = 1e-6;
+/// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [judged, not
+/// recorded]
+const REGULARISATION: f64 = 1e-9;
+/// Relative colour error that counts as zero. [rounding]
+const MAX_RELATIVE_MISS: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mixture {
-    /// How strongly to drive each primary, in `[0, most]`.
+    /// Drive of each primary, in `[0, max_drive]`.
     pub drives: Vec<f64>,
-    /// What that gives.
+    /// The colour of the mixture.
     pub colour: DVec3,
-    /// Whether that is the colour asked for; if not, it is the nearest there is.
+    /// Whether the mixture has the requested colour; otherwise it is the nearest one.
     pub reached: bool,
-    /// CIEDE2000 difference from the colour asked for, seen at the exposure that shows that as a middle grey.
+    /// CIEDE2000 difference from the requested colour, at the exposure that shows that colour as a middle grey.
     pub delta_e: f64,
 }
 
-/// Mixes a linear RGB colour from primaries, each the linear RGB of a drive of 1 (with negative channels where it is out of
-/// gamut, as LEDs are), driven by no more than `most`.
+/// Mixes a linear RGB colour from primaries, each given as the linear RGB of a drive of 1 (with negative channels
+/// outside the gamut, as of LEDs), with drives of at most `max_drive`.
 ///
 /// # Errors
-/// Numbers that are not finite or out of range, no primaries or more than [`MAX_PRIMARIES`], primaries that are all black.
-pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mixture> {
+/// Numbers that are not finite or out of range; no primaries or more than [`MAX_PRIMARIES`]; primaries that are all
+/// black.
+pub fn mix_primaries(primaries: &[DVec3], max_drive: f64, wanted: DVec3) -> Result<Mixture> {
     if primaries.is_empty() || primaries.len() > MAX_PRIMARIES {
         return Err(Error::argument(format!(
             "there are {} primaries; there must be 1 to {MAX_PRIMARIES}",
@@ -44,7 +46,7 @@ pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mi
     if let Some(i) = primaries.iter().position(|p| !p.is_finite()) {
         return Err(Error::argument(format!("primary {i} is {}; it must be finite", primaries[i])));
     }
-    check_range("most", most, 0.0, f64::INFINITY)?;
+    check_range("most", max_drive, 0.0, f64::INFINITY)?;
     for channel in wanted.to_array() {
         check_range("colour", channel, 0.0, f64::from(f32::MAX))?;
     }
@@ -54,17 +56,17 @@ pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mi
     }
     let matrix: Vec<f64> = (0..3).flat_map(|c| primaries.iter().map(move |p| p[c])).collect();
     let squares: f64 = matrix.iter().map(|a| a * a).sum();
-    let (preferred, upper) = (vec![0.0; primaries.len()], vec![most; primaries.len()]);
+    let (preferred, upper) = (vec![0.0; primaries.len()], vec![max_drive; primaries.len()]);
     let problem = Problem {
         matrix: &matrix,
         right: &wanted.to_array(),
-        pull: PULL * squares / 3.0,
+        regularisation: REGULARISATION * squares / 3.0,
         preferred: &preferred,
         upper: &upper,
     };
     let drives = problem.solve()?;
     let mixed: DVec3 = primaries.iter().zip(&drives).map(|(p, d)| *p * *d).sum();
-    let reached = (mixed - wanted).length() <= REACHED * wanted.length();
+    let reached = (mixed - wanted).length() <= MAX_RELATIVE_MISS * wanted.length();
     Ok(Mixture { delta_e: colour::delta_e_from(wanted, mixed), drives, colour: mixed, reached })
 }
 
@@ -78,38 +80,38 @@ mod tests {
 
     #[test]
     fn colours_within_the_cone_are_mixed_exactly() {
-        // Three primaries leave no choice: the answer is that of the linear system.
+        // Three primaries have a unique solution: that of the linear system.
         let led = [DVec3::new(1.2, 0.1, 0.0), DVec3::new(-0.2, 0.9, 0.1), DVec3::new(0.0, -0.1, 0.8)];
         let drives = [0.5, 0.25, 2.0];
         let wanted: DVec3 = led.iter().zip(drives).map(|(p, d)| *p * d).sum();
         let mixture = mix_primaries(&led, FREE, wanted).unwrap();
         assert!(mixture.reached && mixture.delta_e < 1e-3, "{mixture:?}");
         assert!(mixture.drives.iter().zip(drives).all(|(a, b)| (a - b).abs() < 1e-6), "{mixture:?}");
-        // RGBW and white: of r = g = b = 1 - w the least squares are at w = 3/4.
+        // RGBW for white: with r = g = b = 1 - w, the least squares solution is w = 3/4.
         let rgbw = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE];
         let mixture = mix_primaries(&rgbw, FREE, DVec3::ONE).unwrap();
         assert!(mixture.drives.iter().zip([0.25, 0.25, 0.25, 0.75]).all(|(a, b)| (a - b).abs() < 1e-6), "{mixture:?}");
-        // Darkness takes nothing.
+        // Black needs no light.
         let dark = mix_primaries(&rgbw, 1.0, DVec3::ZERO).unwrap();
         assert_eq!((dark.drives, dark.reached, dark.delta_e), (vec![0.0; 4], true, 0.0));
     }
 
     #[test]
     fn what_is_out_of_reach_is_told_with_the_nearest() {
-        // Warm and cold white make the whites between them: the nearest to green misses it at right angles to both.
+        // Warm and cold white span a plane: the error of the nearest colour to green is orthogonal to both.
         let (warm, cold) = (DVec3::new(1.0, 0.7, 0.4), DVec3::new(0.8, 1.0, 1.2));
         let mixture = mix_primaries(&[warm, cold], FREE, DVec3::Y).unwrap();
         let miss = mixture.colour - DVec3::Y;
         assert!(!mixture.reached && mixture.delta_e > 20.0, "{mixture:?}");
         assert!(miss.dot(warm).abs() < 1e-6 && miss.dot(cold).abs() < 1e-6, "{mixture:?}");
-        // To blue it is the cold white alone.
+        // The nearest colour to blue is the cold white alone.
         let mixture = mix_primaries(&[warm, cold], FREE, DVec3::Z).unwrap();
         let alone = cold.z / cold.length_squared();
         assert!(mixture.drives[0] == 0.0 && (mixture.drives[1] - alone).abs() < 1e-6, "{mixture:?}, expected {alone}");
-        // A bound: as bright as it goes.
+        // Bounded drives: as bright as possible.
         let bounded = mix_primaries(&[warm, cold], 1.0, (warm + cold) * 10.0).unwrap();
         assert_eq!((bounded.drives, bounded.reached), (vec![1.0; 2], false));
-        // No mixture of a fine grid is nearer.
+        // No mixture on a fine grid is nearer.
         let mut rng = Rng::new(5, &[]);
         for _ in 0..20 {
             let mut random = || DVec3::new(rng.next_f64(), rng.next_f64(), rng.next_f64());
@@ -127,7 +129,8 @@ mod tests {
 
     #[test]
     fn bad_primaries_are_refused() {
-        let refused = |primaries: &[DVec3], most, wanted| mix_primaries(primaries, most, wanted).unwrap_err().kind;
+        let refused =
+            |primaries: &[DVec3], max_drive, wanted| mix_primaries(primaries, max_drive, wanted).unwrap_err().kind;
         assert_eq!(refused(&[], 1.0, DVec3::ONE), ErrorKind::InvalidArgument);
         assert_eq!(refused(&[DVec3::NAN], 1.0, DVec3::ONE), ErrorKind::InvalidArgument);
         assert_eq!(refused(&[DVec3::ONE], -1.0, DVec3::ONE), ErrorKind::InvalidArgument);

@@ -1,47 +1,48 @@
-//! The responses of several targets to each of many lamps, from one set of paths per target.
+//! Responses of several targets to each of many lamps, from one set of paths per target.
 
 use super::bins::{Bins, Division};
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::lamps::Lamps;
+use super::params::{Params, Place, Quantity};
 use super::sided::Sense;
 use super::target::Sampler;
 use super::transport::{Batches, Means, Stop};
-use super::{Params, Place, Quantity};
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
 
-/// What of a goal's light counts.
+/// Which part of a goal's light counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aspect {
     /// Every channel.
     Colour,
-    /// The luminance alone: what a goal in lux asks for.
+    /// The luminance alone, for goals in lux.
     Luminance,
 }
 
-/// One of several things to be lit.
+/// One of several lighting goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal<'a> {
     pub place: Place<'a>,
     pub quantity: Quantity,
-    /// Mean radiance it should have in cd/m² per channel, ≥ 0; in incident light illuminance / π.
+    /// Mean radiance to achieve, in cd/m² per channel, ≥ 0; for incident light illuminance / π.
     pub target: Vec3,
     pub aspect: Aspect,
-    /// On which side of the target each channel should be; of luminance all alike.
+    /// Whether the target of each channel is exact or a limit; equal for all channels of a luminance goal.
     pub sense: [Sense; 3],
-    /// What missing it by a share of itself weighs beside other goals, ≥ 0.
+    /// Weight of the relative error of this goal beside other goals, ≥ 0.
     pub weight: f64,
 }
 
-/// Most goals there may be.
+/// Largest number of goals. [convention]
 pub const MAX_GOALS: usize = 64;
-/// Most lamps times goals there may be: each takes [`BATCHES`] colours of memory, twice while the results are made.
+/// Largest number of lamps × goals: each pair takes [`BATCHES`] colours of memory, twice while results are assembled.
+/// [convention]
 pub const MAX_PAIRS: usize = 1 << 20;
 
-/// A mean and how sure it is, per channel.
+/// A mean with its standard error, per channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub mean: DVec3,
@@ -54,7 +55,7 @@ impl Estimate {
         self.standard_error * STUDENT_T
     }
 
-    /// Relative half-width of the worst channel that has light.
+    /// Largest relative half-width among the channels with light.
     pub(super) fn error(&self) -> f64 {
         let relative = self.half_width() / self.mean;
         (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)
@@ -69,28 +70,28 @@ impl Estimate {
     }
 }
 
-/// What each lamp, or group of lamps, means to each goal.
+/// The response of each goal to each lamp or group of lamps.
 #[derive(Clone, Debug)]
 pub struct Responses {
     lamps: usize,
     goals: Vec<PerGoal>,
-    /// Paths traced per goal.
+    /// Number of paths traced per goal.
     pub paths: u32,
 }
 
 #[derive(Clone, Debug)]
 struct PerGoal {
-    /// Of each batch the mean radiance under each lamp.
+    /// For each batch the mean radiance under each lamp.
     batches: Vec<Vec<DVec3>>,
     background: Vec<DVec3>,
 }
 
-/// Traces the responses of goals to the lamps of an emission at the strength it has. Stops as [`super::run`] does, by the
-/// interval of each goal's response to all lamps together; single lamps are known less well. `params.quantity` is not
-/// used, and neither is `emitter` where the lamps are lights without a surface.
+/// Traces the responses of goals to the lamps of an emission at its current strength. The stopping conditions are those
+/// of [`super::run`], for the response of each goal to all lamps together; the responses to single lamps have larger
+/// errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
 ///
 /// # Errors
-/// Parameters out of range, goals that are not there or have no area; cancelled.
+/// Parameters out of range; goals that do not exist or have no area; cancelled.
 pub fn lamp_responses(
     world: &World,
     emitter: usize,
@@ -124,7 +125,7 @@ pub fn lamp_responses(
         let mut error = 0.0f64;
         for (i, batch) in batches.iter_mut().enumerate() {
             let part = job.part(share * i as f64, (share * (i + 1) as f64).min(1.0));
-            batch.trace_round(growth, stop.most, part)?;
+            batch.trace_round(growth, stop.max_paths, part)?;
             error = error.max(error_of_all(batch));
         }
         let paths = batches[0].paths();
@@ -139,7 +140,7 @@ pub fn lamp_responses(
     }
 }
 
-/// Of the response to all lamps.
+/// Relative half-width of the response to all lamps.
 fn error_of_all(batches: &Batches) -> f64 {
     let sums: Vec<DVec3> = (0..BATCHES).map(|batch| batches.mean_of_bins(batch).sum()).collect();
     Estimate::of(|batch| sums[batch]).error()
@@ -153,7 +154,7 @@ impl PerGoal {
 }
 
 impl Responses {
-    /// Number of lamps, or of groups.
+    /// Number of lamps or of groups.
     pub fn lamps(&self) -> usize {
         self.lamps
     }
@@ -177,7 +178,7 @@ impl Responses {
         Estimate::of(|batch| self.goals[goal].background[batch])
     }
 
-    /// What one batch says of each lamp.
+    /// The responses to each lamp in one batch.
     pub(super) fn batch(&self, goal: usize, batch: usize) -> &[DVec3] {
         &self.goals[goal].batches[batch]
     }
@@ -186,10 +187,10 @@ impl Responses {
         self.goals[goal].background[batch]
     }
 
-    /// The responses to groups of lamps: `group_of` has the group of each lamp, below `groups`.
+    /// The responses to groups of lamps: `group_of` has the group of each lamp, less than `groups`.
     ///
     /// # Errors
-    /// `InvalidArgument` if the groups do not fit the lamps.
+    /// `InvalidArgument` if the groups do not match the lamps.
     pub fn grouped(&self, group_of: &[u32], groups: usize) -> Result<Self> {
         if group_of.len() != self.lamps {
             return Err(Error::argument(format!("groups are given for {} lamps of {}", group_of.len(), self.lamps)));

@@ -1,28 +1,29 @@
-//! Least squares within bounds, of which some terms count on one side only: what should be at least, or at most, a value.
+//! Bounded least squares with one-sided terms, for targets that are lower or upper limits.
 //!
-//! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r`, its negative part for "at least", its
-//! positive part for "at most". The function is convex, smooth and piecewise quadratic. Newton's method: with the terms that
-//! count where it stands it is a problem of [`super::bounded`], towards whose answer it goes as far as the function falls.
-//! That ends after finitely many steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), here a few.
+//! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r` for exact targets, the negative
+//! part of `r` for "at least", and the positive part for "at most". The function is convex, smooth and piecewise
+//! quadratic. Newton's method: with the terms that are active at the current point, it is a problem of
+//! [`super::bounded`]; the step ends at the minimum along the way to its solution. The method ends after finitely many
+//! steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in practice after a few.
 
 use super::bounded::{self, dot};
 use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
-/// On which side of a value light should be.
+/// Whether a target is exact or a limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sense {
-    /// At the value.
+    /// An exact target.
     #[default]
     Exactly,
-    /// No less: what a standard asks of a desk, or what a clipped pixel of a photo says.
+    /// A lower limit: a standard's requirement for a desk, or a clipped pixel of a photo.
     AtLeast,
-    /// No more: a limit against glare.
+    /// An upper limit, against glare.
     AtMost,
 }
 
 impl Sense {
-    /// How far a value that is `over` too large is off.
+    /// The residual of a value that exceeds the target by `over`.
     pub(super) fn miss(self, over: f64) -> f64 {
         match self {
             Self::Exactly => over,
@@ -33,48 +34,48 @@ impl Sense {
 }
 
 pub(super) struct Problem<'a> {
-    /// Row after row.
+    /// Row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    /// Of each row.
+    /// One per row.
     pub senses: &'a [Sense],
-    /// `λ`, relative to the mean square of a row, > 0.
-    pub pull: f64,
-    /// `p`, for every unknown.
+    /// `λ` relative to the mean square of a row, positive.
+    pub regularisation: f64,
+    /// `p`, one value per unknown.
     pub preferred: &'a [f64],
-    /// `u`, ≥ 0, may be infinite.
+    /// `u`, non-negative; may be infinite.
     pub upper: &'a [f64],
 }
 
-/// Newton steps, of which a few suffice.
-const STEPS: usize = 200;
-/// A term counts, or ceases to, when it is on its side by more than this share of its parts.
+/// Largest number of Newton steps; a few suffice. [convention]
+const MAX_STEPS: usize = 200;
+/// Relative margin around a limit within which a term keeps its state. [rounding]
 const ROUNDING: f64 = 1e-12;
 
 impl Problem<'_> {
     /// # Errors
-    /// `Internal` if the method does not end, which it must.
+    /// `Internal` if the method does not converge, which cannot happen in theory.
     pub fn solve(&self) -> Result<Vec<f64>> {
-        let lambda = self.pull * dot(self.matrix, self.matrix) / self.right.len() as f64;
+        let lambda = self.regularisation * dot(self.matrix, self.matrix) / self.right.len() as f64;
         let mut x: Vec<f64> = self.preferred.iter().zip(self.upper).map(|(p, u)| p.clamp(0.0, *u)).collect();
         if !(lambda > 0.0 && lambda.is_finite()) {
-            // Nothing responds: what is preferred is all there is to say.
+            // Without any response, the solution is the preferred value.
             return Ok(x);
         }
-        let mut counting = self.counting(&x, &vec![false; self.right.len()]);
-        for _ in 0..STEPS {
-            let next = self.with(&counting, lambda)?;
-            let then = self.counting(&next, &counting);
-            if then == counting {
+        let mut active = self.active(&x, &vec![false; self.right.len()]);
+        for _ in 0..MAX_STEPS {
+            let next = self.solve_active(&active, lambda)?;
+            let then = self.active(&next, &active);
+            if then == active {
                 return Ok(next);
             }
             let (t, slope) = self.line_search(lambda, &x, &next);
             x.iter_mut().zip(&next).for_each(|(x, n)| *x += t * (n - *x));
-            // On the edge to rounding a term may flicker, and the function does not fall any more.
+            // Stop when the function no longer decreases: a term at its limit may change state by rounding.
             if -slope * t <= ROUNDING * dot(self.right, self.right) {
                 return Ok(x);
             }
-            counting = self.counting(&x, &counting);
+            active = self.active(&x, &active);
         }
         Err(Error::new(ErrorKind::Internal, "the powers for goals with limits did not settle"))
     }
@@ -84,9 +85,9 @@ impl Problem<'_> {
         &self.matrix[i * n..(i + 1) * n]
     }
 
-    /// Which terms count at `x`; `before` decides on the edge.
-    fn counting(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
-        let counts = |i: usize| {
+    /// The terms active at `x`; within rounding of the limit they keep the state of `before`.
+    fn active(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
+        let is_active = |i: usize| {
             let (light, right) = (dot(self.row(i), x), self.right[i]);
             let over = light - right;
             let edge = ROUNDING * (light.abs() + right.abs());
@@ -96,22 +97,22 @@ impl Problem<'_> {
                 sense => sense.miss(over) != 0.0,
             }
         };
-        (0..self.right.len()).map(counts).collect()
+        (0..self.right.len()).map(is_active).collect()
     }
 
-    /// The answer if just these terms count, on either side.
-    fn with(&self, counting: &[bool], pull: f64) -> Result<Vec<f64>> {
+    /// The solution with only these terms, as exact ones.
+    fn solve_active(&self, active: &[bool], regularisation: f64) -> Result<Vec<f64>> {
         let Self { matrix, right, preferred, upper, .. } = *self;
-        if counting.iter().all(|counts| *counts) {
-            return bounded::Problem { matrix, right, pull, preferred, upper }.solve();
+        if active.iter().all(|is_active| *is_active) {
+            return bounded::Problem { matrix, right, regularisation, preferred, upper }.solve();
         }
-        let rows = || (0..right.len()).filter(|&i| counting[i]);
+        let rows = || (0..right.len()).filter(|&i| active[i]);
         let matrix: Vec<f64> = rows().flat_map(|i| self.row(i).iter().copied()).collect();
         let right: Vec<f64> = rows().map(|i| right[i]).collect();
-        bounded::Problem { matrix: &matrix, right: &right, pull, preferred, upper }.solve()
+        bounded::Problem { matrix: &matrix, right: &right, regularisation, preferred, upper }.solve()
     }
 
-    /// Where between two places the function is least, and its slope at the first.
+    /// The minimum of the function between two points, and its derivative at the first point.
     fn line_search(&self, lambda: f64, from: &[f64], to: &[f64]) -> (f64, f64) {
         let step: Vec<f64> = to.iter().zip(from).map(|(b, a)| b - a).collect();
         let away: f64 = from.iter().zip(self.preferred).zip(&step).map(|((x, p), d)| (x - p) * d).sum();
@@ -134,12 +135,13 @@ impl Problem<'_> {
     }
 }
 
-/// One power `q ≥ 0` for all, in closed form: that which makes `½ Σ ψ(a q − b)²` least, `a ≥ 0`. Of several the least, which
-/// is as little light as serves; where none is asked for, that nearest to 1, the lamps as they are.
-pub(super) fn all_alike(responses: &[f64], right: &[f64], senses: &[Sense]) -> f64 {
+/// The common power `q ≥ 0` of all lamps that minimises `½ Σ ψ(a q − b)²`, with `a ≥ 0`, in closed form. Among several
+/// minima it returns the smallest, which uses the least light; if no term requires light, the one nearest to 1, the
+/// current power.
+pub(super) fn common_power(responses: &[f64], right: &[f64], senses: &[Sense]) -> f64 {
     let rows =
         || responses.iter().zip(right).zip(senses).map(|((a, b), sense)| (*a, *b, *sense)).filter(|row| row.0 > 0.0);
-    // Beyond the last of the values, less light is better.
+    // The minimum lies below the largest of the ratios b / a.
     let last = rows().map(|(a, b, _)| b / a).fold(0.0, f64::max);
     let mut slope = Slope { start: 0.0, growth: 0.0, changes: Vec::new() };
     for (a, b, sense) in rows() {
@@ -170,34 +172,36 @@ mod tests {
     fn closed_forms() {
         let solve = |matrix: &[f64], right: &[f64], senses: &[Sense], preferred: &[f64]| {
             let upper = vec![FREE; preferred.len()];
-            Problem { matrix, right, senses, pull: 1e-9, preferred, upper: &upper }.solve().unwrap()
+            Problem { matrix, right, senses, regularisation: 1e-9, preferred, upper: &upper }.solve().unwrap()
         };
         let near = |x: Vec<f64>, expected: &[f64]| {
             assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-6), "{x:?}, expected {expected:?}");
         };
-        // What is preferred stays where it does, and moves to the limit where it does not.
+        // The preferred value stays where it satisfies the limit, and moves to the limit where it does not.
         near(solve(&[2.0], &[6.0], &[AtLeast], &[5.0]), &[5.0]);
         near(solve(&[2.0], &[6.0], &[AtLeast], &[1.0]), &[3.0]);
         near(solve(&[2.0], &[6.0], &[AtMost], &[5.0]), &[3.0]);
         near(solve(&[2.0], &[6.0], &[AtMost], &[1.0]), &[1.0]);
-        // A limit that one equation breaks: x = 4 by the first, x <= 2 by the second, half way by both.
+        // An exact target against a limit: x = 4 by the first, x <= 2 by the second; the minimum is in the middle.
         near(solve(&[1.0, 1.0], &[4.0, 2.0], &[Exactly, AtMost], &[0.0]), &[3.0]);
         near(solve(&[1.0, 1.0], &[4.0, 2.0], &[Exactly, AtLeast], &[0.0]), &[4.0]);
-        // Two desks, each mostly under its own lamp, want at least 5 and 5; the first may not have more than 6.
+        // Two desks, each mainly below its own lamp, need at least 5 each; the first may have at most 6.
         let x = solve(&[1.0, 0.2, 0.2, 1.0, 1.0, 0.2], &[5.0, 5.0, 6.0], &[AtLeast, AtLeast, AtMost], &[0.0; 2]);
         near(x, &[25.0 / 6.0; 2]);
         // No response at all.
         near(solve(&[0.0], &[1.0], &[AtLeast], &[0.7]), &[0.7]);
     }
 
-    /// The third unknown leaps from its upper bound to 0 in one step, which is no end: the function falls beyond.
+    /// The third unknown jumps from its upper bound to 0 in one step; the method must not stop there, as the function
+    /// still decreases.
     #[test]
     fn a_leap_from_bound_to_bound_is_no_end() {
         let (a, b) = ([0.64, 0.44, 0.37], [0.06, 0.92, 0.2]);
         let (matrix, right) = ([a, a, a, b, b].concat(), [1.07, 0.0, 0.59, 0.81, 1.11]);
         let senses = [AtLeast, AtMost, AtLeast, AtMost, AtLeast];
         let (preferred, upper) = (&[1.0, 1.0, 0.1], &[1.18, 1.2, 0.1]);
-        let problem = Problem { matrix: &matrix, right: &right, senses: &senses, pull: 7e-9, preferred, upper };
+        let problem =
+            Problem { matrix: &matrix, right: &right, senses: &senses, regularisation: 7e-9, preferred, upper };
         let x = problem.solve().unwrap();
         let misses: Vec<f64> = (0..5).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
         for j in 0..3 {
@@ -211,17 +215,17 @@ mod tests {
     fn one_power_for_all() {
         let alike = |rows: &[(f64, f64, Sense)]| {
             let [a, b] = [0, 1].map(|i| rows.iter().map(|r| [r.0, r.1][i]).collect::<Vec<_>>());
-            all_alike(&a, &b, &rows.iter().map(|r| r.2).collect::<Vec<_>>())
+            common_power(&a, &b, &rows.iter().map(|r| r.2).collect::<Vec<_>>())
         };
-        // Least squares, whose misses may differ: q = Σ ab / Σ a².
+        // Least squares of inconsistent targets: q = Σ ab / Σ a².
         assert!((alike(&[(2.0, 6.0, Exactly), (1.0, 1.0, Exactly)]) - 13.0 / 5.0).abs() < 1e-15);
         assert_eq!(alike(&[(2.0, 6.0, AtLeast), (1.0, 1.0, AtLeast)]), 3.0);
         assert_eq!(alike(&[(2.0, 6.0, AtLeast), (1.0, 1.0, AtMost)]), 13.0 / 5.0);
         assert_eq!(alike(&[(2.0, 6.0, AtLeast), (1.0, 4.0, AtMost)]), 3.0);
-        // Caps alone leave the lamps as they are, or bring them down.
+        // Upper limits alone keep the current power or reduce it.
         assert_eq!(alike(&[(2.0, 6.0, AtMost)]), 1.0);
         assert_eq!(alike(&[(2.0, 1.0, AtMost), (1.0, 4.0, AtMost)]), 0.5);
-        // Darkness, too much other light, and nothing that responds.
+        // A black target, too much other light, and no response.
         assert_eq!(alike(&[(2.0, 0.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, Exactly)]), 0.0);
         assert_eq!(alike(&[(2.0, -1.0, AtMost)]), 0.0);
@@ -229,14 +233,14 @@ mod tests {
         assert_eq!(alike(&[(0.0, 1.0, Exactly)]), 1.0);
     }
 
-    /// The function does not fall anywhere from the answer: Karush, Kuhn and Tucker's conditions, at random problems.
+    /// The Karush-Kuhn-Tucker conditions hold at the solutions of random problems.
     #[test]
     fn conditions_of_optimality() {
         let mut rng = Rng::new(7, &[]);
         for case in 0..1000 {
             let (m, n) = (1 + rng.below(8), 1 + rng.below(if case % 2 == 0 { 30 } else { 5 }));
             let mut matrix: Vec<f64> = (0..m * n).map(|_| rng.next_f64()).collect();
-            // Channels of a grey room are alike.
+            // The channels of a grey room are equal.
             for i in (1..m).filter(|i| case % 3 == 0 && i % 3 != 0) {
                 matrix.copy_within((i - 1) * n..i * n, i * n);
             }
@@ -245,11 +249,17 @@ mod tests {
             let preferred: Vec<f64> = (0..n).map(|_| rng.next_f64()).collect();
             let upper: Vec<f64> =
                 (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 2.0 * rng.next_f64() }).collect();
-            let pull = 10f64.powf(-9.0 * rng.next_f64());
-            let problem =
-                Problem { matrix: &matrix, right: &right, senses: &senses, pull, preferred: &preferred, upper: &upper };
+            let regularisation = 10f64.powf(-9.0 * rng.next_f64());
+            let problem = Problem {
+                matrix: &matrix,
+                right: &right,
+                senses: &senses,
+                regularisation,
+                preferred: &preferred,
+                upper: &upper,
+            };
             let x = problem.solve().unwrap();
-            let lambda = pull * dot(&matrix, &matrix) / m as f64;
+            let lambda = regularisation * dot(&matrix, &matrix) / m as f64;
             let misses: Vec<f64> = (0..m).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
             for j in 0..n {
                 let slope = (0..m).map(|i| matrix[i * n + j] * misses[i]).sum::<f64>() + lambda * (x[j] - preferred[j]);

@@ -1,26 +1,26 @@
-//! Powers in steps: drivers that dim to a few levels only.
+//! Rounding of powers to dimming levels.
 //!
-//! Rounding every group for itself adds up: with lamps that are alike, all are wrong to the same side. Here each group in turn
-//! gets the level that is best for the goals beside what the others have, by the same sum of squares that the powers were
-//! solved with; again and again until none changes (coordinate descent), from two starts of which the better end counts. Along one group the sum is convex, so its best level
-//! is found by going from level to level while it falls.
+//! Rounding each group separately adds up: lamps of equal power are all rounded to the same side. Instead, coordinate
+//! descent chooses for each group in turn the level that minimises the sum of squares of the goals, given the levels of
+//! the others, until none changes. It runs from two starting points and keeps the better result. Along one group the
+//! sum is convex, so its best level is found by stepping through the levels while the sum decreases.
 
 use super::bounded::dot;
 use super::sided::Sense;
 
-/// The goals' terms: as in [`super::sided::Problem`].
+/// The terms of the goals: see [`super::sided::Problem`].
 pub(super) struct Terms<'a> {
     pub matrix: &'a [f64],
     pub right: &'a [f64],
     pub senses: &'a [Sense],
 }
 
-/// Rounds over all groups, of which a few suffice.
-const ROUNDS: usize = 100;
-/// A gain, relative to the goals, that is rounding only.
+/// Largest number of rounds over all groups; a few suffice. [convention]
+const MAX_ROUNDS: usize = 100;
+/// Decrease relative to the goals that counts as zero. [rounding]
 const ROUNDING: f64 = 1e-14;
 
-/// Powers on their way to levels, and the light of each term under them.
+/// The current powers, their levels, and the light of each term.
 #[derive(Clone)]
 struct State {
     powers: Vec<f64>,
@@ -29,33 +29,33 @@ struct State {
 }
 
 impl Terms<'_> {
-    /// The levels (rising, not empty) of groups whose powers without steps are `x`, none above its bound unless the lowest is.
+    /// Rounds the powers `x` to levels (ascending, not empty), none of them above its bound unless the lowest level is.
     pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
-        let most: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
+        let max_level: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
         let nearest = |j: usize| {
             let off = |l: usize| (levels[l] - x[j]).abs();
-            (0..=most[j]).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0)
+            (0..=max_level[j]).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0)
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
-        // From the nearest levels of all; and group after group beside powers that have no steps yet.
+        // Start from the nearest levels of all groups, and from unrounded powers, which the first round rounds in turn.
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));
-        let [a, b] = [at_once, after].map(|start| self.descend(start, levels, &most));
+        let [a, b] = [at_once, after].map(|start| self.descend(start, levels, &max_level));
         if self.sum(&a, 0, 0.0) <= self.sum(&b, 0, 0.0) { a.powers } else { b.powers }
     }
 
-    fn descend(&self, mut state: State, levels: &[f64], most: &[usize]) -> State {
+    fn descend(&self, mut state: State, levels: &[f64], max_level: &[usize]) -> State {
         let small = ROUNDING * dot(self.right, self.right);
-        for round in 0..ROUNDS {
+        for round in 0..MAX_ROUNDS {
             let mut changed = false;
             for j in 0..state.powers.len() {
                 let sum = |l: usize| self.sum(&state, j, levels[l] - state.powers[j]);
                 let mut best = (state.chosen[j], sum(state.chosen[j]));
                 for up in [true, false] {
                     while let Some(next) = if up { best.0.checked_add(1) } else { best.0.checked_sub(1) } {
-                        let there = if next <= most[j] { sum(next) } else { break };
+                        let there = if next <= max_level[j] { sum(next) } else { break };
                         if there >= best.1 - small {
                             break;
                         }
@@ -78,7 +78,7 @@ impl Terms<'_> {
         (state.powers[j], state.chosen[j]) = (levels[level], level);
     }
 
-    /// The sum of squares when group `j` is changed.
+    /// The sum of squares after a change of group `j`.
     fn sum(&self, state: &State, j: usize, change: f64) -> f64 {
         let n = state.powers.len();
         let light = |i: usize| state.light[i] + self.matrix[i * n + j] * change;
@@ -100,20 +100,21 @@ mod tests {
 
     #[test]
     fn lamps_that_are_alike_share_the_rounding() {
-        // Ten lamps at 0.24 of 1: on and off only, two or three of them must be on.
+        // Ten lamps at 0.24, which can only be on or off: two or three of them must be on.
         let terms = Terms { matrix: &[1.0; 10], right: &[2.4], senses: &[Sense::Exactly] };
         let on = terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>();
         assert_eq!(on, 2.0);
         let terms = Terms { senses: &[Sense::AtLeast], ..terms };
         assert_eq!(terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>(), 3.0);
-        // One alone goes to the nearest level, and keeps its bound.
+        // A single lamp goes to the nearest level within its bound.
         let terms = Terms { matrix: &[2.0], right: &[1.5], senses: &[Sense::Exactly] };
         assert_eq!(terms.round(&[0.75], &[0.0, 0.5, 0.7, 1.0], &[FREE]), [0.7]);
         assert_eq!(terms.round(&[0.5], &[0.0, 0.5, 0.7, 1.0], &[0.6]), [0.5]);
         assert_eq!(terms.round(&[0.1], &[0.2, 0.5], &[0.1]), [0.2]);
     }
 
-    /// Against all combinations: never worse than rounding each for itself, no single change helps, mostly the best.
+    /// Compared with all combinations: never worse than separate rounding, no single change improves it, usually
+    /// optimal.
     #[test]
     fn joint_choices_against_all_combinations() {
         let mut rng = Rng::new(11, &[]);

@@ -1,13 +1,14 @@
-//! Points of the target, uniform by area, with what each sends back of the light it gathers.
+//! Sampling of target points uniform by area, with their reflectance.
 
-use super::{Place, Quantity};
+use super::params::{Place, Quantity};
 use crate::error::{Error, Result};
 use crate::render::{self, PathSink, SurfacePoint, World};
 use crate::scene::{Material, Mesh, Scene};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// The generalised golden ratio of two dimensions, 1/g and 1/g² (Roberts 2018): a sequence that fills the square evenly.
+/// The generalised golden ratio in two dimensions, 1/g and 1/g² (Roberts 2018): a low-discrepancy sequence.
+/// [convention]
 const KRONECKER: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
 
 pub(super) enum Sampler<'a> {
@@ -18,12 +19,12 @@ pub(super) enum Sampler<'a> {
 pub(super) struct Surface<'a> {
     scene: &'a Scene,
     triangles: &'a [(usize, usize)],
-    /// Running sums of the triangles' areas.
+    /// Cumulative areas of the triangles.
     cumulative: Vec<f64>,
     quantity: Quantity,
 }
 
-/// A point and the factor from its irradiance to what is matched.
+/// A target point, with the factor from its irradiance to the quantity to match.
 pub(super) struct Target {
     at: At,
     pub factor: Vec3,
@@ -35,7 +36,7 @@ enum At {
 }
 
 impl Target {
-    /// Adds one sample of the irradiance here to a sink.
+    /// Adds one sample of the irradiance at the point to a sink.
     pub fn gather<S: PathSink>(&self, world: &World, seed: u64, sample: u32, sink: &mut S) {
         match &self.at {
             At::Surface(point) => render::irradiance(world, point, seed, sample, sink),
@@ -47,7 +48,7 @@ impl Target {
 }
 
 impl<'a> Sampler<'a> {
-    /// `scene` tells what the target reflects, and where lamps in it are to be left out.
+    /// `scene` provides the reflectance of the target and the lamps to exclude.
     pub fn new(scene: &'a Scene, place: Place<'a>, quantity: Quantity) -> Result<Self> {
         match place {
             Place::Surface(triangles) => Surface::new(scene, triangles, quantity).map(Self::Surface),
@@ -64,7 +65,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Point `index` of the sequence that `shift` sets apart; `None` on a lamp, which the photo's mean leaves out too.
+    /// Point `index` of the sequence with offset `shift`; `None` on a lamp, which the photo's mean excludes too.
     pub fn point(&self, index: u32, shift: [f64; 2]) -> Option<Target> {
         let [u, v] = std::array::from_fn(|i| (shift[i] + f64::from(index) * KRONECKER[i]).fract());
         match self {
@@ -99,7 +100,7 @@ impl<'a> Surface<'a> {
     }
 
     fn point(&self, u: f64, v: f64) -> Option<Target> {
-        // Choose a triangle by area and use the rest of the same number within it.
+        // Select a triangle by area and reuse the remainder of the random number within it.
         let total = self.cumulative[self.cumulative.len() - 1];
         let i = self.cumulative.partition_point(|&sum| sum <= u * total).min(self.triangles.len() - 1);
         let before = if i == 0 { 0.0 } else { self.cumulative[i - 1] };
@@ -134,7 +135,7 @@ fn emits(scene: &Scene, mesh: &Mesh, material: &Material, triangle: usize, baryc
     scene.textures[map.texture].nearest(at).truncate() * material.emission != Vec3::ZERO
 }
 
-/// Share of the irradiance sent back diffusely. Gloss is left out: a ceiling's mean colour hardly contains any.
+/// Diffuse albedo. Glossy reflection is neglected: the mean colour of a ceiling hardly contains any.
 fn diffuse_albedo(scene: &Scene, mesh: &Mesh, material: &Material, triangle: usize, barycentric: Vec2) -> Vec3 {
     let look_up = |map: crate::scene::TextureRef| {
         let at = map.transform.transform_point2(uv(mesh, map.uv_set, triangle, barycentric));

@@ -1,8 +1,8 @@
-//! Transport: what paths from the target find, sorted into bins, in independent batches.
+//! Light transport: traces paths from the target and sums their light by bin, in independent batches.
 
-use super::Params;
 use super::bins::{Bins, Sorter};
 use super::estimate::BATCHES;
+use super::params::Params;
 use super::target::Sampler;
 use crate::error::Result;
 use crate::exec;
@@ -14,66 +14,66 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Paths of a batch in the first round.
+/// Paths per batch in the first round. [judged, not recorded]
 const FIRST_ROUND: u32 = 64;
-/// A later round brings this many times the paths there are, at least and at most.
+/// Smallest and largest growth factor of the number of paths in later rounds. [judged, not recorded]
 const GROWTH: [f64; 2] = [1.25, 4.0];
-/// What is added to a forecast of the paths that a given error takes: an error is itself known to 13 % with 32 batches.
-const MARGIN: f64 = 1.1;
+/// Safety factor on the predicted number of paths: with 32 batches, an error is known to 13 %. [judged, not recorded]
+const FORECAST_MARGIN: f64 = 1.1;
 
-/// When the paths are enough: at the error that is wanted, when the time is up, or when they are as many as allowed.
+/// Stopping conditions: target error, time budget, and number of paths.
 pub(super) struct Stop {
     clock: Instant,
-    /// Seconds there are; infinite if nothing limits them.
+    /// Time budget in seconds; may be infinite.
     budget: f64,
-    /// Relative half-width; 0 if none is wanted.
-    wanted: f64,
-    pub most: u32,
+    /// Relative half-width; 0 for no target.
+    target_error: f64,
+    pub max_paths: u32,
 }
 
 impl Stop {
     pub fn new(params: &Params) -> Self {
         let milliseconds = f64::from(params.time_budget_ms);
         let budget = if milliseconds > 0.0 { milliseconds / 1e3 } else { f64::INFINITY };
-        Self { clock: Instant::now(), budget, wanted: f64::from(params.target_error), most: params.paths }
+        Self { clock: Instant::now(), budget, target_error: f64::from(params.target_error), max_paths: params.paths }
     }
 
-    /// How many times the paths there are should follow, now that they have brought the relative half-width down to
-    /// `error`; `None` when they are enough.
+    /// Growth factor for the number of paths after a relative half-width of `error`; `None` if no more paths are
+    /// needed.
     pub fn growth(&self, error: f64, paths: u32) -> Option<f64> {
         let spent = self.clock.elapsed().as_secs_f64().max(1e-6);
-        if error <= self.wanted && self.wanted > 0.0 || spent >= self.budget || paths >= self.most {
+        if error <= self.target_error && self.target_error > 0.0 || spent >= self.budget || paths >= self.max_paths {
             return None;
         }
-        let forecast = if self.wanted > 0.0 { MARGIN * (error / self.wanted).powi(2) } else { f64::INFINITY };
+        let forecast =
+            if self.target_error > 0.0 { FORECAST_MARGIN * (error / self.target_error).powi(2) } else { f64::INFINITY };
         Some(forecast.min(self.budget / spent))
     }
 }
 
-/// Paths traced between two looks at the cancel request.
+/// Paths between two checks for cancellation. [convention]
 const CHUNK: u32 = 256;
 
-/// What the paths of one batch have found.
+/// The sums of one batch.
 #[derive(Clone)]
 struct Batch {
-    /// Sum over the paths of the light of each bin.
+    /// Sum of the light of each bin.
     bins: Vec<DVec3>,
-    /// Of all other light.
+    /// Sum of all other light.
     others: DVec3,
-    /// Of what two paths from the same point found: the products of their light of the emission, and of the emission's of
-    /// one with all other light of the other.
+    /// Sums of products over pairs of paths from the same point.
     pairs: Pairs,
-    /// Paths that started beside the lamps.
+    /// Number of paths that started outside the lamps.
     count: u32,
 }
 
-/// Means of products over pairs of paths that share their first point and nothing else: unbiased moments of the light
-/// there, which the squares of single paths, noise included, are not.
+/// Second moments of the light at target points: products over pairs of independent paths from the same point are
+/// unbiased, whereas squares of single paths include their noise.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pairs {
     /// Of the squared response.
     pub own: DVec3,
-    /// Of the response times the background.
+    /// Of response × background.
     pub cross: DVec3,
 }
 
@@ -81,7 +81,7 @@ pub(super) struct Pairs {
 pub(super) struct Means {
     pub bins: Vec<DVec3>,
     pub others: DVec3,
-    /// 0 unless paths come in pairs.
+    /// Zero unless paths come in pairs.
     pub pairs: Pairs,
 }
 
@@ -92,7 +92,7 @@ pub(super) struct Batches<'a> {
     seed: u64,
     paired: bool,
     batches: Vec<Batch>,
-    /// Paths traced per batch.
+    /// Number of paths traced per batch.
     traced: u32,
 }
 
@@ -106,30 +106,30 @@ impl<'a> Batches<'a> {
         Ok(Self { world, points, bins, seed, paired: false, batches, traced: 0 })
     }
 
-    /// Sends two paths from each point; for a single bin.
+    /// Traces pairs of paths from each point; for a single bin.
     pub fn in_pairs(self) -> Self {
         Self { paired: true, ..self }
     }
 
-    /// Paths traced so far.
+    /// Number of paths traced so far.
     pub fn paths(&self) -> u32 {
         self.traced.saturating_mul(BATCHES as u32)
     }
 
-    /// Traces more paths, but no more than `limit` in all: as many times those there are as `growth` says, which is kept
-    /// within bounds.
+    /// Traces more paths, up to `limit` in total: `growth` times the current number, with `growth` clamped to its
+    /// bounds.
     pub fn trace_round(&mut self, growth: f64, limit: u32, job: Job) -> Result<()> {
-        let most = limit.div_ceil(BATCHES as u32);
-        let wanted = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
-        let (first, last) = (self.traced, (wanted as u32).max(FIRST_ROUND).min(most));
-        let part = job.part(f64::from(first) / f64::from(most), f64::from(last) / f64::from(most));
+        let max_per_batch = limit.div_ceil(BATCHES as u32);
+        let wanted_paths = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
+        let (first, last) = (self.traced, (wanted_paths as u32).max(FIRST_ROUND).min(max_per_batch));
+        let part = job.part(f64::from(first) / f64::from(max_per_batch), f64::from(last) / f64::from(max_per_batch));
         let (world, points, bins) = (self.world, self.points, &self.bins);
         let (seed, paired) = (self.seed, self.paired);
-        // A batch is a unit of work: its sums are made in the order of its paths, whatever the number of threads.
+        // Process whole batches: their sums are then independent of the number of threads.
         exec::for_rows(&mut self.batches, 1, part, |index, batch| {
             let seed = hash(seed, &[index as u64]);
             if paired {
-                // Those that begin in this round.
+                // The pairs that begin in this round.
                 batch[0].extend_pairs(world, points, bins, seed, first.div_ceil(2)..last.div_ceil(2), job);
             } else {
                 batch[0].extend(world, points, bins, seed, first..last, job);
@@ -140,18 +140,18 @@ impl<'a> Batches<'a> {
         Ok(())
     }
 
-    /// Mean per path of a batch of what each bin brings.
+    /// Mean light of each bin per path of a batch.
     pub fn mean_of_bins(&self, batch: usize) -> impl Iterator<Item = DVec3> {
         let batch = &self.batches[batch];
         batch.bins.iter().map(|sum| sum / f64::from(batch.count.max(1)))
     }
 
-    /// Mean per path of what each bin and all other lights bring, of each batch.
+    /// Mean light of the bins and of other lights per path, for each batch.
     pub fn means(&self) -> Vec<Means> {
         self.batches.iter().cloned().map(Batch::into_means).collect()
     }
 
-    /// The same when no more paths are to follow.
+    /// The same means, consuming the batches.
     pub fn into_means(self) -> Vec<Means> {
         self.batches.into_par_iter().map(Batch::into_means).collect()
     }
@@ -187,7 +187,7 @@ impl Batch {
         }
     }
 
-    /// The same by two paths from each point.
+    /// Extends the batch by pairs of paths from each point.
     fn extend_pairs(
         &mut self,
         world: &World,

@@ -1,36 +1,36 @@
-//! What the camera sees of surfaces rather than of light: distance, position, orientation, colour and name of the first
-//! surface along each sample of a pixel.
+//! Arbitrary output variables: surface attributes (distance, position, orientation, colour, index) of the first hit
+//! along each camera ray.
 //!
-//! Clear panes and mirrors are surfaces like others. Colours and coverage are means over all samples, so that they add up
-//! like light; distances, positions and normals are means over the samples that met a surface. An index cannot be averaged:
-//! it is that of the surface most samples met, if any met more than half of them, else of one of those met (the majority
-//! vote of Boyer and Moore 1981, which takes one pass and one counter).
+//! Clear panes and mirrors count as surfaces. Colours and coverage are means over all samples, so that they add up like
+//! light; distances, positions and normals are means over the samples that hit a surface. An index cannot be averaged:
+//! it is the index that more than half of the hits have, or, without such a majority, the index of one of the hits (the
+//! majority vote of Boyer and Moore 1981, in one pass with one counter).
 
 use super::ballot;
-use super::path::Seen;
+use super::path::PrimaryHit;
 use super::world::World;
 use glam::{DVec3, Vec3};
 
-/// An image of the surfaces seen.
+/// A surface attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aov {
-    /// Distance along the viewing direction (z), in metres; infinite where nothing is.
+    /// Distance along the viewing direction (z), in metres; infinite for the background.
     Depth,
-    /// Distance along the ray, in metres; infinite where nothing is.
+    /// Distance along the ray, in metres; infinite for the background.
     Distance,
-    /// In the world, in metres.
+    /// World position in metres.
     Position,
-    /// Unit shading normal in the world, on the side of the viewer; 0 where nothing is.
+    /// Unit shading normal in world space, facing the viewer; 0 for the background.
     Normal,
-    /// The same of the triangle itself.
+    /// Unit geometric normal of the triangle, facing the viewer; 0 for the background.
     GeometricNormal,
-    /// Colour at normal incidence: what is reflected by either layer or let through.
+    /// Reflectance plus transmittance at normal incidence.
     Albedo,
-    /// Index of the mesh plus 1; 0 where nothing is.
+    /// Index of the mesh plus 1; 0 for the background.
     Object,
-    /// Index of the material plus 1; 0 where nothing is.
+    /// Index of the material plus 1; 0 for the background.
     Material,
-    /// Share of the pixel that is covered by a surface, in `[0, 1]`.
+    /// Share of the pixel covered by surfaces, in `[0, 1]`.
     Alpha,
     /// Luminance of the image in cd/m²: `0.2126 R + 0.7152 G + 0.0722 B`.
     Luminance,
@@ -50,7 +50,7 @@ impl Aov {
         Self::Luminance,
     ];
 
-    /// The name of its layer in a file, as Blender and Nuke have it where they have one.
+    /// Name of its layer in files: that of Blender or Nuke, if they have one.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "Depth",
@@ -77,7 +77,7 @@ impl Aov {
         }
     }
 
-    /// How many numbers of a pixel are kept for it, apart from the count of samples that met a surface.
+    /// Number of values per pixel in the totals of a film, without the number of hits.
     pub fn kept(self) -> usize {
         match self {
             Self::Depth | Self::Distance => 1,
@@ -87,7 +87,7 @@ impl Aov {
         }
     }
 
-    /// How many numbers of a pixel are summed for it where nothing may be lost ([`Surfaces::add_to`]).
+    /// Number of values per pixel in lossless sums ([`Surfaces::add_to`]).
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -95,7 +95,7 @@ impl Aov {
         }
     }
 
-    /// Such sums as the numbers that are kept.
+    /// Converts lossless sums to the totals of a film.
     pub fn keep_sums(self, sums: &[f64], kept: &mut [f32]) {
         match self {
             Self::Object | Self::Material => kept.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
@@ -103,7 +103,7 @@ impl Aov {
         }
     }
 
-    /// Adds the sums over some paths to those over others.
+    /// Adds the sums over other paths to `sums`.
     pub fn join_sums(self, sums: &mut [f64], others: &[f64]) {
         match self {
             Self::Object | Self::Material => ballot::join(sums, others),
@@ -111,7 +111,8 @@ impl Aov {
         }
     }
 
-    /// The value of a pixel (positions relative to the world's centre) from the numbers kept, the samples that met a surface, and all samples.
+    /// The value of a pixel from its totals, its number of hits, and its number of samples. Positions are relative to
+    /// the centre of the world.
     pub fn value(self, kept: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(kept[i])));
         match self {
@@ -123,13 +124,13 @@ impl Aov {
             Self::Albedo => (vector() / samples).as_vec3().write_to_slice(out),
             Self::Object | Self::Material => out[0] = if hits > 0.0 { kept[0] } else { 0.0 },
             Self::Alpha => out[0] = (hits / samples) as f32,
-            // Made from the image itself.
+            // Computed from the main image.
             Self::Luminance => (),
         }
     }
 }
 
-/// Sums over samples of what they met first.
+/// Sums over the primary hits of a pixel.
 #[derive(Clone, Copy, Default)]
 pub struct Surfaces {
     pub hits: u32,
@@ -144,8 +145,8 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// `depth` is along the camera's viewing direction.
-    pub fn meet(&mut self, world: &World, seen: &Seen, depth: f32) {
+    /// `depth` is the distance along the viewing direction.
+    pub fn add(&mut self, world: &World, seen: &PrimaryHit, depth: f32) {
         let material = world.scene().meshes[seen.mesh as usize].material;
         self.hits += 1;
         self.depth += f64::from(depth);
@@ -158,7 +159,7 @@ impl Surfaces {
         self.material.cast(material as u32 + 1);
     }
 
-    /// Adds the sums to those kept of a pixel.
+    /// Adds the sums to the totals of a pixel.
     pub fn keep(&self, aov: Aov, kept: &mut [f32]) {
         match aov {
             Aov::Object => self.object.join(kept),
@@ -167,7 +168,7 @@ impl Surfaces {
         }
     }
 
-    /// Adds what a single path met to sums that keep all digits, and all votes but those of very many candidates.
+    /// Adds the sums to lossless sums in f64. Votes are lossless up to `ballot::CANDIDATES` candidates.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {
             Aov::Object => ballot::cast(sums, self.object.candidate.into(), self.object.lead.into()),
@@ -176,7 +177,7 @@ impl Surfaces {
         }
     }
 
-    /// The sum of what is no index, in as many of its numbers as there are.
+    /// The sum of an attribute that is not an index; scalar attributes use the first component.
     fn sum(&self, aov: Aov) -> DVec3 {
         match aov {
             Aov::Depth => DVec3::splat(self.depth),
@@ -190,7 +191,7 @@ impl Surfaces {
     }
 }
 
-/// A candidate for the majority, and by how many votes it leads.
+/// The leading candidate of a majority vote, and its lead.
 #[derive(Clone, Copy, Default)]
 struct Vote {
     candidate: u32,
@@ -205,8 +206,8 @@ impl Vote {
         self.lead = if self.candidate == candidate { self.lead + 1 } else { self.lead - 1 };
     }
 
-    /// Joins the outcome of other votes, kept as two numbers; a majority of all still wins (Agarwal et al. 2013,
-    /// "Mergeable summaries").
+    /// Merges with the outcome of other votes, stored as two numbers; a majority of all votes still wins (Agarwal et
+    /// al. 2013, "Mergeable summaries").
     fn join(self, kept: &mut [f32]) {
         let (candidate, lead) = (self.candidate as f32, self.lead as f32);
         if kept[0] == candidate {
@@ -228,7 +229,7 @@ mod tests {
     fn a_majority_wins_however_the_votes_are_split() {
         let mut rng = Rng::new(31, &[]);
         for round in 0..200 {
-            // 101 votes of which 51 are for candidate 7, in random order, joined at random places.
+            // 101 votes in random order, 51 of them for candidate 7, merged at random places.
             let mut votes: Vec<u32> = (0..101).map(|i| if i < 51 { 7 } else { 1 + rng.below(5) as u32 }).collect();
             for i in (1..votes.len()).rev() {
                 votes.swap(i, rng.below(i + 1));

@@ -1,12 +1,12 @@
-//! Votes for indices that many can count and add up: a few candidates and their votes (Misra and Gries 1982, "Finding
-//! repeated elements"; Agarwal et al. 2013, "Mergeable summaries", for adding up).
+//! Mergeable vote counts for indices: a few candidates with their votes (Misra and Gries 1982, "Finding repeated
+//! elements"; Agarwal et al. 2013, "Mergeable summaries").
 //!
-//! With up to [`CANDIDATES`] surfaces in a pixel all votes are known, whoever counts them and in whatever order. Beyond
-//! that those of rare candidates are struck out against each other; a majority still wins.
+//! With up to [`CANDIDATES`] surfaces in a pixel the counts are exact, in any order of counting and merging. With more
+//! surfaces, votes for rare candidates cancel each other; a majority still wins.
 
-/// Candidates that are remembered.
+/// Largest number of candidates. [judged, not recorded]
 const CANDIDATES: usize = 4;
-/// Numbers of a ballot: a candidate and its votes, one after the other; no votes, no candidate.
+/// Numbers per ballot: pairs of a candidate and its votes. A pair without votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;
 
 /// Adds votes for a candidate.
@@ -15,11 +15,11 @@ pub fn cast(ballot: &mut [f64], candidate: f64, votes: f64) {
     let Some(place) =
         slots.iter().position(|s| s[1] > 0.0 && s[0] == candidate).or_else(|| slots.iter().position(|s| s[1] == 0.0))
     else {
-        // Each vote struck out here strikes out one of every candidate.
-        let least = slots.iter().fold(votes, |least, s| least.min(s[1]));
-        slots.iter_mut().for_each(|s| s[1] -= least);
-        if votes > least {
-            cast(ballot, candidate, votes - least);
+        // Cancel votes: each cancelled vote cancels one vote of every candidate.
+        let min_votes = slots.iter().fold(votes, |min_votes, s| min_votes.min(s[1]));
+        slots.iter_mut().for_each(|s| s[1] -= min_votes);
+        if votes > min_votes {
+            cast(ballot, candidate, votes - min_votes);
         }
         return;
     };
@@ -32,7 +32,7 @@ pub fn join(ballot: &mut [f64], other: &[f64]) {
     slots.iter().filter(|s| s[1] > 0.0).for_each(|s| cast(ballot, s[0], s[1]));
 }
 
-/// The candidate with the most votes, of equals the first by number, and its votes.
+/// The candidate with the most votes (of equals the smallest index), and its votes.
 pub fn winner(ballot: &[f64]) -> [f64; 2] {
     let (slots, _) = ballot.as_chunks::<2>();
     let better = |a: [f64; 2], b: [f64; 2]| if (b[1], -b[0]) > (a[1], -a[0]) { b } else { a };
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
-    /// Votes counted in some number of ballots, which are added up in an order of their own.
+    /// Counts votes in several ballots and merges them in random order.
     fn counted(votes: &[u32], rng: &mut Rng) -> [f64; 2] {
         let mut ballots = vec![[0.0; NUMBERS]; 1 + rng.below(5)];
         for &vote in votes {

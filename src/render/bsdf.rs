@@ -1,39 +1,41 @@
-//! How a point of a surface scatters light: glTF 2.0's metallic-roughness model (appendix B).
+//! The BSDF of a surface point: glTF 2.0's metallic-roughness model (appendix B).
 //!
-//! Lambert below, GGX on top, or a mirror below a roughness of 1/1000; the share `transmission` of what the top lets
-//! through goes on straight, as through a thin pane (`KHR_materials_transmission` without volume). Where appendix B mixes
-//! the layers by the Fresnel factor of the half vector, which sends back up to twice what arrives at grazing angles, the
-//! diffuse layer here takes what the top layer leaves over both ways. An index of refraction of 1 has no top layer.
+//! A Lambertian layer below a GGX layer; below a roughness of 1/1000 the top layer is a mirror. The share
+//! `transmission` of the light that passes the top layer continues straight, as through a thin pane
+//! (`KHR_materials_transmission` without volume). Appendix B mixes the layers by the Fresnel factor of the half vector,
+//! which reflects up to twice the incident light at grazing angles. Here the diffuse layer is attenuated by the albedo
+//! of the top layer for both directions instead. An index of refraction of 1 has no top layer.
 //!
-//! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between facets.
+//! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
 
 use super::ggx::{self, AlbedoTable};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// Below this perceptual roughness a surface is a perfect mirror.
+/// Below this perceptual roughness a surface is a perfect mirror. [convention]
 pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
-/// From this perceptual roughness on, light found for one viewer serves its neighbours: they look from nearly the same place.
+/// Smallest perceptual roughness at which a vertex is shared among neighbouring pixels, which look from nearly the same
+/// place. [judged, not recorded]
 const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
-/// What a material is at one point.
+/// The material parameters at one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Substance {
-    /// Albedo of the diffuse layer, the share of the dielectric part included.
+    /// Albedo of the diffuse layer times the share of the dielectric part.
     pub diffuse: Vec3,
-    /// Reflectance of the top layer at normal incidence and at grazing.
+    /// Reflectance of the top layer at normal incidence (`f0`) and at grazing incidence (`f90`).
     pub f0: Vec3,
     pub f90: f32,
     pub roughness: f32,
-    /// Colour of what passes straight through, before the top layer's loss; 0 where nothing does.
+    /// Transmittance in a straight line, without the loss at the top layer; 0 for opaque materials.
     pub transmission: Vec3,
-    /// The dielectric part's own reflectance at normal incidence: it decides what reaches the diffuse layer.
+    /// Reflectance at normal incidence of the dielectric part alone: it attenuates the diffuse layer.
     pub dielectric_f0: f32,
 }
 
 impl Substance {
-    /// What passes straight through at an angle.
+    /// Transmittance in a straight line at an angle.
     pub fn through(&self, cosine: f32) -> Vec3 {
         if self.transmission == Vec3::ZERO {
             return Vec3::ZERO;
@@ -43,34 +45,34 @@ impl Substance {
     }
 }
 
-/// A substance with its frame, seen from one direction.
+/// A BSDF with its shading frame, for one viewing direction.
 pub struct Bsdf<'a> {
     /// Albedo of the diffuse layer.
     diffuse: Vec3,
-    /// Shading and geometric normal, both on the side of the viewer.
+    /// Shading normal and geometric normal, both facing the viewer.
     normal: Vec3,
     geometric: Vec3,
-    /// Everything else; none where the diffuse layer is all there is.
+    /// The other layers; `None` for a purely diffuse BSDF.
     layers: Option<Layers<'a>>,
 }
 
-/// What lies on the diffuse layer or lets light past it.
+/// The top layer and the transmission.
 struct Layers<'a> {
     substance: Substance,
-    /// Completed by the shading normal.
+    /// The tangents of the shading frame; the shading normal completes it.
     tangents: [Vec3; 2],
     wo: Vec3,
-    /// What passes straight through in the direction of the viewer.
+    /// Straight transmittance towards the viewer.
     through: Vec3,
-    /// Probabilities of choosing the diffuse layer and the top layer; the rest goes straight through.
+    /// Selection probabilities of the diffuse layer and the top layer; the rest selects transmission.
     shares: [f32; 2],
-    /// How much the top layer reflects, if it spreads light.
+    /// The GGX lobe with its albedo, unless the top layer is a mirror or absent.
     lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,
-    /// What the top layer leaves for the diffuse one on the way to the viewer, divided by the mean it leaves.
+    /// Attenuation of the diffuse layer on the way to the viewer, divided by its cosine-weighted mean.
     left_over: f32,
 }
 
-/// What the diffuse and the top layer send back of light from one direction, each with the cosine.
+/// The values of the diffuse and the glossy lobe for one direction, each times the cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lobes {
     pub diffuse: Vec3,
@@ -86,28 +88,28 @@ impl Lobes {
     }
 }
 
-/// Where a path goes on.
-pub struct Scattered {
+/// A sampled direction.
+pub struct BsdfSample {
     pub direction: Vec3,
-    /// Throughput: the BSDF times the cosine over the density.
+    /// BSDF × cosine / pdf.
     pub weight: Vec3,
-    /// What the BSDF is made of where it spreads.
+    /// The lobes for the sampled direction, if non-specular.
     pub lobes: Lobes,
-    pub kind: Kind,
+    pub kind: ScatterKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// With this density per steradian.
-    Spread(f32),
-    Mirrored,
-    Through,
+pub enum ScatterKind {
+    /// A diffuse or glossy direction, with its solid-angle pdf.
+    NonSpecular(f32),
+    Mirror,
+    Pane,
 }
 
 impl<'a> Bsdf<'a> {
-    /// `wo` points to the viewer; both normals are flipped to its side. Reflection is two-sided whatever the material
-    /// says: rooms are often modelled with their walls facing outwards. `layered` tells whether there may be more than a
-    /// diffuse layer, `table` may be missing where nothing has a top layer.
+    /// `wo` points to the viewer; both normals are flipped to face it. Reflection is two-sided for all materials: rooms
+    /// are often modelled with outward-facing walls. `layered` must be true if the material may have more than a
+    /// diffuse layer. `table` may be `None` if no material of the scene has a top layer.
     #[inline]
     pub fn new(
         substance: &Substance,
@@ -120,7 +122,7 @@ impl<'a> Bsdf<'a> {
         let geometric = geometric * side;
         let normal = face_viewer(shading * side, wo);
         let diffuse = substance.diffuse;
-        // Returned from two places, so that matt surfaces do not move the room for layers about.
+        // Return early, so that diffuse surfaces do not copy the memory of the layers.
         if !layered {
             return Self { diffuse, normal, geometric, layers: None };
         }
@@ -128,12 +130,12 @@ impl<'a> Bsdf<'a> {
         Self { diffuse, normal, geometric, layers: Some(layers) }
     }
 
-    /// What receives light from all of a hemisphere alike: its response to radiance is irradiance.
+    /// A receiver of irradiance: its response to radiance from the hemisphere is irradiance.
     pub fn receiver(normal: Vec3) -> Self {
         Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: None }
     }
 
-    /// Shading normal and geometric normal on the side of the viewer.
+    /// The shading normal, facing the viewer.
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
@@ -142,14 +144,13 @@ impl<'a> Bsdf<'a> {
         self.geometric
     }
 
-    /// Colour at normal incidence: what is reflected by either layer or let through.
+    /// Reflectance plus transmittance at normal incidence.
     pub fn colour(&self) -> Vec3 {
         let above = self.layers.as_ref().map(|l| l.substance.f0 + l.substance.transmission);
         self.diffuse + above.unwrap_or(Vec3::ZERO)
     }
 
-    /// Whether it spreads all that it sends back, so that light found for one direction serves for those beside it. It
-    /// depends on the place alone, not on the viewer.
+    /// Whether neighbouring pixels may share the vertex: all scattering is non-specular. View-independent.
     #[inline]
     pub fn is_shareable(&self) -> bool {
         match &self.layers {
@@ -161,28 +162,28 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Whether nothing lies on the diffuse layer.
+    /// Whether the BSDF has only a diffuse layer.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
         self.layers.is_none()
     }
 
-    /// Whether it is the same for all viewers on its side.
+    /// Whether the BSDF is the same for all viewers on its side.
     #[inline]
-    pub fn looks_alike(&self) -> bool {
+    pub fn is_view_independent(&self) -> bool {
         self.is_diffuse() && self.normal == self.geometric
     }
 
-    /// Whether any light but that of single directions is scattered.
+    /// Whether the BSDF has a non-specular lobe.
     #[inline]
-    pub fn spreads(&self) -> bool {
+    pub fn has_non_specular(&self) -> bool {
         match &self.layers {
             None => self.diffuse != Vec3::ZERO,
             Some(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
         }
     }
 
-    /// The spread part of the BSDF times the cosine, and the density with which [`Bsdf::sample`] chooses `direction`.
+    /// The non-specular BSDF times the cosine, and the solid-angle pdf with which [`Bsdf::sample`] draws `direction`.
     #[inline]
     pub fn eval(&self, direction: Vec3) -> (Lobes, f32) {
         let cosine = direction.dot(self.normal);
@@ -196,9 +197,9 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Chooses where a path goes on, by a point of the unit square. None where the light is absorbed.
+    /// Samples a direction with a point of the unit square. `None` if the light is absorbed.
     #[inline]
-    pub fn sample(&self, u: Vec2) -> Option<Scattered> {
+    pub fn sample(&self, u: Vec2) -> Option<BsdfSample> {
         if let Some(layers) = &self.layers {
             return layers.sample(self, u);
         }
@@ -208,9 +209,9 @@ impl<'a> Bsdf<'a> {
         if !(local.z > 0.0 && direction.dot(self.geometric) > 0.0) || self.diffuse == Vec3::ZERO {
             return None;
         }
-        let density = local.z * FRAC_1_PI;
-        let lobes = Lobes { diffuse: self.diffuse * density, glossy: Vec3::ZERO };
-        Some(Scattered { direction, weight: self.diffuse, lobes, kind: Kind::Spread(density) })
+        let pdf = local.z * FRAC_1_PI;
+        let lobes = Lobes { diffuse: self.diffuse * pdf, glossy: Vec3::ZERO };
+        Some(BsdfSample { direction, weight: self.diffuse, lobes, kind: ScatterKind::NonSpecular(pdf) })
     }
 }
 
@@ -219,7 +220,7 @@ impl<'a> Layers<'a> {
         let s = substance;
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
-        // What the top layer sends back of light to the viewer: in all, and of the dielectric part alone.
+        // Compute the top layer's albedo towards the viewer: in total, and of the dielectric part alone.
         let has_top = s.f90 > 0.0;
         let lobe = match table {
             Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {
@@ -227,20 +228,20 @@ impl<'a> Layers<'a> {
             }
             _ => None,
         };
-        let (mut top, mut taken, mut mean_taken) = (0.0, 0.0, 0.0);
+        let (mut top, mut coat_albedo, mut mean_coat_albedo) = (0.0, 0.0, 0.0);
         if let Some((_, albedo)) = &lobe {
             let share = albedo.row.directional(wo.z);
-            (top, taken) = (s.f0.max_element() * share.x + s.f90 * share.y, albedo.of(share));
-            mean_taken = albedo.of(albedo.row.average());
+            (top, coat_albedo) = (s.f0.max_element() * share.x + s.f90 * share.y, albedo.of(share));
+            mean_coat_albedo = albedo.of(albedo.row.average());
         } else if has_top {
             top = ggx::schlick(s.f0, s.f90, wo.z).max_element();
-            taken = ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, wo.z).x;
+            coat_albedo = ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, wo.z).x;
             // The cosine-weighted mean of Schlick's fifth power is 1/21.
-            mean_taken = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
+            mean_coat_albedo = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
         }
-        let left_over = (1.0 - taken).max(0.0) / (1.0 - mean_taken).max(1e-3);
-        // Choose among the layers by what they send back.
-        let diffuse = s.diffuse.max_element() * (1.0 - taken);
+        let left_over = (1.0 - coat_albedo).max(0.0) / (1.0 - mean_coat_albedo).max(1e-3);
+        // Select layers in proportion to their albedo.
+        let diffuse = s.diffuse.max_element() * (1.0 - coat_albedo);
         let through = s.through(upright);
         let sum = diffuse + top + through.max_element();
         let shares = if sum > 0.0 { [diffuse / sum, top / sum] } else { [0.0; 2] };
@@ -248,16 +249,16 @@ impl<'a> Layers<'a> {
     }
 
     fn eval(&self, direction: Vec3, cosine: f32) -> (Lobes, f32) {
-        let (mut lobes, mut density) = (Lobes::NONE, 0.0);
+        let (mut lobes, mut pdf) = (Lobes::NONE, 0.0);
         if self.wo.z <= 0.0 {
-            return (lobes, density);
+            return (lobes, pdf);
         }
         let s = &self.substance;
         let [diffuse, top] = self.shares;
         if diffuse > 0.0 {
-            let left = self.left_over * (1.0 - self.taken(cosine)).max(0.0);
+            let left = self.left_over * (1.0 - self.coat_albedo(cosine)).max(0.0);
             lobes.diffuse = s.diffuse * (left * cosine * FRAC_1_PI);
-            density += diffuse * cosine * FRAC_1_PI;
+            pdf += diffuse * cosine * FRAC_1_PI;
         }
         if let Some((lobe, _)) = &self.lobe
             && top > 0.0
@@ -267,13 +268,13 @@ impl<'a> Layers<'a> {
             let h = (self.wo + wi).normalize_or(Vec3::Z);
             let (value, chosen) = lobe.eval(wi, h);
             lobes.glossy = ggx::schlick(s.f0, s.f90, self.wo.dot(h)) * value;
-            density += top * chosen;
+            pdf += top * chosen;
         }
-        (lobes, density)
+        (lobes, pdf)
     }
 
-    /// Share of light the dielectric top layer sends back.
-    fn taken(&self, cosine: f32) -> f32 {
+    /// Albedo of the dielectric top layer for a direction.
+    fn coat_albedo(&self, cosine: f32) -> f32 {
         let s = &self.substance;
         match &self.lobe {
             Some((_, albedo)) => albedo.of(albedo.row.directional(cosine)),
@@ -282,10 +283,10 @@ impl<'a> Layers<'a> {
         }
     }
 
-    fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<BsdfSample> {
         let [diffuse, top] = self.shares;
         let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
-        // A part of the square for each layer, stretched to the whole.
+        // Stretch the layer's part of the unit square to the whole square.
         let part = |from: f32, share: f32| Vec2::new(((u.x - from) / share).min(1.0 - f32::EPSILON), u.y);
         let local = if u.x < diffuse {
             cosine_hemisphere(part(0.0, diffuse))
@@ -297,29 +298,30 @@ impl<'a> Layers<'a> {
             return self.pass_through(&frame);
         };
         let direction = from_local(&frame, local);
-        let (lobes, density) = bsdf.eval(direction);
-        if !(density > 0.0 && density.is_finite()) {
+        let (lobes, pdf) = bsdf.eval(direction);
+        if !(pdf > 0.0 && pdf.is_finite()) {
             return None;
         }
-        Some(Scattered { direction, weight: lobes.sum() / density, lobes, kind: Kind::Spread(density) })
+        Some(BsdfSample { direction, weight: lobes.sum() / pdf, lobes, kind: ScatterKind::NonSpecular(pdf) })
     }
 
-    fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<Scattered> {
+    fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<BsdfSample> {
         let direction = from_local(frame, Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
         let weight = ggx::schlick(self.substance.f0, self.substance.f90, self.wo.z) / self.shares[1];
-        let scattered = Scattered { direction, weight, lobes: Lobes::NONE, kind: Kind::Mirrored };
+        let scattered = BsdfSample { direction, weight, lobes: Lobes::NONE, kind: ScatterKind::Mirror };
         (direction.dot(geometric) > 0.0).then_some(scattered)
     }
 
-    fn pass_through(&self, frame: &[Vec3; 3]) -> Option<Scattered> {
+    fn pass_through(&self, frame: &[Vec3; 3]) -> Option<BsdfSample> {
         let share = 1.0 - self.shares[0] - self.shares[1];
         let direction = -from_local(frame, self.wo);
-        let scattered = Scattered { direction, weight: self.through / share, lobes: Lobes::NONE, kind: Kind::Through };
+        let scattered =
+            BsdfSample { direction, weight: self.through / share, lobes: Lobes::NONE, kind: ScatterKind::Pane };
         (share > 0.0 && self.through != Vec3::ZERO).then_some(scattered)
     }
 }
 
-/// Share of light that a rough dielectric top layer sends back.
+/// Albedo of a rough dielectric top layer.
 struct TopAlbedo<'a> {
     row: ggx::AlbedoRow<'a>,
     /// Weights of the table's scale and bias.
@@ -336,14 +338,15 @@ impl<'a> TopAlbedo<'a> {
     }
 }
 
-/// A shading normal that the viewer would see from behind is tilted until it is seen from the side.
+/// Tilts a shading normal that faces away from the viewer until the viewer sees it at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
-    const LEAST: f32 = 1e-3;
+    // Smallest cosine towards the viewer. [judged, not recorded]
+    const MIN_COSINE: f32 = 1e-3;
     let cosine = normal.dot(wo);
-    if cosine >= LEAST { normal } else { (normal + wo * (LEAST - cosine)).normalize_or(wo) }
+    if cosine >= MIN_COSINE { normal } else { (normal + wo * (MIN_COSINE - cosine)).normalize_or(wo) }
 }
 
-/// By the cosine: a point of the unit disc, raised to the hemisphere (Malley).
+/// Cosine-weighted direction: a point of the unit disc projected to the hemisphere (Malley's method).
 #[inline]
 fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let (p, r2) = ggx::disc(u);

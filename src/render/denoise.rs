@@ -1,18 +1,20 @@
-//! Preview: an image of few paths, smoothed where its features say that nothing changes.
+//! Preview filter: smooths an image of few paths, guided by surface attributes.
 //!
-//! The à-trous filter of Dammertz et al. (2010, "Edge-avoiding à-trous wavelet transform for fast global illumination
-//! filtering") with the variance-guided range weights of Schied et al. (2017, "Spatiotemporal variance-guided filtering"):
-//! colour is divided by the surface's albedo, so that textures stay out of it; neighbours at growing distances are mixed in
-//! as far as they lie in the same plane, face the same way, and differ by no more than both their errors explain; and the
-//! variance of the mixture is carried along from level to level. As the variance goes to 0 the image comes out as it is.
+//! The edge-avoiding à-trous filter of Dammertz et al. (2010, "Edge-avoiding à-trous wavelet transform for fast global
+//! illumination filtering") with the variance-guided range weights of Schied et al. (2017, "Spatiotemporal
+//! variance-guided filtering"). Colours are divided by the albedo of the surface, which preserves textures. At each
+//! level, a pixel is averaged with neighbours at growing distances, weighed by whether they lie in the same plane, have
+//! the same normal, and differ by no more than their errors explain. The variance of the average is propagated to the
+//! next level. With zero variance, the filter leaves the image unchanged.
 //!
-//! The filter is biased: what its features do not show, such as the soft edge of a shadow, it blurs by about an error's
-//! height. [`Output::bias`] measures that; final images are rendered without it. To know it, two halves of the paths are
-//! filtered on their own (as Rousselle et al. 2012, "Adaptive rendering with non-local means filtering", do for another
-//! end), and the preview is the mean of both. How far each has been moved is its bias and some noise, and the noise of one
-//! half knows nothing of the other's: the mean product of the two is the square of the bias, whatever the weights heed.
+//! The filter is biased: features that the guides do not show, such as soft shadows, are blurred by about the height of
+//! their error. [`Output::bias`] estimates this bias; final images are rendered without the filter. To measure it, two
+//! halves of the paths are filtered separately (as by Rousselle et al. 2012, "Adaptive rendering with non-local means
+//! filtering", for a different purpose), and the preview is their mean. The filter changes each half by its bias plus
+//! noise, and the noises of the halves are independent: the mean product of the two changes is the squared bias, for
+//! any weights.
 //!
-//! Not modelled: motion, reflections (they are smoothed like light on the mirror), textures seen in mirrors.
+//! Not modelled: motion; reflections, which are smoothed like light on the mirror; textures seen in mirrors.
 
 use super::film::pooled;
 use crate::error::{Error, Result, check_range};
@@ -23,7 +25,7 @@ use glam::Vec3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// How much neighbours may differ, in what their errors explain; in `[0, 10]`. 0 leaves the image as it is.
+    /// Tolerated difference between neighbours in units of their error, in `[0, 10]`. 0 leaves the image unchanged.
     pub strength: f32,
 }
 
@@ -33,56 +35,58 @@ impl Default for Params {
     }
 }
 
-/// Images of the same size.
+/// Images of equal size.
 pub struct Input<'a> {
-    /// Two independent estimates of the image, of as many paths each; linear RGB, finite.
+    /// Two independent estimates of the image with equal numbers of paths; linear RGB, finite.
     pub halves: [&'a Image; 2],
-    /// Variance of their mean per channel, at least 0; infinite where unknown.
+    /// Variance of their mean per channel, at least 0; infinite if unknown.
     pub variance: &'a Image,
-    /// Colour of the surface seen, RGB; black where nothing is.
+    /// Albedo of the surface, RGB; black for the background.
     pub albedo: &'a Image,
-    /// Unit normal of the surface seen; 0 where nothing is.
+    /// Unit normal of the surface; 0 for the background.
     pub normal: &'a Image,
-    /// Position of the surface seen.
+    /// Position of the surface.
     pub position: &'a Image,
 }
 
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// How far the mean of such previews is from the truth: root mean square over squares of 8 × 8 pixels, relative to the
-    /// mean of the image. An estimate whose square is unbiased; blur finer than a square does not show in it.
+    /// Estimated bias of the preview: root mean square over squares of 8 × 8 pixels, relative to the mean of the image.
+    /// The square of the estimate is unbiased; it misses blur within a square.
     pub bias: f64,
 }
 
-/// Distance of the farthest neighbours mixed in at each level, in pixels.
+/// Distance of the farthest neighbours at each level, in pixels.
 const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// Weights of the neighbours at one step along an axis, relative to the pixel itself.
+/// Kernel weight of a neighbour along an axis, relative to the pixel itself: the binomial kernel. [convention]
 const TAP: f32 = 0.5;
-/// Variance of a half over that of the mean of both.
+/// Variance of a half, relative to the variance of the mean of both halves: exact for independent halves. [convention]
 const HALF: f32 = 2.0;
-/// Squared difference in luminance, over the sum of both variances, that lowers a weight by e; at strength 1.
+/// Squared difference in luminance, relative to the sum of both variances, that lowers a weight by a factor e at
+/// strength 1. [judged, not recorded]
 const RANGE: f32 = 12.0;
-/// Squared sine of the angle between neighbours and the plane through the pixel that does the same.
+/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by e. [judged, not
+/// recorded]
 const PLANE: f32 = 0.01;
-/// One minus the cosine between normals that does the same.
+/// 1 - cosine of the angle between normals that lowers a weight by e. [judged, not recorded]
 const FACING: f32 = 0.02;
-/// Squared difference in albedo that does the same.
+/// Squared difference in albedo that lowers a weight by e. [judged, not recorded]
 const COLOUR: f32 = 0.02;
-/// Albedos count as at least this much, so that lamps and black things keep their light.
-const LEAST_ALBEDO: f32 = 0.02;
-/// Side of the squares in which the bias is measured.
+/// Smallest albedo to divide by, so that lamps and black surfaces keep their light. [judged, not recorded]
+const MIN_ALBEDO: f32 = 0.02;
+/// Side in pixels of the squares over which the bias is averaged. [convention]
 const SQUARE: usize = 8;
 
-/// Planes of a row of the light being filtered: red, green, blue, variance of the luminance.
+/// Channels of the filtered image: red, green, blue, variance of the luminance.
 const LIGHT: usize = 4;
-/// Planes of a row of features: albedo, normal, position.
+/// Channels of the guides: albedo, normal, position.
 const GUIDE: usize = 9;
 
-/// Smooths an image.
+/// Filters an image.
 ///
 /// # Errors
-/// Images that differ in size or have too few channels, values that are no numbers, a strength out of range; no memory;
+/// Images of different sizes or with too few channels; values that are not finite; a strength out of range; no memory;
 /// cancelled.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     check(input, params)?;
@@ -98,7 +102,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     Ok(Output { image, bias })
 }
 
-/// A half, smoothed.
+/// Filters one half.
 fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: Job) -> Result<Image> {
     let (width, height) = (half.width, half.height);
     let mut light = light(half, variance, guide, job.part(0.0, 0.1))?;
@@ -111,18 +115,18 @@ fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: J
             std::mem::swap(&mut light, &mut next);
         }
     }
-    // Put the albedo back.
+    // Multiply by the albedo again.
     let mut image = Image::new(width, height, 3)?;
     exec::for_rows(&mut image.data, 3 * width, job.part(0.94, 1.0), |y, row| {
         let (light, guide) = (&light[y * LIGHT * width..], &guide[y * GUIDE * width..]);
         for (x, out) in row.chunks_exact_mut(3).enumerate() {
-            (0..3).for_each(|c| out[c] = light[c * width + x] * guide[c * width + x].max(LEAST_ALBEDO));
+            (0..3).for_each(|c| out[c] = light[c * width + x] * guide[c * width + x].max(MIN_ALBEDO));
         }
     })?;
     Ok(image)
 }
 
-/// Features plane by plane within each row.
+/// The guides, channel by channel within each row.
 fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *input.albedo;
     let mut out = try_vec(GUIDE * width * height, 0.0f32)?;
@@ -138,15 +142,15 @@ fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     Ok(out)
 }
 
-/// The light of a half without albedo, and the variance of its luminance.
+/// A half divided by the albedo, with the variance of its luminance.
 fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *half;
     let mut out = try_vec(LIGHT * width * height, 0.0f32)?;
     exec::for_rows(&mut out, LIGHT * width, job, |y, row| {
         for x in 0..width {
-            let albedo: Vec3 = [0, 1, 2].map(|c| guide[(y * GUIDE + c) * width + x].max(LEAST_ALBEDO)).into();
+            let albedo: Vec3 = [0, 1, 2].map(|c| guide[(y * GUIDE + c) * width + x].max(MIN_ALBEDO)).into();
             let colour = half.rgb(x, y) / albedo;
-            // The channels of a path rise and fall together, so their errors add up.
+            // Add the standard errors of the channels: they are correlated within a path.
             let error = variance.rgb(x, y).map(f32::sqrt) / albedo;
             let luminance = colour::luminance(colour);
             let error = if error.is_finite() { colour::luminance(error) } else { luminance };
@@ -168,14 +172,14 @@ struct Level<'a> {
 }
 
 impl Level<'_> {
-    /// Filters a row. Loops run along the row over one neighbour at a time, so that they can be vectorised.
+    /// Filters a row. Loops run along the row for one neighbour at a time, so that they vectorise.
     fn row(&self, y: usize, out: &mut [f32]) {
         let Self { light, guide, width, height, step, .. } = *self;
         out.copy_from_slice(&light[y * LIGHT * width..(y + 1) * LIGHT * width]);
         let mut weights = vec![1.0; width];
         for (dy, dx) in NEIGHBOURS {
             let Some(other) = y.checked_add_signed(dy * step as isize).filter(|&o| o < height) else { continue };
-            // The columns whose neighbour lies in the image.
+            // Restrict to columns whose neighbour lies in the image.
             let shift = dx * step as isize;
             let (from, to) = (shift.min(0).unsigned_abs(), width.saturating_sub(shift.max(0) as usize));
             if from >= to {
@@ -222,7 +226,7 @@ impl Level<'_> {
         weights: &mut [f32],
     ) {
         let n = weights.len();
-        // Slices of one length: no bounds to check in the loop.
+        // Slice to a common length, which removes the bounds checks of the loop.
         let [h0, h1, h2, h3] = here.map(|s| &s[..n]);
         let [t0, t1, t2, t3] = that.map(|s| &s[..n]);
         let a = guide_here.map(|s| &s[..n]);
@@ -239,7 +243,7 @@ impl Level<'_> {
             let height = a[3][i] * d[0] + a[4][i] * d[1] + a[5][i] * d[2];
             let plane = square(height) / (square(d[0]) + square(d[1]) + square(d[2]) + f32::MIN_POSITIVE);
             let sum = range + colour * (1.0 / COLOUR) + (1.0 - cosine) * (1.0 / FACING) + plane * (1.0 / PLANE);
-            // (1 - t/8)^8 is close to exp(-t), and ends.
+            // (1 - t/8)^8 approximates exp(-t) with finite support.
             let w = (1.0 - sum * 0.125).max(0.0);
             let w = tap * square(square(square(w)));
             s0[i] += w * t0[i];
@@ -251,7 +255,7 @@ impl Level<'_> {
     }
 }
 
-/// Relative difference in luminance that counts as none.
+/// Relative difference in luminance that counts as equal. [rounding]
 const EQUAL: f32 = 1e-6;
 
 const NEIGHBOURS: [(isize, isize); 8] = [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)];
@@ -260,7 +264,8 @@ fn luminance(r: f32, g: f32, b: f32) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// The bias that the means of squares of pixels share: the root of the mean product of what the halves were moved by.
+/// Estimates the bias of the filter: the root of the mean product, over squares of pixels, of the changes of the
+/// halves.
 fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
     let Image { width, height, .. } = *before[0];
     let across = width.div_ceil(SQUARE);

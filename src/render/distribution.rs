@@ -1,18 +1,18 @@
-//! Choosing an entry of a table in proportion to its weight.
+//! Sampling of a discrete distribution in proportion to weights.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// A discrete distribution by its running sum.
+/// A discrete distribution, stored as its cumulative sum.
 pub struct Distribution {
-    /// `cumulative[i]` is the weight of the entries up to and including `i`.
+    /// `cumulative[i]` is the sum of the weights up to and including entry `i`.
     cumulative: Vec<f64>,
-    /// `guide[k]` is the entry where `u = k / guide.len()` falls: a search starts there (Chen and Asau 1974).
+    /// `guide[k]` is the entry at `u = k / guide.len()`, where a search starts (Chen and Asau 1974).
     guide: Vec<u32>,
 }
 
 impl Distribution {
-    /// From weights that are finite and not negative.
+    /// From finite, non-negative weights.
     pub fn new(weights: impl ExactSizeIterator<Item = f64>) -> Result<Self> {
         let mut cumulative = try_vec(weights.len(), 0.0)?;
         let mut sum = 0.0;
@@ -40,16 +40,16 @@ impl Distribution {
         self.cumulative.last().copied().unwrap_or(0.0)
     }
 
-    pub fn probability(&self, index: usize) -> f64 {
+    pub fn pmf(&self, index: usize) -> f64 {
         let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
         if self.total() > 0.0 { (self.cumulative[index] - before) / self.total() } else { 0.0 }
     }
 
-    /// The entry at `u` in `[0, 1)` and where within it, again in `[0, 1)`. Entries of no weight are never chosen; there
-    /// must be one that has some.
+    /// Samples an entry with `u` in `[0, 1)`; also returns the position of `u` within the entry, again in `[0, 1)`.
+    /// Never returns an entry of zero weight; at least one weight must be positive.
     pub fn sample(&self, u: f64) -> (usize, f64) {
         let target = u * self.total();
-        // Between the guides on either side; rounding may put the target just outside, so the ends are one wider.
+        // Search between two guide entries, widened by one on each side against rounding.
         let k = ((u * self.guide.len() as f64) as usize).min(self.guide.len() - 1);
         let low = (self.guide[k] as usize).saturating_sub(1);
         let high =
@@ -91,15 +91,15 @@ mod tests {
             counts[index] += 1;
         }
         assert_eq!(counts, [0, 3000, 0, 1000, 4000, 0]);
-        assert_eq!(table.probability(4), 0.5);
+        assert_eq!(table.pmf(4), 0.5);
         assert_eq!(table.sample(0.0).0, 1);
         assert_eq!(table.sample(1.0 - 1e-16).0, 4);
-        // There and back.
+        // The sampled entry and position map back to `u`.
         for i in 0..1000 {
             let u = f64::from(i) / 1000.0;
             let (index, rest) = table.sample(u);
-            let before: f64 = (0..index).map(|j| table.probability(j)).sum();
-            assert!((before + rest * table.probability(index) - u).abs() < 1e-12, "{u}");
+            let before: f64 = (0..index).map(|j| table.pmf(j)).sum();
+            assert!((before + rest * table.pmf(index) - u).abs() < 1e-12, "{u}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Light from the environment, importance-sampled.
+//! Importance sampling of the environment.
 
 use super::distribution::Distribution;
 use super::emissive::mean_channel;
@@ -8,17 +8,17 @@ use crate::scene::Environment;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// How directions towards the environment are chosen.
+/// A distribution of directions towards the environment.
 pub enum EnvironmentSampler {
     /// Uniform over the sphere.
     Constant,
-    /// By the pixels of an equirectangular image: each weighs its solid angle times the mean of itself and its
-    /// neighbours, which is positive wherever interpolation lets light through.
+    /// By the pixels of an equirectangular image. The weight of a pixel is its solid angle times the mean of its 3 × 3
+    /// neighbourhood, which is positive wherever bilinear interpolation is.
     Image { rows: Distribution, columns: Vec<Distribution> },
 }
 
 impl EnvironmentSampler {
-    /// The sampler and the mean radiance over all directions; none where the environment is dark.
+    /// Builds the sampler; also returns the mean radiance over all directions. `None` for a black environment.
     pub fn build(environment: &Environment) -> Result<Option<(Self, f64)>> {
         let image = match environment {
             Environment::Constant(radiance) => {
@@ -38,7 +38,7 @@ impl EnvironmentSampler {
         Ok((mean > 0.0).then_some((Self::Image { rows, columns }, mean)))
     }
 
-    /// A direction and its density per steradian.
+    /// Samples a direction; also returns its solid-angle pdf.
     pub fn sample(&self, u: f64, v: f32) -> (Vec3, f32) {
         match self {
             Self::Constant => {
@@ -50,19 +50,19 @@ impl EnvironmentSampler {
                 let (y, within) = rows.sample(u);
                 let (x, across) = columns[y].sample(f64::from(v));
                 let (width, height) = (columns[y].len(), columns.len());
-                // Uniform in solid angle within the pixel: uniform in the cosine of the polar angle.
+                // Sample uniformly by solid angle within the pixel: uniform in the cosine of the polar angle.
                 let (top, bottom) = polar_cosines(y, height);
                 let cosine = (top + (bottom - top) * within) as f32;
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
                 let angle = ((x as f64 + across) / width as f64 - 0.5) as f32 * TAU;
                 let direction = Vec3::new(sine * angle.sin(), cosine, -sine * angle.cos());
-                (direction, self.pixel_density(x, y))
+                (direction, self.pixel_pdf(x, y))
             }
         }
     }
 
-    /// The density with which [`EnvironmentSampler::sample`] chooses a unit direction.
-    pub fn density(&self, direction: Vec3) -> f32 {
+    /// Solid-angle pdf with which [`EnvironmentSampler::sample`] draws a unit direction.
+    pub fn pdf(&self, direction: Vec3) -> f32 {
         match self {
             Self::Constant => 1.0 / (4.0 * PI),
             Self::Image { columns, .. } => {
@@ -70,17 +70,17 @@ impl EnvironmentSampler {
                 let uv = equirectangular(direction);
                 let x = ((uv.x * width as f32) as usize).min(width - 1);
                 let y = ((uv.y * height as f32) as usize).min(height - 1);
-                self.pixel_density(x, y)
+                self.pixel_pdf(x, y)
             }
         }
     }
 
-    fn pixel_density(&self, x: usize, y: usize) -> f32 {
+    fn pixel_pdf(&self, x: usize, y: usize) -> f32 {
         match self {
             Self::Constant => 1.0 / (4.0 * PI),
             Self::Image { rows, columns } => {
                 let solid_angle = band_solid_angle(y, columns.len()) / columns[y].len() as f64;
-                (rows.probability(y) * columns[y].probability(x) / solid_angle) as f32
+                (rows.pmf(y) * columns[y].pmf(x) / solid_angle) as f32
             }
         }
     }
@@ -103,7 +103,7 @@ pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
     upper.lerp(lower, y - top)
 }
 
-/// The centre of the image looks along -z, its top along +y, its right along +x.
+/// Texture coordinates of a direction: the centre of the image is -z, its top +y, its right +x.
 fn equirectangular(d: Vec3) -> Vec2 {
     Vec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
 }
@@ -155,11 +155,11 @@ mod tests {
             let mut rng = Rng::new(31, &[]);
             let mut disagreed = 0;
             for _ in 0..20_000 {
-                let (direction, density) = sampler.sample(rng.next_f64(), rng.next_f32());
+                let (direction, pdf) = sampler.sample(rng.next_f64(), rng.next_f32());
                 assert!((direction.length() - 1.0).abs() < 1e-5);
-                disagreed += usize::from((sampler.density(direction) / density - 1.0).abs() > 1e-4);
+                disagreed += usize::from((sampler.pdf(direction) / pdf - 1.0).abs() > 1e-4);
             }
-            // Only directions within rounding of a pixel's border.
+            // Only directions within rounding of a pixel's border may disagree.
             assert!(disagreed < 20, "{disagreed}");
         }
     }
@@ -180,12 +180,12 @@ mod tests {
             let expected: Vec<f64> = (0..width * height)
                 .map(|i| {
                     let solid_angle = band_solid_angle(i / width, height) / width as f64;
-                    f64::from(sampler.pixel_density(i % width, i / width)) * solid_angle * f64::from(n)
+                    f64::from(sampler.pixel_pdf(i % width, i / width)) * solid_angle * f64::from(n)
                 })
                 .collect();
             assert_follows(&expected, &counts, 4, &format!("{width} x {height}"));
         }
-        // Of constant light, bins of equal solid angle.
+        // For constant radiance, count in bins of equal solid angle.
         let (mut counts, mut rng) = (vec![0.0; 16 * 16], Rng::new(34, &[]));
         for _ in 0..50_000 {
             let d = EnvironmentSampler::Constant.sample(rng.next_f64(), rng.next_f32()).0;
@@ -205,17 +205,17 @@ mod tests {
             for _ in 0..2000 {
                 let (u, v) = (rng.next_f64(), rng.next_f32());
                 let d = sampler.sample(u, v).0.as_dvec3();
-                // The pixel, and where in it, evenly in solid angle.
+                // Invert the sampling: the pixel, and the position in it by solid angle.
                 let height = columns.len();
                 let row = (d.y.clamp(-1.0, 1.0).acos() / std::f64::consts::PI * height as f64).min(height as f64 - 1.0);
                 let (top, bottom) = polar_cosines(row as usize, height);
                 let within = (d.y - top) / (bottom - top);
-                let back = running(rows, row as usize) + within * rows.probability(row as usize);
+                let back = running(rows, row as usize) + within * rows.pmf(row as usize);
                 let table = &columns[row as usize];
                 let column = (0.5 + d.x.atan2(-d.z) / std::f64::consts::TAU) * table.len() as f64;
                 let at = (column as usize).min(table.len() - 1);
-                let across = running(table, at) + (column - at as f64) * table.probability(at);
-                // As far as a direction in f32 tells; one within rounding of a border counts for the next pixel.
+                let across = running(table, at) + (column - at as f64) * table.pmf(at);
+                // The tolerance covers the rounding of directions in f32, and directions at pixel borders.
                 let tolerance = 1e-4;
                 assert!((back - u).abs() < tolerance, "{u} became {d}, and that {back}");
                 let near_pole = d.x.hypot(d.z) < 0.02;
@@ -224,9 +224,9 @@ mod tests {
         }
     }
 
-    /// The share of a table's weight before an entry.
+    /// Sum of the pmf before an entry.
     fn running(table: &Distribution, entry: usize) -> f64 {
-        (0..entry).map(|i| table.probability(i)).sum()
+        (0..entry).map(|i| table.pmf(i)).sum()
     }
 
     #[test]
@@ -236,18 +236,18 @@ mod tests {
             let (sampler, mean) = EnvironmentSampler::build(&environment).unwrap().unwrap();
             let mut rng = Rng::new(32, &[]);
             let n = 400_000;
-            let (mut density, mut light, mut sampled) = (0.0, 0.0, 0.0);
+            let (mut pdf, mut light, mut sampled) = (0.0, 0.0, 0.0);
             for _ in 0..n {
                 let cosine = 1.0 - 2.0 * rng.next_f64();
                 let (sine, angle) = ((1.0 - cosine * cosine).sqrt(), f64::from(TAU) * rng.next_f64());
                 let d = DVec3::new(sine * angle.cos(), cosine, sine * angle.sin()).as_vec3();
                 let sphere = f64::from(4.0 * PI) / f64::from(n);
-                density += f64::from(sampler.density(d)) * sphere;
+                pdf += f64::from(sampler.pdf(d)) * sphere;
                 light += f64::from(mean_channel(radiance(&environment, d))) * sphere;
-                let (d, density) = sampler.sample(rng.next_f64(), rng.next_f32());
-                sampled += f64::from(mean_channel(radiance(&environment, d)) / density) / f64::from(n);
+                let (d, pdf) = sampler.sample(rng.next_f64(), rng.next_f32());
+                sampled += f64::from(mean_channel(radiance(&environment, d)) / pdf) / f64::from(n);
             }
-            assert!((density - 1.0).abs() < 0.03, "{density}");
+            assert!((pdf - 1.0).abs() < 0.03, "{pdf}");
             assert!((sampled / light - 1.0).abs() < 0.05, "{sampled} and {light}");
             assert!((mean * f64::from(4.0 * PI) / light - 1.0).abs() < 0.05);
         }

@@ -1,29 +1,31 @@
-//! What a hit needs to know of its triangle, in one line of the cache.
+//! The triangle data that shading a hit needs, in one cache line.
 
-use super::world::NONE;
 use crate::scene::Mesh;
 use glam::{DVec3, Vec2, Vec3};
 
-/// A triangle made ready for tracing. Coordinates are relative to the world's centre.
+/// A triangle prepared for tracing. Coordinates are relative to the centre of the world.
 #[repr(C, align(64))]
 #[derive(Clone, Copy)]
 pub struct Facet {
     corner: Vec3,
-    /// From the first corner to the second and the third.
+    /// Edges from the first corner to the second and to the third.
     sides: [Vec3; 2],
-    /// Unit geometric normal of the front face; zero where the triangle has no area.
+    /// Unit geometric normal of the front side; zero for a degenerate triangle.
     pub normal: Vec3,
-    /// Distance that clears the rounding of a point on it.
+    /// Offset that exceeds the rounding error of a point on the triangle.
     pub offset: f32,
     pub mesh: u32,
-    /// Index into the scene's materials; the highest bit tells whether the shading normal varies.
+    /// Index of the material; the highest bit is set if the shading normal varies.
     material: u32,
-    /// Index of the emitter it is, or `NONE`.
+    /// Index of its emitter, or `NONE`.
     pub emitter: u32,
 }
 
-/// Rounding of an interpolated point: sixteen errors of 2^-24 of its largest coordinate.
+/// Relative rounding error of an interpolated point: sixteen errors of 2^-24 of its largest coordinate. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
+/// Marks a missing triangle or emitter.
+pub const NONE: u32 = u32::MAX;
+/// Flag of a varying shading normal.
 const SMOOTH: u32 = 1 << 31;
 
 impl Facet {
@@ -37,9 +39,9 @@ impl Facet {
         emitter: NONE,
     };
 
-    /// From the corners relative to the world's centre; `triangle` is the index in the mesh.
+    /// `corners` are relative to the centre of the world; `triangle` is the index in the mesh.
     pub fn new(corners: [Vec3; 3], index: u32, mesh: &Mesh, triangle: usize) -> Self {
-        // In f64: the sides and the normal of a small triangle far from the centre cancel.
+        // Compute edges and normal in f64: those of a small triangle far from the centre suffer from cancellation.
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
         let smooth = if is_flat(mesh, triangle, normal) { 0 } else { SMOOTH };
@@ -69,34 +71,35 @@ impl Facet {
         (self.material & !SMOOTH) as usize
     }
 
-    /// The same, to be looked at as if its normals bent it.
-    pub fn unanalysed(&self) -> Self {
+    /// A copy whose shading normal is always interpolated.
+    pub fn without_analysis(&self) -> Self {
         Self { material: self.material | SMOOTH, ..*self }
     }
 
-    /// Whether the normals of the mesh bend it.
+    /// Whether the vertex normals vary over the triangle.
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.material & SMOOTH != 0
     }
 }
 
-/// Whether the mesh has no normals, or the triangle's are all its geometric one but for rounding.
+/// Whether the shading normal equals the geometric normal up to rounding, or the mesh has no normals.
 fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
     if mesh.normals.is_empty() {
         return true;
     }
     let [a, b, c] = mesh.triangles[triangle].map(|i| mesh.normals[i as usize].normalize_or_zero());
-    // Normals that point to the other side than the winding are taken to mean the axis only.
+    // Flip normals that oppose the winding: only their axis is used.
     let side = if a.dot(normal) < 0.0 { -normal } else { normal };
     [a, b, c].iter().all(|n| (*n - side).abs().max_element() < 1e-6)
 }
 
-/// The origin of tracing: a point in the middle of the corners, on a grid so coarse that moving there rounds nothing.
+/// The origin of world coordinates: the middle of the scene, rounded to a grid so coarse that the translation is exact.
 ///
-/// Coordinates in f32 far from the origin are multiples of a step that grows with the distance. A grid of a power of two
-/// no smaller than the scene is a multiple of that step wherever the scene lies a grid cell or more from the origin; so
-/// differences to its points are exact. Nearer scenes stay where they are: there is next to nothing to be gained.
+/// Coordinates in f32 far from the origin are multiples of a step that grows with the distance. A grid of a power of
+/// two no smaller than the scene is a multiple of that step wherever the scene lies at least a grid cell from the
+/// origin, so that differences to grid points are exact. Scenes nearer to the origin stay in place: a translation would
+/// gain next to nothing.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {

@@ -1,12 +1,12 @@
 //! The GGX microfacet distribution (Walter et al. 2007) with height-correlated Smith masking (Heitz 2014), its sampling
-//! by visible normals (Heitz 2018), and how much of the light it sends back in all.
+//! by visible normals (Heitz 2018), and its directional albedo.
 //!
 //! Directions are in a frame whose third axis is the normal; `alpha` is the squared roughness.
 
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, PI};
 
-/// Fresnel reflectance by Schlick's approximation, from that at normal incidence and that at grazing.
+/// Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and grazing (`f90`) incidence.
 #[inline]
 pub fn schlick(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
     let m = (1.0 - cosine).clamp(0.0, 1.0);
@@ -18,11 +18,11 @@ fn lambda(w: Vec3, alpha: f32) -> f32 {
     ((1.0 + alpha * alpha * tangent2).sqrt() - 1.0) / 2.0
 }
 
-/// The lobe seen from one direction, which is above the surface.
+/// The lobe for one viewing direction above the surface.
 pub struct Lobe {
     wo: Vec3,
     alpha: f32,
-    /// One more than Smith's function of the viewer's direction.
+    /// One plus Smith's lambda of the viewing direction.
     masking: f32,
 }
 
@@ -31,20 +31,20 @@ impl Lobe {
         Self { wo, alpha, masking: 1.0 + lambda(wo, alpha) }
     }
 
-    /// The lobe times the cosine of `wi` (above the surface), without Fresnel's factor; and the density per steradian
-    /// with which a reflection about [`Lobe::sample_normal`] leads there. `h` is the half vector.
+    /// The BRDF times the cosine of `wi` (above the surface), without the Fresnel factor; and the solid-angle pdf with
+    /// which reflection about [`Lobe::sample_normal`] yields `wi`. `h` is the half vector.
     pub fn eval(&self, wi: Vec3, h: Vec3) -> (f32, f32) {
-        // Density of facet normals per steradian and projected area.
+        // Evaluate the distribution of microfacet normals, with the Jacobian of reflection.
         let a2 = self.alpha * self.alpha;
         let d = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
         let facets = 1.0 / (4.0 * PI * a2 * d * d * self.wo.z);
         (facets / (self.masking + lambda(wi, self.alpha)), facets / self.masking)
     }
 
-    /// A facet normal among those that the viewer sees.
+    /// Samples the normal of a microfacet that the viewer sees.
     pub fn sample_normal(&self, u: Vec2) -> Vec3 {
         let (wo, alpha) = (self.wo, self.alpha);
-        // Stretch, so that the facets lie on a hemisphere; choose a point of its projection along the view; go back.
+        // Stretch the frame so that the facets form a hemisphere, sample its projection along the view, and unstretch.
         let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
         let across = v.x * v.x + v.y * v.y;
         let t1 = if across > 0.0 { Vec3::new(-v.y, v.x, 0.0) / across.sqrt() } else { Vec3::X };
@@ -57,8 +57,8 @@ impl Lobe {
     }
 }
 
-/// A point uniform in the unit disc, and its squared distance from the centre: squares become rings (Shirley and Chiu
-/// 1997), so that neighbours stay neighbours. Sine and cosine of up to 45 degrees by their series.
+/// A point uniform in the unit disc, and its squared distance from the centre, by the concentric map (Shirley and Chiu
+/// 1997), which preserves neighbourhoods. Sine and cosine of up to 45 degrees by their series.
 #[inline]
 pub fn disc(u: Vec2) -> (Vec2, f32) {
     let p = u * 2.0 - 1.0;
@@ -72,13 +72,14 @@ pub fn disc(u: Vec2) -> (Vec2, f32) {
     (if wide { Vec2::new(along, across) } else { Vec2::new(across, along) }, radius * radius)
 }
 
-/// Share of light the lobe sends back, by direction and roughness: `f0 * scale + f90 * bias`. What remains is the diffuse
-/// layer's, so that the two together never send back more than they receive (Kelemen and Szirmay-Kalos 2001).
+/// Directional albedo of the lobe by direction and roughness: `f0 * scale + f90 * bias`. The diffuse layer gets the
+/// remainder, so that both layers together never reflect more than they receive (Kelemen and Szirmay-Kalos 2001).
 pub struct AlbedoTable {
     entries: Vec<Vec2>,
     averages: Vec<Vec2>,
 }
 
+/// Entries of the table along each axis. [judged, not recorded]
 const SIDE: usize = 32;
 
 impl AlbedoTable {
@@ -100,7 +101,7 @@ impl AlbedoTable {
     }
 }
 
-/// The table at one roughness, between two of its rows.
+/// The table at one roughness, interpolated between two rows.
 pub struct AlbedoRow<'a> {
     table: &'a AlbedoTable,
     row: usize,
@@ -108,7 +109,7 @@ pub struct AlbedoRow<'a> {
 }
 
 impl AlbedoRow<'_> {
-    /// Scale and bias for a direction whose cosine with the normal is given.
+    /// Scale and bias for a direction of this cosine with the normal.
     pub fn directional(&self, cosine: f32) -> Vec2 {
         let (column, s) = cell(cosine);
         let at = |row: usize| {
@@ -118,7 +119,7 @@ impl AlbedoRow<'_> {
         at(self.row).lerp(at(self.row + 1), self.t)
     }
 
-    /// Scale and bias for light from everywhere.
+    /// Cosine-weighted mean of scale and bias over the hemisphere.
     pub fn average(&self) -> Vec2 {
         self.table.averages[self.row].lerp(self.table.averages[self.row + 1], self.t)
     }
@@ -130,20 +131,21 @@ fn cell(x: f32) -> (usize, f32) {
     (i, x - i as f32)
 }
 
-/// Twice the integral of a row times the cosine, of the very interpolant that look-ups use.
+/// Twice the integral of a row times the cosine, of the same interpolant as the look-ups.
 fn cosine_average(row: &[Vec2]) -> Vec2 {
     let step = 1.0 / (SIDE - 1) as f32;
     row.windows(2)
         .enumerate()
         .map(|(i, ends)| {
             let (a, b) = (i as f32 * step, (i + 1) as f32 * step);
-            // Exact for the product of two linear functions (Simpson).
+            // Simpson's rule is exact for the product of two linear functions.
             (ends[0] * a + (ends[0] + ends[1]) * (a + b) + ends[1] * b) * (step / 3.0)
         })
         .sum()
 }
 
 fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
+    // Number of Hammersley points. [judged, not recorded]
     const N: u32 = 256;
     let wo = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let lobe = Lobe::new(wo, alpha);
@@ -166,7 +168,7 @@ mod tests {
     use super::*;
     use crate::render::tests::chi2::assert_follows;
 
-    /// The way back (Shirley and Chiu 1997), in f64.
+    /// Inverse of the concentric map (Shirley and Chiu 1997), in f64.
     fn square(p: Vec2) -> Vec2 {
         let (x, y) = (f64::from(p.x), f64::from(p.y));
         let radius = x.hypot(y);
@@ -195,10 +197,10 @@ mod tests {
 
     #[test]
     fn equal_areas_of_the_square_become_equal_areas_of_the_disc() {
-        // By central differences: the determinant is the ratio of the areas, pi.
+        // By central differences: the determinant of the map is the ratio of the areas, pi.
         let h = 1.0 / 1024.0;
         for i in 0..64 * 64 {
-            // Off the diagonals, where the map has edges.
+            // Stay off the diagonals, where the map is not smooth.
             let u = (Vec2::new((i % 64) as f32, (i / 64) as f32) + Vec2::new(0.5, 0.25)) / 64.0;
             let slope = |step: Vec2| (disc(u + step).0 - disc(u - step).0) / (2.0 * h);
             let determinant = slope(Vec2::X * h).perp_dot(slope(Vec2::Y * h));
@@ -211,7 +213,7 @@ mod tests {
         Vec3::new(0.8 * sine, 0.6 * sine, cosine)
     }
 
-    /// The stretch that makes facets of any roughness those of a hemisphere.
+    /// Stretches the frame so that facets of any roughness form a hemisphere.
     fn stretched(w: Vec3, alpha: f32) -> Vec3 {
         Vec3::new(w.x / alpha, w.y / alpha, w.z).normalize()
     }
@@ -227,8 +229,8 @@ mod tests {
             let wo = view(cosine);
             let lobe = Lobe::new(wo, alpha);
             let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
-            // Of a hemisphere, the facets seen from v have the density 2 (v h)+ / (pi (1 + v.z)), in bins of equal solid
-            // angle.
+            // On the hemisphere, the facets seen from v have the pdf 2 (v h)+ / (pi (1 + v.z)); integrate it over bins
+            // of equal solid angle.
             let mut expected = vec![0.0; side * side];
             let cells = side * fine;
             for i in 0..cells * cells {
@@ -236,9 +238,9 @@ mod tests {
                 let (z, angle) = (z / cells as f32, ((i % cells) as f32 + 0.5) / cells as f32 * 2.0 * PI);
                 let r = (1.0 - z * z).sqrt();
                 let seen = v.dot(Vec3::new(r * angle.cos(), r * angle.sin(), z)).max(0.0);
-                let density = f64::from(2.0 * seen / (PI * (1.0 + v.z)));
+                let pdf = f64::from(2.0 * seen / (PI * (1.0 + v.z)));
                 expected[i / cells / fine * side + i % cells / fine] +=
-                    density * f64::from(2.0 * PI) / (cells * cells) as f64 * f64::from(n);
+                    pdf * f64::from(2.0 * PI) / (cells * cells) as f64 * f64::from(n);
             }
             let mut counts = vec![0.0; side * side];
             for _ in 0..n {
@@ -263,7 +265,7 @@ mod tests {
                 for i in 0..64 * 64 {
                     let u = (Vec2::new((i % 64) as f32, (i / 64) as f32) + 0.5) / 64.0;
                     let n = stretched(lobe.sample_normal(u), alpha);
-                    // The projection along the view, then the part of the disc that the hemisphere hides drawn out again.
+                    // Project along the view, then undo the compression of the disc's hidden half.
                     let (p1, p2) = (n.dot(t1), n.dot(t2));
                     let s = 0.5 * (1.0 + v.z);
                     let p = Vec2::new(p1, (p2 - (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt()) / s);

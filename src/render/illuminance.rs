@@ -1,16 +1,16 @@
-//! Illuminance in lux on a calculation grid or over a surface, with the standard error of every point: what lighting
-//! standards ask for (EN 12464-1: mean and uniformity on task areas, walls and ceilings).
+//! Illuminance in lux on a calculation grid or over a surface, with the standard error of every point, for lighting
+//! standards (EN 12464-1: mean and uniformity on task areas, walls and ceilings).
 //!
-//! Points of a grid need no surface beneath them. A surface is mapped by its texture coordinates: each texel is the point
-//! whose coordinates are its centre.
+//! Grid points need no surface beneath them. A surface is mapped by its texture coordinates: each texel stands for the
+//! point at its centre.
 //!
 //! Not modelled: maintenance factors, cylindrical illuminance, glare ratings.
 
+use super::contribution::{LightSource, PathSink};
 use super::path::{self, Contributions};
 use super::sampler::Sampler;
 use super::vertex::Vertex;
 use super::world::World;
-use super::{LightSource, PathSink};
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::{Image, MAX_SIDE, colour, try_vec};
@@ -20,7 +20,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Points across and down, each in `[1, 65536]`.
+    /// Number of points across and down, each in `[1, 65536]`.
     pub columns: usize,
     pub rows: usize,
     /// Paths per point, in `[16, 1 << 24]`; rounded up to a multiple of 16.
@@ -34,41 +34,44 @@ impl Default for Params {
     }
 }
 
-/// Where illuminance is wanted.
+/// Where to compute illuminance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// A parallelogram with a corner and two edges: its points are the centres of `columns × rows` cells, columns along
-    /// `across` and rows along `down`. They gather the light that arrives on the side of `normal`, which need not be theirs.
+    /// A parallelogram with a corner and two edges. Its points are the centres of `columns × rows` cells, columns along
+    /// `across` and rows along `down`. They gather light on the side of `normal`, which need not be perpendicular to
+    /// the edges.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
-    /// A mesh by its first set of texture coordinates, `(0, 0)` at the first texel's outer corner; the side its triangles'
-    /// winding faces, or the other.
+    /// A mesh, mapped by its first set of texture coordinates; `(0, 0)` is the outer corner of the first texel. `front`
+    /// selects the side that the winding of its triangles faces.
     Mesh { mesh: usize, front: bool },
 }
 
-/// Illuminance of each point, and what it is on the whole.
+/// Illuminance of each point, with summary statistics.
 #[derive(Clone, Debug)]
 pub struct Output {
-    /// In lux; NaN where a surface has no point.
+    /// In lux; NaN for texels without a surface point.
     pub lux: Image,
     /// Standard error of each value, in lux.
     pub error: Image,
-    /// Points that there are.
+    /// Number of valid points.
     pub points: usize,
-    /// Least, mean and largest illuminance; all 0 if there are no points. Uniformity is least over mean.
-    pub least: f64,
+    /// Smallest, mean and largest illuminance; all 0 if there are no points. The uniformity of standards is `min /
+    /// mean`.
+    pub min: f64,
     pub mean: f64,
-    pub largest: f64,
-    /// Standard error of the mean: points are sampled independently.
+    pub max: f64,
+    /// Standard error of the mean; the points are sampled independently.
     pub mean_error: f64,
 }
 
-/// Independent estimates of each point, whose scatter is its error.
+/// Number of independent estimates of each point; their variance gives its standard error.
+/// [judged, not recorded]
 const BATCHES: u32 = 16;
 
-/// To be called on the library's own pool.
+/// Computes the illuminance at a place. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parameters out of range, a grid without normal, a mesh that is not there or has no texture coordinates;
+/// Parameters out of range; a grid with a zero normal; a mesh that does not exist or has no texture coordinates;
 /// cancelled.
 pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Output> {
     check_range("columns", params.columns, 1, MAX_SIDE)?;
@@ -103,7 +106,7 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
     let mut lux = Image::new(params.columns, params.rows, 1)?;
     let mut error = Image::new(params.columns, params.rows, 1)?;
     let (mut points, mut sum, mut variances) = (0, 0.0, 0.0);
-    let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
+    let (mut min, mut max) = (f64::INFINITY, 0.0f64);
     for (i, estimate) in estimates.iter().enumerate() {
         let Some((mean, variance)) = *estimate else {
             (lux.data[i], error.data[i]) = (f32::NAN, f32::NAN);
@@ -113,14 +116,14 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
         points += 1;
         sum += mean;
         variances += variance;
-        (least, largest) = (least.min(mean), largest.max(mean));
+        (min, max) = (min.min(mean), max.max(mean));
     }
     let n = f64::max(points as f64, 1.0);
-    let least = if points == 0 { 0.0 } else { least };
-    Ok(Output { lux, error, points, least, mean: sum / n, largest, mean_error: variances.sqrt() / n })
+    let min = if points == 0 { 0.0 } else { min };
+    Ok(Output { lux, error, points, min, mean: sum / n, max, mean_error: variances.sqrt() / n })
 }
 
-/// The points to gather at.
+/// The points at which light is gathered.
 enum Receivers {
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3, columns: usize },
     Texels { mesh: u32, front: bool, texels: Vec<Option<(u32, Vec2)>> },
@@ -164,7 +167,7 @@ fn receivers(world: &World, place: &Place, params: &Params) -> Result<Receivers>
     }
 }
 
-/// The triangle at the centre of each texel, and where in it. Where several overlap it is the first.
+/// The triangle at the centre of each texel with its barycentric coordinates. Where triangles overlap, the first one.
 fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
     let meshes = &world.scene().meshes;
     let found = meshes
@@ -183,7 +186,7 @@ fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32
         let [a, b, c] = corners.map(|i| uvs[i as usize] * size - 0.5);
         let (e, f) = (b - a, c - a);
         let area = e.perp_dot(f);
-        // Texels whose centres its bounding box holds.
+        // Bounds of the texels whose centres lie in the triangle's bounding box.
         let low = a.min(b).min(c).ceil().max(Vec2::ZERO);
         let high = a.max(b).max(c).floor().min(size - 1.0);
         if !(area != 0.0 && area.is_finite() && low.cmple(high).all()) {
@@ -203,7 +206,7 @@ fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32
     Ok(texels)
 }
 
-/// Adds contributions up.
+/// Sums contributions.
 struct Sum(DVec3);
 
 impl PathSink for Sum {

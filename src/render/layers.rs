@@ -1,15 +1,14 @@
-//! Images beside the main one: light that came by certain ways (`lpe`), and what the camera sees of surfaces (`aov`).
+//! Images beside the main image: light path expressions (`lpe`) and surface attributes (`aov`).
 //!
-//! They are made of the very paths the main image is made of, and never change a bit of it. Sums of a pass are in f64 and
-//! are added to those kept of a pixel, in f32, pass by pass.
+//! They use the paths of the main image and do not change its bits. The sums of a pass are in f64; the totals of a
+//! pixel are in f32 and grow pass by pass.
 
-use super::LightSource;
 use super::aov::{Aov, Surfaces};
-use super::bsdf::{Kind, Lobes};
-use super::lpe::{EmitterAs, Expression, Table, Trail};
-use super::path::{Found, Observer, Seen};
-use super::shared::{MOST, Scratch};
-use super::tape::Told;
+use super::bsdf::{Lobes, ScatterKind};
+use super::contribution::LightSource;
+use super::lpe::{Automaton, EmitterAs, Expression, Trail};
+use super::path::{Observer, PrimaryHit, Strategy};
+use super::shared::MAX_SHARED;
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -19,34 +18,34 @@ use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What is kept of a tile: the numbers of its pixels, one pixel after the other.
+/// The totals of a tile, pixel after pixel.
 pub type Kept<'a> = MutexGuard<'a, Vec<f32>>;
 
-/// Longest name of a layer, and the most layers.
-const LONGEST_NAME: usize = 64;
-const MOST_LAYERS: usize = 1024;
+/// Longest name of a layer in bytes, and the largest number of layers. [convention]
+const MAX_NAME_BYTES: usize = 64;
+const MAX_LAYERS: usize = 1024;
 
-/// What to render beside the main image; nothing by default.
+/// Images to render beside the main image; none by default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outputs {
-    /// Images of light, each a name and an expression.
+    /// Light path expressions with their names.
     pub expressions: Vec<(String, Expression)>,
     pub emitter_as: EmitterAs,
-    /// Images of surfaces.
+    /// Surface attributes.
     pub aovs: Vec<Aov>,
 }
 
 impl Outputs {
-    /// Adds an image of light.
+    /// Adds a light path expression.
     ///
     /// # Errors
-    /// A name that is empty, too long, taken, or contains what file formats give a meaning: dots, quotes, control
-    /// characters; an expression that is none.
+    /// A name that is empty, too long, taken, or contains characters that file formats interpret (dots, quotes, control
+    /// characters); an invalid expression.
     pub fn add(&mut self, name: &str, expression: &str) -> Result<()> {
         let unfit = |c: char| c == '.' || c == '"' || c.is_control();
-        if name.is_empty() || name.len() > LONGEST_NAME || name.contains(unfit) {
+        if name.is_empty() || name.len() > MAX_NAME_BYTES || name.contains(unfit) {
             return Err(Error::argument(format!(
-                "the layer's name is {name:?}; it must have 1 to {LONGEST_NAME} bytes, without dots, quotes or control \
+                "the layer's name is {name:?}; it must have 1 to {MAX_NAME_BYTES} bytes, without dots, quotes or control \
                  characters"
             )));
         }
@@ -54,41 +53,41 @@ impl Outputs {
         if taken.chain(["Combined", "Variance"]).any(|n| n == name) {
             return Err(Error::argument(format!("there is a layer called {name:?} already; choose another name")));
         }
-        if self.expressions.len() >= MOST_LAYERS {
-            return Err(Error::argument(format!("there are {MOST_LAYERS} layers already; no more are possible")));
+        if self.expressions.len() >= MAX_LAYERS {
+            return Err(Error::argument(format!("there are {MAX_LAYERS} layers already; no more are possible")));
         }
         self.expressions.push((name.to_string(), Expression::parse(expression)?));
         Ok(())
     }
 }
 
-/// An image beside the main one.
+/// An image beside the main image.
 #[derive(Clone, Debug)]
 pub struct Layer {
     pub name: String,
-    /// Letters of its channels, as files have them.
+    /// Names of its channels in files.
     pub channels: &'static [&'static str],
-    /// The expression it was made by, if by one.
+    /// The text of its expression, for images of light.
     pub expression: Option<String>,
     pub image: Image,
 }
 
-/// The sums of all layers so far, tile by tile as those of the main image.
+/// The totals of all layers so far, tile by tile as the pixels of the main image.
 pub struct Layers<'a> {
-    world: &'a World,
+    pub(super) world: &'a World,
     outputs: &'a Outputs,
-    /// The camera's place in the world's coordinates, and its unit viewing direction.
+    /// The camera's position in world coordinates, and its unit viewing direction.
     eye: Vec3,
     forward: Vec3,
-    table: Table,
-    /// Numbers kept of a pixel.
+    pub(super) automaton: Automaton,
+    /// Numbers per pixel.
     width: usize,
-    /// Each tile is in the hands of one worker at a time; the locks never wait.
+    /// One worker at a time processes a tile, so the locks never wait.
     tiles: Vec<Mutex<Vec<f32>>>,
 }
 
 impl<'a> Layers<'a> {
-    /// None where there is nothing to render but the main image.
+    /// `None` if there is only the main image to render.
     pub fn new(
         world: &'a World,
         camera: &Camera,
@@ -100,7 +99,7 @@ impl<'a> Layers<'a> {
             return Ok(None);
         }
         let expressions: Vec<&Expression> = outputs.expressions.iter().map(|(_, e)| e).collect();
-        let table = Table::new(world.scene(), &expressions, outputs.emitter_as)?;
+        let automaton = Automaton::new(world.scene(), &expressions, outputs.emitter_as)?;
         let surfaces = 1 + outputs.aovs.iter().map(|a| a.kept()).sum::<usize>();
         let width = 3 * expressions.len() + if outputs.aovs.is_empty() { 0 } else { surfaces };
         let mut kept = try_with_capacity(tiles)?;
@@ -108,15 +107,15 @@ impl<'a> Layers<'a> {
             kept.push(Mutex::new(try_vec(width * tile_pixels, 0.0)?));
         }
         let (eye, forward) = (world.from_scene(camera.position), camera.forward.normalize_or_zero());
-        Ok(Some(Self { world, outputs, eye, forward, table, width, tiles: kept }))
+        Ok(Some(Self { world, outputs, eye, forward, automaton, width, tiles: kept }))
     }
 
-    /// What is kept of a tile.
+    /// The totals of a tile.
     pub fn kept(&self, tile: usize) -> Kept<'_> {
         self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes over what was summed elsewhere as what is kept of a pixel; see [`Recorder::add_to`].
+    /// Sets the totals of a pixel from f64 sums made by [`Recorder::add_to`].
     pub fn keep_sums(&self, tile: usize, pixel: usize, sums: &[f64]) {
         let mut kept = self.kept(tile);
         let (colours, surfaces) =
@@ -134,13 +133,13 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// How many numbers [`Recorder::add_to`] adds to.
+    /// Length of the sums of a pixel in [`Recorder::add_to`].
     pub fn summed(&self) -> usize {
         let Outputs { expressions, aovs, .. } = self.outputs;
         3 * expressions.len() + if aovs.is_empty() { 0 } else { 1 + aovs.iter().map(|a| a.summed()).sum::<usize>() }
     }
 
-    /// Adds the sums over some paths to those over others.
+    /// Adds the sums over other paths to `sums`.
     pub fn join_sums(&self, sums: &mut [f64], others: &[f64]) {
         let plain = 3 * self.outputs.expressions.len() + usize::from(!self.outputs.aovs.is_empty());
         let (light, mut sums) = sums.split_at_mut(plain);
@@ -154,28 +153,23 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// Begins with paths.
+    /// A recorder for one path at a time.
     pub fn recorder(&self) -> Recorder<'_> {
         Recorder {
             layers: self,
             beauty: Vec3::ZERO,
-            trail: Trail::new(&self.table),
-            sums: vec![DVec3::ZERO; self.table.lists().len()],
+            trail: Trail::new(&self.automaton),
+            sums: vec![DVec3::ZERO; self.automaton.lists().len()],
             surfaces: Surfaces::default(),
         }
     }
 
-    /// One for each path of those that share what they find.
+    /// A recorder for each path of a block.
     pub fn recorders(&self) -> Vec<Recorder<'_>> {
-        (0..MOST).map(|_| self.recorder()).collect()
+        (0..MAX_SHARED).map(|_| self.recorder()).collect()
     }
 
-    /// Scratch memory for what is told to several of them.
-    pub fn scratch(&self) -> Scratch<Told<'_>> {
-        Scratch::new(Told::new(self.world, &self.table))
-    }
-
-    /// The images so far; `places` has for each pixel its tile, its number there, and its samples.
+    /// The images so far. `places` has the tile, the number within the tile and the sample count of each pixel.
     pub fn images(&self, beauty: &Image, places: &[(u32, u32, u32)], job: Job) -> Result<Vec<Layer>> {
         let guards = try_collect(self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)))?;
         let tiles = try_collect(guards.iter().map(|guard| guard.as_slice()))?;
@@ -194,7 +188,7 @@ impl<'a> Layers<'a> {
             let expression = Some(expression.text().to_string());
             layers.push(Layer { name: name.clone(), channels: &["R", "G", "B"], expression, image });
         }
-        // Behind the sums of light stands the count of samples that met a surface, then what is kept for each.
+        // The totals of a pixel: light, then the number of primary hits, then the attributes.
         let hits = 3 * self.outputs.expressions.len();
         let mut first = hits + 1;
         for &aov in &self.outputs.aovs {
@@ -221,42 +215,42 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Follows paths, pixel by pixel.
+/// Records the layers of paths, pixel by pixel.
 pub struct Recorder<'a> {
     layers: &'a Layers<'a>,
-    /// Sum of the contributions of one path, as the main image has it.
+    /// Radiance of the current path in the main image.
     pub(super) beauty: Vec3,
     pub(super) trail: Trail<'a>,
-    /// Sums over the paths of a pixel, for each list of expressions that accept the same.
+    /// Sums over the paths of a pixel, for each list of expressions that accept the same paths.
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
 
 impl Recorder<'_> {
-    /// A new path begins.
+    /// Begins a new path.
     #[inline]
     pub fn start(&mut self) {
         self.beauty = Vec3::ZERO;
         self.trail.start();
     }
 
-    /// Ends the path; returns what it has brought to the main image. One that is no finite number counts nowhere.
+    /// Ends the path and returns its radiance in the main image. A path whose radiance is not finite adds nothing.
     #[inline]
-    pub fn finish(&mut self) -> Vec3 {
+    pub fn end_path(&mut self) -> Vec3 {
         if self.beauty.is_finite() {
-            self.trail.finish(|list, light| self.sums[list] += light.as_dvec3());
+            self.trail.end(|list, light| self.sums[list] += light.as_dvec3());
         }
         self.beauty
     }
 
-    /// Adds what has been gathered to the sums kept of a pixel of a tile.
+    /// Adds the recorded sums to the totals of a pixel of a tile.
     pub fn keep(&mut self, kept: &mut Kept, pixel: usize) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) =
             kept[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
-        // What a list of expressions shares is added to each of them.
-        let lists = layers.table.lists().iter().zip(sums);
+        // Add the sum of a list to each expression of the list.
+        let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             let light = sum.as_vec3();
             for &expression in list {
@@ -276,13 +270,13 @@ impl Recorder<'_> {
         }
     }
 
-    /// Adds what a single path has brought to sums that keep all digits: three for each expression, the paths that met a
-    /// surface, and [`Aov::summed`] for each image of surfaces.
+    /// Adds the current sums of a pixel to totals in f64: three numbers per expression, the number of primary hits, and
+    /// [`Aov::summed`] numbers per surface attribute.
     pub fn add_to(&mut self, totals: &mut [f64]) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
-        let lists = layers.table.lists().iter().zip(sums);
+        let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             for &expression in list {
                 let total = &mut colours[usize::from(expression)];
@@ -306,29 +300,29 @@ impl Recorder<'_> {
 
 impl Observer for Recorder<'_> {
     #[inline(always)]
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let contribution = importance * emission;
         self.beauty += contribution;
-        self.trail.add(self.layers.world, contribution.into(), source, found);
+        self.trail.add(self.layers.world, contribution.into(), source, strategy);
     }
 
     #[inline]
-    fn meet(&mut self, seen: impl FnOnce() -> Seen) {
+    fn primary_hit(&mut self, seen: impl FnOnce() -> PrimaryHit) {
         if self.layers.outputs.aovs.is_empty() {
             return;
         }
         let seen = seen();
         let depth = (seen.position - self.layers.eye).dot(self.layers.forward);
-        self.surfaces.meet(self.layers.world, &seen, depth);
+        self.surfaces.add(self.layers.world, &seen, depth);
     }
 
     #[inline]
-    fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
+    fn scatter(&mut self, mesh: u32, kind: ScatterKind, lobes: Lobes) {
         self.trail.scatter(mesh, kind, lobes);
     }
 
     #[inline]
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
-        self.trail.wants_panes()
+        self.trail.panes_wanted()
     }
 }

@@ -1,34 +1,40 @@
 //! Rendering: unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986;
-//! Veach 1997), for images and for the irradiance of surfaces ("Lighting Style Transfer", section 7; StyLit, section 3.2).
+//! Veach 1997), for images and for the irradiance of surfaces ("Lighting Style Transfer", section 7; StyLit, section
+//! 3.2).
 //!
-//! [`World`] makes a scene ready; [`run`] renders a camera's view; [`irradiance`] samples the light that arrives at a point.
-//! Nothing is clamped; estimates are unbiased unless [`run`] is given a target; the same seed gives the same bits on any
-//! number of threads.
+//! [`World`] prepares a scene for tracing; [`run`] renders the view of a camera; [`irradiance`] samples the light that
+//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target. A seed
+//! gives the same bits on any number of threads.
 //!
-//! `sampler` numbers → `path` a walk → (`light` one light of all, by way of `emissive` and `environment`; `vertex` what was
-//! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors, and which pixels get more paths.
-//! The paths of neighbouring pixels are `shared`: what one finds behind the first surface is light for all that see it.
-//! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
-//! [`illuminance`] calculates grids and maps of meshes in lux. For previews, `denoise` filters noise out, with a bias.
+//! A sample passes through these files: `sampler` draws its random numbers → `path` traces it (`vertex` describes a
+//! hit, `bsdf` and `ggx` scatter, `light` samples one of the lights of `emissive` and `environment`) → a [`PathSink`]
+//! receives its contributions → `film` keeps means and errors and decides which pixels get more paths. `shared` lets
+//! the paths of neighbouring pixels reuse each other's secondary vertices. `layers` adds images from the same paths:
+//! light path expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes grids and maps of meshes in
+//! lux. `denoise` filters previews, with a bias.
 //!
-//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur. Solids of
-//! glass and frosted glass in a scene are named by [`Requirements::left_out`], in C by `luxfer_scene_requirements_text`.
+//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
+//! [`Requirements::left_out`] names the solids of glass and the frosted glass of a scene, as does
+//! `luxfer_scene_requirements_text` in C.
 
 mod aov;
 mod ballot;
 mod bsdf;
+mod compiled_material;
+mod contribution;
 pub mod denoise;
 mod distribution;
 mod emissive;
 mod environment;
 mod facet;
 mod film;
-mod finish;
 mod ggx;
 pub mod illuminance;
 mod layers;
 mod light;
 pub mod lpe;
+mod output;
+mod params;
 pub mod parts;
 mod path;
 mod preview;
@@ -36,58 +42,43 @@ mod requirements;
 mod sampler;
 mod shared;
 mod tape;
+mod texture_context;
 mod vertex;
 mod world;
 
 pub use aov::Aov;
-pub use film::probe::{self, Probe};
+pub use contribution::{LightSource, PathSink};
+pub use film::pilot::{self, Pilot};
 pub use layers::{Layer, Outputs};
+pub use output::Film;
+pub use params::Params;
 pub use requirements::Requirements;
 pub use world::World;
 
-use crate::error::{Error, Result, check_range};
-use crate::image::{Image, MAX_SIDE};
+use crate::error::Result;
 use crate::job::{Job, Monitor};
 use crate::scene::Camera;
-use film::{Canvas, Clock, Plan};
+use film::{AdaptiveSampler, Canvas, Clock};
 use glam::{Vec2, Vec3};
+use params::check_camera;
 use sampler::Sampler;
 use vertex::Vertex;
 
-/// Where light of a path comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightSource {
-    /// An emissive triangle; `uv` are the coordinates its emission texture is looked up with.
-    Surface {
-        mesh: u32,
-        triangle: u32,
-        uv: Vec2,
-    },
-    /// Index into the scene's punctual lights.
-    Punctual(u32),
-    Environment,
-}
-
-/// Takes the contributions of a path: their products sum to the estimate.
-pub trait PathSink {
-    /// `importance` is all but the emission: throughput, weight and the reciprocal of the probability.
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3);
-}
-
-/// A point of a surface that gathers light.
+/// A point of a surface at which irradiance is estimated.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
     pub mesh: u32,
     pub triangle: u32,
     /// Barycentric coordinates of corners 1 and 2.
     pub barycentric: Vec2,
-    /// Whether the side the triangle's winding faces gathers, or the other.
+    /// Whether the point gathers on the front side, which the winding of the triangle faces.
     pub front: bool,
 }
 
-/// Adds one sample of the irradiance (lux) at a point to a sink; `sample` counts up, `seed` separates estimates. Samples of
-/// one seed are stratified among each other: their mean converges faster than independent ones, best at powers of two.
-/// A point that is not on the scene's surfaces, or on a triangle of no area, adds nothing.
+/// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample and `seed` selects
+/// an independent sequence. The samples of one seed are stratified: their mean converges faster than that of
+/// independent samples, best at powers of two. A point outside the scene's surfaces or on a degenerate triangle adds
+/// nothing.
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
     let mesh = world.scene().meshes.get(point.mesh as usize);
     if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
@@ -99,8 +90,8 @@ pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, s
     }
 }
 
-/// The same at a point that is on no surface, of the light that arrives on the side of a normal of any length but 0: a
-/// point of a calculation grid.
+/// Adds one sample of the irradiance at a free point in space, such as a point of a calculation grid, on the side of a
+/// non-zero normal of any length.
 pub fn irradiance_in_air<S: PathSink>(
     world: &World,
     position: Vec3,
@@ -116,168 +107,50 @@ pub fn irradiance_in_air<S: PathSink>(
     }
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// Size of the image in pixels, each in `[1, 65536]`.
-    pub width: usize,
-    pub height: usize,
-    /// Paths per pixel, in `[1, 1 << 20]`: of each pixel if there is no target, on the average over the image if there is.
-    pub samples: u32,
-    /// Stop when the image's [`Film::error`] falls to this, and give paths to where they lower it most; 0 = never.
-    pub target_error: f32,
-    /// Stop when every part of the image (tiles of 8 × 8 pixels, root mean square) is known to this: half the width of the
-    /// interval that holds the luminance of a pixel with a probability of 95 %, relative to that luminance. 0.1 means
-    /// "within 10 % of its value, 19 times out of 20". Pixels darker than a tenth of the image's mean luminance need not
-    /// be known better than that tenth. A part gets at most 64 times `samples`, though it may miss the target. 0 = never.
-    /// With several targets all are reached.
-    pub pixel_error: f32,
-    /// Stop when the image's [`Film::relative_error`] falls to this, and give paths to where they lower it most; 0 = never.
-    pub relative_error: f32,
-    /// Stop after this many milliseconds; 0 = never.
-    pub time_budget_ms: u32,
-    /// End every path where what is left is at most this share of all light that surfaces scatter, in `[0, 1)`
-    /// ([`Requirements::bounces`]): the image is too dark by up to that share. 0 = never: paths end by chance alone.
-    pub bounce_error: f32,
-    /// Strength of the filter that makes [`Film::preview`] (`denoise`), in `[0, 10]`, 1 as a rule; 0 = no preview, for
-    /// final images.
-    pub preview: f32,
-    pub seed: u64,
-    /// What to render beside the main image.
-    pub outputs: Outputs,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self {
-            width: 1280,
-            height: 720,
-            samples: 64,
-            target_error: 0.0,
-            pixel_error: 0.0,
-            relative_error: 0.0,
-            time_budget_ms: 0,
-            bounce_error: 0.0,
-            preview: 0.0,
-            seed: 1,
-            outputs: Outputs::default(),
-        }
-    }
-}
-
-impl Params {
-    /// Checks that every setting is in its range.
-    pub fn check(&self) -> Result<()> {
-        check_range("width", self.width, 1, MAX_SIDE)?;
-        check_range("height", self.height, 1, MAX_SIDE)?;
-        check_range("samples", self.samples, 1, 1 << 20)?;
-        check_range("target_error", self.target_error, 0.0, f32::MAX)?;
-        check_range("pixel_error", self.pixel_error, 0.0, f32::MAX)?;
-        check_range("relative_error", self.relative_error, 0.0, f32::MAX)?;
-        check_range("bounce_error", self.bounce_error, 0.0, 1.0f32.next_down())?;
-        check_range("preview", self.preview, 0.0, 10.0)?;
-        Ok(())
-    }
-}
-
-/// What has been rendered so far; a render that is cancelled or out of time leaves it usable.
-#[derive(Clone, Debug)]
-pub struct Film {
-    /// Mean radiance per pixel, linear RGB in cd/m². A pixel without paths shows one nearby.
-    pub beauty: Image,
-    /// Variance of that mean, per channel, each pixel from its own paths; infinite below two paths. See
-    /// [`Film::interval`] for what it says about the truth.
-    pub variance: Image,
-    /// Number of paths of each pixel; one channel.
-    pub paths: Image,
-    /// Paths per pixel so far, on the average.
-    pub samples: u32,
-    /// Root mean square over pixels and channels of the standard error, relative to the mean of the image.
-    pub error: f64,
-    /// The same relative to what each pixel shows, the mean of its channels; one darker than a hundredth of the image's mean
-    /// counts as if it were as bright. Of few paths it states rather too much: of 8 about a quarter.
-    pub relative_error: f64,
-    /// Paths that were left out because their radiance was no finite number.
-    pub discarded: u64,
-    /// The images beside it: those of expressions in their order, then those of surfaces in theirs.
-    pub layers: Vec<Layer>,
-    /// The image with its noise filtered out, and how far that has moved it, if asked for. It is not the expected value.
-    pub preview: Option<denoise::Output>,
-}
-
-impl Film {
-    /// A copy, or an error where there is no memory for it.
-    pub fn try_clone(&self) -> Result<Self> {
-        let layer = |l: &Layer| {
-            Ok(Layer { image: l.image.try_clone()?, name: l.name.clone(), expression: l.expression.clone(), ..*l })
-        };
-        let preview = |p: &denoise::Output| Ok(denoise::Output { image: p.image.try_clone()?, ..*p });
-        Ok(Self {
-            beauty: self.beauty.try_clone()?,
-            variance: self.variance.try_clone()?,
-            paths: self.paths.try_clone()?,
-            layers: self.layers.iter().map(layer).collect::<Result<_>>()?,
-            preview: self.preview.as_ref().map(preview).transpose()?,
-            ..*self
-        })
-    }
-}
-
-/// Renders a camera's view; `publish` is called with the film after the first pass, and again whenever enough has been
-/// added to be worth its time. To be called on the library's own pool.
+/// Renders the view of a camera. Calls `publish` with the film after the first pass, and again whenever a new film is
+/// worth the time that publishing takes. Call it on the library's own thread pool.
 ///
-/// Without a target the estimate of each pixel is unbiased. With one, where the next paths go depends on those before, and
-/// pixels whose bright paths are rare come out too dark by a small part of their standard error (see `film::plan`).
+/// Without an error target the estimate of each pixel is unbiased. With a target, the paths so far decide where the
+/// next ones go, and pixels with rare bright paths come out too dark by a small part of their standard error (see
+/// `film::adaptive`).
 ///
 /// # Errors
-/// Parameters out of range, a camera that cannot see, no memory; cancelled, when the film last published stays good.
+/// Parameters out of range; a degenerate camera; no memory; cancelled. After a cancel the last published film is valid.
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     params.check()?;
     check_camera(camera)?;
-    // The images are made also after a cancel.
+    // Assemble images with a job of their own: they are also needed after a cancel.
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);
     let mut canvas = Canvas::new(world, camera, &guided)?;
-    let mut plan = Plan::new(params);
-    let mut show = |canvas: &Canvas, clock: &mut Clock| {
-        clock.show(|| {
+    let mut plan = AdaptiveSampler::new(params);
+    let mut publish_film = |canvas: &Canvas, clock: &mut Clock| {
+        clock.publish(|| {
             let mut film = canvas.film(always.job())?;
-            preview::finish(&mut film, canvas, params, always.job())?;
+            preview::add_preview(&mut film, canvas, params, always.job())?;
             publish(&film);
             Ok(film)
         })
     };
-    let (mut shown, mut done) = (None, 0.0);
+    let (mut published, mut done) = (None, 0.0);
     while let Some(pass) = plan.next(&canvas, &clock, job.part(done, done))? {
         let next = canvas.progress(&pass, params.samples).clamp(done, 1.0);
         let cut = clock.sample(|deadline| canvas.extend(&pass, deadline, job.part(done, next)));
         done = next.max(clock.spent());
         job.report(done);
-        shown = None;
-        if clock.is_worth_showing() || cut.is_err() {
-            shown = Some(show(&canvas, &mut clock)?);
+        published = None;
+        if clock.is_publish_due() || cut.is_err() {
+            published = Some(publish_film(&canvas, &mut clock)?);
         }
         cut?;
     }
-    let film = match shown {
+    let film = match published {
         Some(film) => film,
-        None => show(&canvas, &mut clock)?,
+        None => publish_film(&canvas, &mut clock)?,
     };
     job.report(1.0);
     Ok(film)
-}
-
-fn check_camera(camera: &Camera) -> Result<()> {
-    let vectors = [camera.position, camera.forward, camera.up];
-    let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
-    if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {
-        return Err(Error::argument(format!(
-            "camera {:?} cannot see: its position must be finite, forward and up must not be parallel, and fov_y (now {}) \
-             must lie in (0, pi)",
-            camera.name, camera.fov_y
-        )));
-    }
-    Ok(())
 }
 
 #[cfg(test)]

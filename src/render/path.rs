@@ -1,63 +1,66 @@
-//! Paths from the eye to the light: next-event estimation and multiple importance sampling at every vertex.
+//! Path tracing from the eye: next-event estimation and multiple importance sampling at every vertex.
 //!
-//! A path that scatters into a light and the same path made by choosing the light are weighed against each other by the
-//! power heuristic (Veach 1997, 9.2.4). Clear panes are no vertices of a path in that sense: shadow rays pass through them
-//! with their share, and paths keep the density of the vertex before. Nothing is clamped: the estimate is unbiased.
+//! A BSDF sample that hits a light and a light sample of the same path are weighed by the power heuristic (Veach 1997,
+//! 9.2.4). Clear panes are not vertices for MIS: shadow rays pass through them attenuated, and a path keeps the pdf of
+//! the vertex before the pane. Contributions are not clamped: the estimate is unbiased.
 
-use super::bsdf::{Bsdf, Kind, Lobes, Scattered};
+use super::bsdf::{Bsdf, BsdfSample, Lobes, ScatterKind};
+use super::contribution::{LightSource, PathSink};
 use super::environment;
+use super::facet::NONE;
 use super::light::{LightEnd, LightSample, Receiver};
 use super::sampler::Sampler;
 use super::vertex::Vertex;
-use super::world::{NONE, Pane, World};
-use super::{LightSource, PathSink};
+use super::world::{Pane, World};
+
 use crate::scene::accel::Ray;
 use glam::{Vec2, Vec3};
 
-/// Bounce from which on a path may end by chance.
-const ROULETTE_FROM: u32 = 2;
-/// Paths go on for sure that promise this share of what the others bring. Ending them sooner would save less time than
-/// its scatter costs: measured on rooms, the product of time and variance is least about here.
-const ENOUGH: f32 = 0.5;
-/// The surest a path can be to go on: in a room of white walls it must end some time. Walls that give
-/// back more than the root of this make the variance infinite.
-const SUREST: f32 = 0.998;
+/// First bounce at which Russian roulette may end a path. [convention]
+const ROULETTE_START: u32 = 2;
+/// Paths whose expected contribution is at least this share of the mean survive with certainty, up to [`MAX_SURVIVAL`].
+/// Measured on rooms, the product of time and variance is smallest near this value. [judged on rooms]
+const CERTAIN_SHARE: f32 = 0.5;
+/// Largest survival probability: a path between white walls must end eventually. Walls of an albedo above its square
+/// root make the variance infinite. [judged, not recorded]
+const MAX_SURVIVAL: f32 = 0.998;
 
-/// How often a path scatters at most: a guard that nothing meets, as at [`SUREST`] a ten-millionth of paths would come so far.
-pub const MOST_SCATTERINGS: u32 = 8192;
+/// Largest number of bounces. It only guards against endless paths: at [`MAX_SURVIVAL`] one path in ten million gets so
+/// far.
+pub const MAX_BOUNCES: u32 = 8192;
 
-/// Takes what a path brings. All but [`Observer::add`] is for those that tell light apart by the way it came; the others
-/// leave these steps empty, and pay nothing for them.
+/// Observes a path. Only observers of light path expressions and AOVs implement more than [`Observer::add`]; the empty
+/// defaults cost other observers nothing.
 pub trait Observer {
-    /// A contribution, as [`PathSink::add`] has it, and how its light was found.
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found);
+    /// Receives a contribution, as [`PathSink::add`], with the sampling strategy that found the light.
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy);
 
-    /// The first surface a path from the eye meets.
-    fn meet(&mut self, _seen: impl FnOnce() -> Seen) {}
+    /// Receives the first surface that a camera path hits.
+    fn primary_hit(&mut self, _seen: impl FnOnce() -> PrimaryHit) {}
 
-    /// The path goes on from a vertex of a mesh.
-    fn scatter(&mut self, _mesh: u32, _kind: Kind, _lobes: Lobes) {}
+    /// Receives a scattering event of the path at a vertex of a mesh.
+    fn scatter(&mut self, _mesh: u32, _kind: ScatterKind, _lobes: Lobes) {}
 
-    /// Where to list the panes between a vertex and a light chosen for it, if anyone wants to know.
+    /// A list to fill with the panes between a vertex and its light sample, if the observer needs them.
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
         None
     }
 }
 
-/// A surface as the eye meets it.
+/// Attributes of the first surface that a camera path hits.
 #[derive(Clone, Copy)]
-pub struct Seen {
+pub struct PrimaryHit {
     pub mesh: u32,
     pub position: Vec3,
-    /// Shading normal and geometric normal on the side of the eye.
+    /// Shading normal and geometric normal, both facing the eye.
     pub normal: Vec3,
     pub geometric_normal: Vec3,
-    /// Colour at normal incidence.
+    /// Reflectance plus transmittance at normal incidence.
     pub colour: Vec3,
     pub distance: f32,
 }
 
-impl Seen {
+impl PrimaryHit {
     #[inline]
     pub(super) fn new(vertex: &Vertex, bsdf: &Bsdf, distance: f32) -> Self {
         Self {
@@ -71,101 +74,102 @@ impl Seen {
     }
 }
 
-/// How a light was found.
+/// The sampling strategy that found a light.
 #[derive(Clone, Copy)]
-pub enum Found {
-    /// By scattering into it.
-    Met,
-    /// It was chosen for a vertex of a mesh, whose lobes send this much of it on.
-    Chosen { mesh: u32, lobes: Lobes },
+pub enum Strategy {
+    /// A BSDF sample hit the light.
+    BsdfSample,
+    /// A light sample at a vertex of a mesh; `lobes` are the BSDF values times the cosine towards it.
+    LightSample { mesh: u32, lobes: Lobes },
 }
 
-/// An observer that only adds up.
+/// An observer that forwards contributions to a sink.
 pub struct Contributions<'a, S>(pub &'a mut S);
 
 impl<S: PathSink> Observer for Contributions<'_, S> {
     #[inline]
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, _: Found) {
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, _: Strategy) {
         self.0.add(source, importance, emission);
     }
 }
 
-/// A path about to leave a vertex or the eye.
+/// A path segment about to leave a vertex or the eye.
 pub(super) struct Leg {
     pub ray: Ray,
-    /// The triangle it leaves.
+    /// The triangle at its origin.
     pub from: u32,
     pub throughput: Vec3,
-    /// For what the light was last sampled, and the density of the direction then chosen; none if only scattering could
-    /// find what lies ahead.
-    pub rival: Option<(Receiver, f32)>,
-    /// Uniform in the unit square: chooses the light for the next vertex.
-    pub lighting: (f64, f32),
+    /// The competing strategy for MIS: the point at which a light was sampled last, and the solid-angle pdf of the BSDF
+    /// sample drawn there. `None` after the eye or a mirror, where no light sample competes.
+    pub mis: Option<(Receiver, f32)>,
+    /// Uniform in the unit square: selects the light sample at the next vertex.
+    pub light_u: (f64, f32),
 }
 
 impl Leg {
-    /// From the eye along a ray of unit direction.
-    pub fn from_eye(ray: Ray, lighting: (f64, f32)) -> Self {
-        Self { ray, from: NONE, throughput: Vec3::ONE, rival: None, lighting }
+    /// A segment that leaves the eye along a ray of unit direction.
+    pub fn from_eye(ray: Ray, light_u: (f64, f32)) -> Self {
+        Self { ray, from: NONE, throughput: Vec3::ONE, mis: None, light_u }
     }
 }
 
-/// What decides how long paths are.
+/// Controls the length of paths.
 #[derive(Clone, Copy)]
-pub struct Length {
-    /// They scatter so often at most.
-    pub most: u32,
-    /// What light of middling brightness means to the sum of all paths, relative to it. Without it the colour of the first
-    /// surface is what counts.
-    pub worth: Option<Vec3>,
+pub struct PathLength {
+    /// Largest number of bounces.
+    pub max_bounces: u32,
+    /// Factor that turns a path's throughput into its expected contribution relative to the pixel's estimate, for
+    /// Russian roulette. `None`: the reciprocal of the throughput after the first bounce is used.
+    pub roulette_weight: Option<Vec3>,
 }
 
-/// Makes one estimate of the radiance that arrives along a ray (of unit direction). A point of the unit square chooses the
-/// first light.
+/// Estimates the radiance that arrives along a ray of unit direction with one path. `light_u`, uniform in the unit
+/// square, selects the first light sample.
 pub fn trace<O: Observer>(
     world: &World,
     ray: Ray,
-    lighting: (f64, f32),
-    length: Length,
+    light_u: (f64, f32),
+    length: PathLength,
     sampler: &mut Sampler,
     observer: &mut O,
 ) {
-    walk(world, Leg::from_eye(ray, lighting), 0, length, sampler, observer);
+    walk(world, Leg::from_eye(ray, light_u), 0, length, sampler, observer);
 }
 
-/// Makes one estimate of the irradiance at a point.
+/// Estimates the irradiance at a point with one path.
 pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler: &mut Sampler, observer: &mut O) {
     let normal = if front { vertex.normal } else { -vertex.normal };
     let receiver = Bsdf::receiver(normal);
     let block = sampler.next();
-    let lighting = (block.fine(0), block.get(1));
-    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, lighting, sampler, observer) {
-        let length = Length { most: MOST_SCATTERINGS, worth: Some(reciprocal(leg.throughput)) };
+    let light_u = (block.fine(0), block.get(1));
+    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, light_u, sampler, observer) {
+        let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: Some(reciprocal(leg.throughput)) };
         walk(world, leg, 0, length, sampler, observer);
     }
 }
 
-/// Follows a path that has scattered so often to its end.
+/// Traces a path from its bounce number `scattered` to its end.
 pub(super) fn walk<O: Observer>(
     world: &World,
     mut leg: Leg,
     scattered: u32,
-    mut length: Length,
+    mut length: PathLength,
     sampler: &mut Sampler,
     observer: &mut O,
 ) {
     for bounce in scattered.. {
-        let Some((vertex, distance)) = arrive(world, &leg, sampler, observer) else { return };
-        match go_on(world, &leg, &vertex, distance, bounce, &mut length, sampler, observer) {
+        let Some((vertex, distance)) = intersect(world, &leg, sampler, observer) else { return };
+        match continue_path(world, &leg, &vertex, distance, bounce, &mut length, sampler, observer) {
             Some(next) => leg = next,
             None => return,
         }
     }
 }
 
-/// Where a path comes to a surface, and how far that is. Adds the light that comes from there, or from around the scene.
+/// Intersects a segment with the scene: returns the vertex and its distance. Adds the emission of the hit or of the
+/// environment.
 #[inline(always)]
-pub(super) fn arrive<O: Observer>(
+pub(super) fn intersect<O: Observer>(
     world: &World,
     leg: &Leg,
     sampler: &Sampler,
@@ -180,30 +184,30 @@ pub(super) fn arrive<O: Observer>(
     Some((vertex, hit.t))
 }
 
-/// How a path that has scattered so often leaves a vertex, if it does. Adds the light chosen for it.
+/// Continues a path of `bounce` bounces at a vertex: plays Russian roulette, samples a light, and samples the BSDF.
 #[inline(always)]
-pub(super) fn go_on<O: Observer>(
+pub(super) fn continue_path<O: Observer>(
     world: &World,
     leg: &Leg,
     vertex: &Vertex,
     distance: f32,
     bounce: u32,
-    length: &mut Length,
+    length: &mut PathLength,
     sampler: &mut Sampler,
     observer: &mut O,
 ) -> Option<Leg> {
-    if bounce == length.most {
+    if bounce == length.max_bounces {
         return None;
     }
-    // End by chance what can no longer add much (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
-    // splitting in light transport simulation", with a single value for the light that may still be found).
+    // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
+    // splitting in light transport simulation", with a single value for the radiance yet to be found).
     let mut throughput = leg.throughput;
-    if bounce >= ROULETTE_FROM
-        && let Some(worth) = length.worth
+    if bounce >= ROULETTE_START
+        && let Some(roulette_weight) = length.roulette_weight
     {
-        // Of little promise, more go on than it says: where bright light is rare, it says too little.
-        let promise = (throughput * worth).max_element();
-        let survival = (promise / ENOUGH).max(promise.sqrt()).min(SUREST);
+        // Keep more of the dim paths than their expected share: where bright light is rare, it is underestimated.
+        let expected_share = (throughput * roulette_weight).max_element();
+        let survival = (expected_share / CERTAIN_SHARE).max(expected_share.sqrt()).min(MAX_SURVIVAL);
         if !(sampler.chance() < survival) {
             return None;
         }
@@ -211,64 +215,64 @@ pub(super) fn go_on<O: Observer>(
     }
     let bsdf = vertex.bsdf(world, -leg.ray.direction);
     if bounce == 0 && leg.from == NONE {
-        observer.meet(|| Seen::new(vertex, &bsdf, distance));
+        observer.primary_hit(|| PrimaryHit::new(vertex, &bsdf, distance));
     }
-    let next = scatter(world, vertex, &bsdf, throughput, leg.rival, leg.lighting, sampler, observer)?;
-    length.worth.get_or_insert_with(|| reciprocal(next.throughput));
+    let next = scatter(world, vertex, &bsdf, throughput, leg.mis, leg.light_u, sampler, observer)?;
+    length.roulette_weight.get_or_insert_with(|| reciprocal(next.throughput));
     Some(next)
 }
 
-/// Adds the light chosen for a vertex and chooses where the path goes on.
+/// Samples a light at a vertex, then samples the BSDF for the next segment.
 pub(super) fn scatter<O: Observer>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
     throughput: Vec3,
-    rival: Option<(Receiver, f32)>,
-    lighting: (f64, f32),
+    mis: Option<(Receiver, f32)>,
+    light_u: (f64, f32),
     sampler: &mut Sampler,
     observer: &mut O,
 ) -> Option<Leg> {
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    if let Some(light) = choose_light(world, &receiver, bsdf, lighting) {
-        add_light(world, vertex, bsdf, throughput, &light, observer);
+    if let Some(light) = sample_light(world, &receiver, bsdf, light_u) {
+        add_direct_light(world, vertex, bsdf, throughput, &light, observer);
     }
-    let (scattered, lighting) = choose_direction(bsdf, sampler)?;
+    let (scattered, light_u) = sample_direction(bsdf, sampler)?;
     let throughput = throughput * scattered.weight;
     if throughput == Vec3::ZERO || !throughput.is_finite() {
         return None;
     }
     observer.scatter(vertex.mesh, scattered.kind, scattered.lobes);
-    let rival = match scattered.kind {
-        Kind::Spread(density) => Some((receiver, density)),
-        Kind::Mirrored => None,
-        Kind::Through => rival,
+    let mis = match scattered.kind {
+        ScatterKind::NonSpecular(pdf) => Some((receiver, pdf)),
+        ScatterKind::Mirror => None,
+        ScatterKind::Pane => mis,
     };
-    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival, lighting })
+    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
 }
 
-/// A light for what scatters any.
+/// Sample a light, unless the BSDF is specular.
 #[inline(always)]
-pub(super) fn choose_light(
+pub(super) fn sample_light(
     world: &World,
     receiver: &Receiver,
     bsdf: &Bsdf,
-    lighting: (f64, f32),
+    light_u: (f64, f32),
 ) -> Option<LightSample> {
-    if bsdf.spreads() { world.lights().sample(world.scene(), receiver, lighting) } else { None }
+    if bsdf.has_non_specular() { world.lights().sample(world.scene(), receiver, light_u) } else { None }
 }
 
-/// Where a path goes on, and the point of the unit square that chooses the light where that leads.
+/// Samples the BSDF; also returns the random numbers of the light sample at the next vertex.
 #[inline(always)]
-pub(super) fn choose_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(Scattered, (f64, f32))> {
+pub(super) fn sample_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(BsdfSample, (f64, f32))> {
     let block = sampler.next();
     let scattered = bsdf.sample(Vec2::new(block.get(0), block.get(1)))?;
     Some((scattered, (block.fine(2), block.get(3))))
 }
 
-/// Adds the light chosen for a vertex.
+/// Adds the contribution of a light sample at a vertex.
 #[inline(always)]
-pub(super) fn add_light<O: Observer>(
+pub(super) fn add_direct_light<O: Observer>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
@@ -276,28 +280,28 @@ pub(super) fn add_light<O: Observer>(
     light: &LightSample,
     observer: &mut O,
 ) {
-    let (lobes, density) = bsdf.eval(light.direction);
+    let (lobes, pdf) = bsdf.eval(light.direction);
     let value = lobes.sum();
     if value == Vec3::ZERO || light.emission == Vec3::ZERO {
         return;
     }
-    let importance = throughput * value * reach(world, vertex, light, density, observer.panes());
+    let importance = throughput * value * connection_weight(world, vertex, light, pdf, observer.panes());
     if importance != Vec3::ZERO {
-        observer.add(light.source, importance, light.emission, Found::Chosen { mesh: vertex.mesh, lobes });
+        observer.add(light.source, importance, light.emission, Strategy::LightSample { mesh: vertex.mesh, lobes });
     }
 }
 
-/// What a chosen light's emission counts for at a vertex, before it scatters: as much of it as nothing stands in the way of,
-/// weighed against meeting the light by scattering with a density, over the probability of its choice.
+/// Weight of a light sample's emission at a vertex, without the BSDF: visibility × mis_weight / pdf. `pdf` is the
+/// solid-angle pdf of the BSDF for the direction of the light.
 #[inline(always)]
-pub(super) fn reach(
+pub(super) fn connection_weight(
     world: &World,
     vertex: &Vertex,
     light: &LightSample,
-    density: f32,
+    pdf: f32,
     panes: Option<&mut Vec<Pane>>,
 ) -> Vec3 {
-    let weight = light.solid_angle_density.map_or(1.0, |d| power_heuristic(d, density));
+    let weight = light.mis_pdf.map_or(1.0, |d| power_heuristic(d, pdf));
     let origin = vertex.off_surface(light.direction);
     let (ray, end) = match light.end {
         None => (Ray::new(origin, light.direction), NONE),
@@ -309,10 +313,10 @@ pub(super) fn reach(
             (Ray { origin, direction: p - origin, t_max: 1.0 }, emitter.id)
         }
     };
-    world.transmittance(&ray, [vertex.id, end], panes) * (weight / light.density)
+    world.transmittance(&ray, [vertex.id, end], panes) * (weight / light.pdf)
 }
 
-/// What a path meets by scattering, weighed against having chosen it as a light.
+/// Adds the emission of a hit surface, weighed against a light sample of the same point.
 fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer: &mut O) {
     let Some(index) = world.emitter_of(vertex.id) else { return };
     let lights = world.lights();
@@ -325,35 +329,35 @@ fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer
     if emission == Vec3::ZERO {
         return;
     }
-    let weight = leg.rival.map_or(1.0, |(receiver, density)| {
+    let weight = leg.mis.map_or(1.0, |(receiver, pdf)| {
         let distance = vertex.position.distance(receiver.position);
-        let rival = lights.surface_density(&receiver, index, (emission, uv), direction, distance);
-        power_heuristic(density, rival)
+        let light_pdf = lights.surface_pdf(&receiver, index, (emission, uv), direction, distance);
+        power_heuristic(pdf, light_pdf)
     });
     let source = LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv };
-    observer.add(source, leg.throughput * weight, emission, Found::Met);
+    observer.add(source, leg.throughput * weight, emission, Strategy::BsdfSample);
 }
 
+/// Adds the radiance of the environment, weighed against a light sample of the same direction.
 fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
     let Some(environment) = world.environment() else { return };
     let emission = environment::radiance(environment, leg.ray.direction);
     if emission == Vec3::ZERO {
         return;
     }
-    let weight = leg
-        .rival
-        .map_or(1.0, |(_, density)| power_heuristic(density, world.lights().environment_density(leg.ray.direction)));
-    observer.add(LightSource::Environment, leg.throughput * weight, emission, Found::Met);
+    let weight =
+        leg.mis.map_or(1.0, |(_, pdf)| power_heuristic(pdf, world.lights().environment_pdf(leg.ray.direction)));
+    observer.add(LightSource::Environment, leg.throughput * weight, emission, Strategy::BsdfSample);
 }
 
-/// Of each channel; 0 where there is nothing.
+/// Reciprocal of each channel; 0 for channels that are not positive.
 pub(super) fn reciprocal(v: Vec3) -> Vec3 {
     Vec3::select(v.cmpgt(Vec3::ZERO), v.recip(), Vec3::ZERO)
 }
 
-/// The weight of a strategy of density `own` against another of density `other`.
+/// MIS weight of a sample of pdf `own` against a strategy of pdf `other` (power heuristic with exponent 2).
 fn power_heuristic(own: f32, other: f32) -> f32 {
-    // As a ratio, so that neither square overflows.
+    // Form the ratio first, so that neither square overflows.
     if own <= 0.0 {
         return 0.0;
     }

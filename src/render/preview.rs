@@ -1,15 +1,17 @@
-//! Previews of a render under way: `denoise` on its own outputs, which nobody has to ask for.
+//! Previews of a render in progress: runs `denoise` on the render's own outputs and adds the guide images it needs.
 
+use super::aov::Aov;
 use super::denoise::{self, Input};
 use super::film::Canvas;
-use super::{Aov, Film, Params};
+use super::output::Film;
+use super::params::Params;
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 
-/// What guides the filter.
+/// Guide images of the filter.
 const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
 
-/// The parameters of a render that also makes what the filter needs, behind the outputs that were asked for.
+/// The parameters of a render with the guide images of the filter behind the requested outputs.
 pub fn guided(params: &Params) -> Params {
     let mut guided = params.clone();
     if params.preview > 0.0 {
@@ -19,8 +21,8 @@ pub fn guided(params: &Params) -> Params {
     guided
 }
 
-/// Adds the preview to a film made with [`guided`] parameters, and leaves the outputs that were asked for.
-pub fn finish(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) -> Result<()> {
+/// Adds the preview to a film of [`guided`] parameters, and removes the guide images that were not requested.
+pub fn add_preview(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) -> Result<()> {
     if params.preview > 0.0 {
         let guide = |aov: Aov| {
             let layer = film.layers.iter().find(|l| l.expression.is_none() && l.name == aov.name());

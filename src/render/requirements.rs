@@ -1,59 +1,59 @@
-//! What a scene requires of the renderer, found out before the first ray: which ways of scattering can occur, which
-//! lights there are, and how much light a bounce can leave.
+//! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and how much light
+//! a bounce can leave.
 //!
-//! Ranges are those of the factors and of the texels they multiply; only materials of meshes with triangles count. What
-//! cannot occur is not asked for while tracing: this changes no estimate. How many bounces matter is told, and applied only
-//! to renders that ask for it (`bounce_error`): otherwise paths end by chance alone.
+//! Values range over the material factors times the texels of their textures; only materials of meshes with triangles
+//! count. Tracing skips whatever cannot occur, which changes no estimate. The number of bounces that matter is
+//! reported, but limits only renders that set `bounce_error`; other paths end by Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
-use super::finish::{self, Finish};
+use super::compiled_material::{self, CompiledMaterial};
 use super::ggx::{self, AlbedoTable};
 use crate::scene::{AlphaMode, Environment, Material, PunctualLight, Scene, TextureRef};
 use glam::{Vec3, Vec4};
 
-/// What can happen to light in a scene.
+/// The shading features that a scene requires.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Requirements {
-    /// Ways of scattering that can occur.
+    /// Kinds of scattering that can occur.
     pub diffuse: bool,
     pub glossy: bool,
     pub mirror: bool,
     /// Clear panes.
     pub glass: bool,
-    /// Surfaces that are partly not there.
+    /// Surfaces with an opacity below 1.
     pub alpha: bool,
     pub normal_maps: bool,
-    /// Lights that can shine.
+    /// Kinds of lights that can emit.
     pub surfaces: bool,
     pub textured_surfaces: bool,
     pub points: bool,
     pub spots: bool,
     pub directional: bool,
     pub environment: bool,
-    /// Textures that vary what surfaces scatter or emit, of how many in the scene.
+    /// Number of textures that affect scattering or emission, and number of textures in the scene.
     pub textures: usize,
     pub textures_given: usize,
-    /// The most any surface sends on of the light it receives, per channel: diffuse, glossy, and straight through.
+    /// Upper bound of the albedo of all surfaces, per channel: diffuse, glossy and transmitted light together.
     pub albedo: Vec3,
-    /// The material that sends on that much.
+    /// The material of the largest albedo.
     pub brightest: Option<usize>,
-    /// Triangles without an area, which no ray can meet.
+    /// Number of degenerate triangles, which no ray can hit.
     pub flat_triangles: usize,
-    /// Meshes that are closed and transparent, and the first of them: glass that bends light, which is not modelled.
+    /// Number of closed transparent meshes, and the first of them: refraction in solids is not modelled.
     pub solids: usize,
     pub first_solid: Option<usize>,
-    /// A material that is transparent and rough: glass that scatters light, which is not modelled.
+    /// A transparent and rough material: frosted glass is not modelled.
     pub frosted: Option<usize>,
 }
 
 impl Requirements {
-    /// How many times light can scatter and still matter: light scattered more often is at most the share `error` of all
-    /// light that surfaces scatter. None where albedos set no bound, or `error` is not positive.
+    /// The number of bounces after which the remaining light is at most the share `error` of all scattered light.
+    /// `None` if the albedos set no bound or `error` is not positive.
     ///
-    /// No surface sends on more than the share `a` (the largest of `albedo`), so each bounce carries at most `a` times
-    /// the flux of the one before it, in closed scenes and all the more in open ones. The sum over more than `n` bounces
-    /// is then largest beside the whole when all ratios are `a`: a^n of it. This holds for the flux in the scene, and for
-    /// images that show an average part of it; a pixel that only sees light of many bounces may miss more.
+    /// No surface reflects or transmits more than the share `a`, the largest channel of `albedo`. Each bounce carries
+    /// at most `a` times the flux of the previous one; less in open scenes. The relative sum over more than `n` bounces
+    /// is largest if all ratios equal `a`: it is then a^n. This bounds the flux in the scene, and images of an average
+    /// part of it; a pixel that only shows light of many bounces may miss more.
     pub fn bounces(&self, error: f32) -> Option<u32> {
         let a = f64::from(self.albedo.max_element());
         if !(error > 0.0 && a < 1.0) {
@@ -65,7 +65,7 @@ impl Requirements {
         Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
     }
 
-    /// What tracing leaves out, one sentence each.
+    /// The omissions of tracing, one sentence each.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {
@@ -108,7 +108,7 @@ impl Requirements {
     }
 }
 
-/// Least and largest values, per channel.
+/// Smallest and largest values per channel.
 #[derive(Clone, Copy)]
 struct Range {
     low: Vec4,
@@ -123,79 +123,109 @@ impl Range {
     }
 }
 
-/// Looks at all of a scene whose indices have been checked; gives its requirements and how to look at each material.
-pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<Finish>) {
+/// Analyses a validated scene; returns its requirements and its compiled materials.
+pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
     let mut used = vec![false; scene.materials.len()];
     scene.meshes.iter().filter(|m| !m.triangles.is_empty()).for_each(|m| used[m.material] = true);
     let mut needed = Requirements { textures_given: scene.textures.len(), ..Requirements::default() };
     let mut varied = vec![false; scene.textures.len()];
-    let mut finishes = Vec::with_capacity(scene.materials.len());
+    let mut compiled_materials = Vec::with_capacity(scene.materials.len());
     for (index, material) in scene.materials.iter().enumerate() {
         let base = range(&material.base_color_texture);
         let layers = range(&material.metallic_roughness_texture);
-        let emission = range(&material.emission_texture);
-        let finish = finish_of(material, base, layers, range(&material.normal_texture));
-        finishes.push(finish);
-        if !used[index] {
-            continue;
-        }
-        needed.alpha |= finish.partial;
-        needed.normal_maps |= finish.bumpy;
-        for substance in extremes(material, base, layers) {
-            needed.see(&substance);
-            if substance.transmission != Vec3::ZERO && substance.roughness >= MIRROR_ROUGHNESS {
-                needed.frosted.get_or_insert(index);
-            }
-            let albedo = albedo_bound(&substance, table);
-            if needed.brightest.is_none() || albedo.max_element() > needed.albedo.max_element() {
-                needed.brightest = Some(index);
-            }
-            needed.albedo = needed.albedo.max(albedo);
-        }
-        if (material.emission * emission.high.truncate()).max_element() > 0.0 {
-            needed.surfaces = true;
-            needed.textured_surfaces |= !emission.is_constant();
-        }
-        for (texture, counts) in [
-            (&material.base_color_texture, finish.varies || finish.partial),
-            (&material.metallic_roughness_texture, finish.varies),
-            (&material.normal_texture, finish.bumpy),
-            (&material.emission_texture, material.emission.max_element() > 0.0),
-        ] {
-            if let Some(t) = texture {
-                varied[t.texture] |= counts && !ranges[t.texture].is_constant();
-            }
-        }
-    }
-    for (index, mesh) in scene.meshes.iter().enumerate() {
-        let material = &scene.materials[mesh.material];
-        if material.transmission > 0.0 && material.metallic < 1.0 && mesh.is_closed() {
-            needed.solids += 1;
-            needed.first_solid.get_or_insert(index);
+        let compiled = compile_material(material, base, layers, range(&material.normal_texture));
+        compiled_materials.push(compiled);
+        if used[index] {
+            needed.include_material(index, &compiled, extremes(material, base, layers), table);
+            needed.include_emission(material, range(&material.emission_texture));
+            mark_varied_textures(material, &compiled, &ranges, &mut varied);
         }
     }
     needed.textures = varied.iter().filter(|&&v| v).count();
-    for light in &scene.lights {
-        let (kind, strength) = match light {
-            PunctualLight::Point { intensity, .. } => (&mut needed.points, intensity),
-            PunctualLight::Spot { intensity, .. } => (&mut needed.spots, intensity),
-            PunctualLight::Directional { illuminance, .. } => (&mut needed.directional, illuminance),
-            PunctualLight::Luminaire { colour, .. } => (&mut needed.points, colour),
-        };
-        *kind |= strength.max_element() > 0.0;
+    needed.include_solids(scene);
+    needed.include_lights(scene);
+    (needed, compiled_materials)
+}
+
+/// Marks the textures of a material that affect its scattering or its emission.
+fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges: &[Range], varied: &mut [bool]) {
+    for (texture, counts) in [
+        (&material.base_color_texture, compiled.is_textured || compiled.has_alpha),
+        (&material.metallic_roughness_texture, compiled.is_textured),
+        (&material.normal_texture, compiled.has_normal_map),
+        (&material.emission_texture, material.emission.max_element() > 0.0),
+    ] {
+        if let Some(t) = texture {
+            varied[t.texture] |= counts && !ranges[t.texture].is_constant();
+        }
     }
-    needed.environment = match &scene.environment {
-        None => false,
-        Some(Environment::Constant(radiance)) => radiance.max_element() > 0.0,
-        Some(Environment::Image(image)) => range_of(image).high.truncate().max_element() > 0.0,
-    };
-    (needed, finishes)
 }
 
 impl Requirements {
-    fn see(&mut self, s: &Substance) {
+    /// Adds the kinds of scattering and the albedo of a material with these extreme parameter sets.
+    fn include_material(
+        &mut self,
+        index: usize,
+        compiled: &CompiledMaterial,
+        extremes: impl Iterator<Item = Substance>,
+        table: Option<&AlbedoTable>,
+    ) {
+        self.alpha |= compiled.has_alpha;
+        self.normal_maps |= compiled.has_normal_map;
+        for substance in extremes {
+            self.include(&substance);
+            if substance.transmission != Vec3::ZERO && substance.roughness >= MIRROR_ROUGHNESS {
+                self.frosted.get_or_insert(index);
+            }
+            let albedo = albedo_bound(&substance, table);
+            if self.brightest.is_none() || albedo.max_element() > self.albedo.max_element() {
+                self.brightest = Some(index);
+            }
+            self.albedo = self.albedo.max(albedo);
+        }
+    }
+
+    /// Adds the emission of a material with an emission texture of this range.
+    fn include_emission(&mut self, material: &Material, emission: Range) {
+        if (material.emission * emission.high.truncate()).max_element() > 0.0 {
+            self.surfaces = true;
+            self.textured_surfaces |= !emission.is_constant();
+        }
+    }
+
+    /// Counts the closed transparent meshes.
+    fn include_solids(&mut self, scene: &Scene) {
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            let material = &scene.materials[mesh.material];
+            if material.transmission > 0.0 && material.metallic < 1.0 && mesh.is_closed() {
+                self.solids += 1;
+                self.first_solid.get_or_insert(index);
+            }
+        }
+    }
+
+    /// Adds the punctual lights and the environment.
+    fn include_lights(&mut self, scene: &Scene) {
+        for light in &scene.lights {
+            let (kind, strength) = match light {
+                PunctualLight::Point { intensity, .. } => (&mut self.points, intensity),
+                PunctualLight::Spot { intensity, .. } => (&mut self.spots, intensity),
+                PunctualLight::Directional { illuminance, .. } => (&mut self.directional, illuminance),
+                PunctualLight::Luminaire { colour, .. } => (&mut self.points, colour),
+            };
+            *kind |= strength.max_element() > 0.0;
+        }
+        self.environment = match &scene.environment {
+            None => false,
+            Some(Environment::Constant(radiance)) => radiance.max_element() > 0.0,
+            Some(Environment::Image(image)) => range_of(image).high.truncate().max_element() > 0.0,
+        };
+    }
+
+    /// Adds the kinds of scattering of a parameter set.
+    fn include(&mut self, s: &Substance) {
         self.diffuse |= s.diffuse != Vec3::ZERO;
         self.glass |= s.transmission != Vec3::ZERO;
         self.mirror |= s.f90 > 0.0 && s.roughness < MIRROR_ROUGHNESS;
@@ -217,31 +247,31 @@ fn range_of(image: &crate::image::Image) -> Range {
     Range { low, high }
 }
 
-fn finish_of(material: &Material, base: Range, layers: Range, normals: Range) -> Finish {
-    let least = (material.alpha * base.low.w).min(material.alpha * base.high.w);
-    let partial = match material.alpha_mode {
+fn compile_material(material: &Material, base: Range, layers: Range, normals: Range) -> CompiledMaterial {
+    let min_alpha = (material.alpha * base.low.w).min(material.alpha * base.high.w);
+    let has_alpha = match material.alpha_mode {
         AlphaMode::Opaque => false,
-        AlphaMode::Mask(cutoff) => least < cutoff,
-        AlphaMode::Blend => least < 1.0,
+        AlphaMode::Mask(cutoff) => min_alpha < cutoff,
+        AlphaMode::Blend => min_alpha < 1.0,
     };
-    // A neutral map has x and y of 1/2, which mean 0, and a positive z.
+    // A neutral normal map has x and y of 1/2, which mean 0, and a positive z.
     let bends = (normals.low.truncate() * 2.0 - 1.0).abs().max((normals.high.truncate() * 2.0 - 1.0).abs());
     let is_neutral = (bends * material.normal_scale).truncate().max_element() == 0.0 && normals.low.z > 0.5;
     let base_varies = base.low.truncate() != base.high.truncate();
     let layers_vary = (layers.low.y, layers.low.z) != (layers.high.y, layers.high.z);
     let colour = material.base_color * base.high.truncate();
     let (metallic, roughness) = (material.metallic * layers.high.z, material.roughness * layers.high.y);
-    Finish {
-        substance: finish::substance(material, colour, metallic, roughness),
-        varies: base_varies || layers_vary,
+    CompiledMaterial {
+        substance: compiled_material::substance(material, colour, metallic, roughness),
+        is_textured: base_varies || layers_vary,
         layered: extremes(material, base, layers).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
-        bumpy: material.normal_texture.is_some() && !is_neutral,
-        partial,
-        see_through: partial || material.transmission > 0.0,
+        has_normal_map: material.normal_texture.is_some() && !is_neutral,
+        has_alpha,
+        lets_light_through: has_alpha || material.transmission > 0.0,
     }
 }
 
-/// The substances between which a material lies: all it does is linear or monotone in between.
+/// Extreme parameter sets of a material: everything in between is linear or monotone.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
@@ -250,11 +280,12 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     let colour = (material.base_color * base.low.truncate()).max(material.base_color * base.high.truncate());
     let metallic = ends(material.metallic, layers.low.z, layers.high.z);
     let roughness = ends(material.roughness, layers.low.y, layers.high.y);
-    metallic.into_iter().flat_map(move |m| roughness.map(|r| finish::substance(material, colour, m, r)))
+    metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::substance(material, colour, m, r)))
 }
 
-/// The largest share of light a substance sends on, over all directions.
+/// Upper bound of the albedo of a parameter set over all directions.
 fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
+    // Number of cosines at which the albedo is evaluated. [judged, not recorded]
     const STEPS: usize = 64;
     let mut bound = Vec3::ZERO;
     for i in 0..=STEPS {

@@ -1,21 +1,21 @@
 //! Owen-scrambled Sobol' points (Burley 2020, "Practical hash-based Owen scrambling"), four dimensions at a time.
 //!
-//! A path draws its numbers in blocks of four, which are one four-dimensional Sobol' point; successive blocks are padded,
-//! that is, the same sequence shuffled and scrambled anew. So every 2^k samples of a pixel are stratified in each block.
-//! A block goes to numbers that act together: a direction, and the light chosen where it leads.
+//! A path draws its numbers in blocks of four: each block is one four-dimensional Sobol' point. Successive blocks are
+//! padded: they shuffle and scramble the same sequence anew. Within each block, every 2^k samples of a pixel are
+//! stratified. A block serves numbers that act together, such as a direction and the light sample at the next vertex.
 
 use crate::rng;
 
-/// The numbers of one path.
+/// The random numbers of one path.
 #[derive(Clone)]
 pub struct Sampler {
-    /// The path's number among those of its seed, its bits in reverse.
+    /// Index of the path within its seed, with reversed bits.
     index: u32,
     seed: u64,
     block: u64,
 }
 
-/// Four numbers of 32 random bits.
+/// Four random numbers of 32 bits.
 #[derive(Clone, Copy)]
 pub struct Block([u32; 4]);
 
@@ -23,11 +23,11 @@ impl Block {
     /// Uniform in `[0, 1)`.
     #[inline]
     pub fn get(&self, dimension: usize) -> f32 {
-        // Signed conversions are one instruction; 24 bits have no sign.
+        // Convert as a signed integer, which is one instruction; 24 bits never set the sign.
         (self.0[dimension] >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32)
     }
 
-    /// The same with all 32 bits, for choices among very many.
+    /// Uniform in `[0, 1)` with all 32 bits, for choices among very many entries.
     #[inline]
     pub fn fine(&self, dimension: usize) -> f64 {
         f64::from(self.0[dimension]) * (1.0 / 4_294_967_296.0)
@@ -35,7 +35,7 @@ impl Block {
 }
 
 impl Sampler {
-    /// The path of number `index` among those that share `seed`.
+    /// The path of index `index` within a seed.
     #[inline]
     pub fn new(seed: u64, index: u32) -> Self {
         Self { index: index.reverse_bits(), seed: rng::mix(seed), block: 0 }
@@ -44,7 +44,8 @@ impl Sampler {
     /// The next four dimensions.
     #[inline]
     pub fn next(&mut self) -> Block {
-        // One stream of hashes per seed (Steele et al. 2014): half of each for the order, half for the dimensions.
+        // Draw one hash per block (Steele et al. 2014): half of its bits shuffle, the other half scramble the
+        // dimensions.
         self.block = self.block.wrapping_add(1);
         let hash = rng::mix(self.seed.wrapping_add(self.block.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
         let point = self.point(scramble(self.index, hash as u32));
@@ -52,13 +53,14 @@ impl Sampler {
         Block(std::array::from_fn(|d| scramble(point[d], seed(d as u32)).reverse_bits()))
     }
 
-    /// The first four dimensions of the Sobol' sequence, the bits of the index taken eight at a time; all bits in reverse.
+    /// The first four dimensions of the Sobol' sequence, with eight bits of the index at a time; indices and results
+    /// have reversed bits.
     #[inline]
     fn point(&self, index: u32) -> [u32; 4] {
         let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
         let low = row(3);
-        // Up to 256 paths to a seed, scrambling changes their higher bits alike, and so the points: as the next scrambling
-        // does anyway.
+        // Indices below 256 differ only in their low eight bits. Shuffling flips their higher bits alike, which XORs
+        // all points with one constant, and so does the scrambling of the points.
         if self.index & 0x00ff_ffff == 0 {
             return *low;
         }
@@ -66,21 +68,21 @@ impl Sampler {
         std::array::from_fn(|i| low[i] ^ a[i] ^ b[i] ^ c[i])
     }
 
-    /// A number that belongs to this path and this point of it, for decisions that need no stratification.
+    /// A hash of the path and its current block, for decisions that need no stratification.
     #[inline]
     pub fn ray_seed(&self) -> u64 {
         rng::mix(self.seed ^ (self.block << 32 | u64::from(self.index)))
     }
 
-    /// Uniform in `[0, 1)` and, unlike the numbers of blocks, independent of those of all other paths: for decisions that
-    /// heed what other paths have brought, which would be biased if those paths told anything of the number.
+    /// Uniform in `[0, 1)` and, unlike the numbers of blocks, independent of the numbers of all other paths. Decisions
+    /// that depend on the results of other paths (Russian roulette) must use it: stratified numbers would bias them.
     #[inline]
     pub fn chance(&self) -> f32 {
         (self.ray_seed() >> 40) as f32 * (1.0 / (1u32 << 24) as f32)
     }
 }
 
-/// Mixes 32 bits so that every input bit reaches every output bit (Wellons 2018, "lowbias32").
+/// Mixes 32 bits so that every input bit affects every output bit (Wellons 2018, "lowbias32").
 #[inline]
 fn mix(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
@@ -88,8 +90,8 @@ fn mix(mut x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Nested uniform scrambling: each bit is flipped by a hash of the bits above it (Laine and Karras 2011, with the
-/// constants of Vegdahl 2021). Bits are in reverse, before and after: carries run from the high bits to the low.
+/// Nested uniform scrambling: flips each bit by a hash of the bits above it (Laine and Karras 2011, with the constants
+/// of Vegdahl 2021). Input and output have reversed bits: carries run from the high bits to the low.
 #[inline]
 fn scramble(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -99,7 +101,7 @@ fn scramble(mut x: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x53a2_2864)
 }
 
-/// What each byte of an index adds to a point, for indices and points whose bits are in reverse.
+/// The contribution of each byte of an index to a point; indices and points have reversed bits.
 static SOBOL: [[[u32; 4]; 256]; 4] = sobol_tables();
 
 const fn sobol_tables() -> [[[u32; 4]; 256]; 4] {
@@ -176,7 +178,8 @@ mod tests {
                 points.iter().for_each(|p| strata[(p.get(d) * 256.0) as usize] += 1);
                 assert!(strata.iter().all(|&c| c == 1), "dimension {d}");
             }
-            // The first two dimensions are a (0, 2)-sequence: every elementary box of area 1/256 holds one point.
+            // The first two dimensions form a (0, 2)-sequence: every elementary interval of area 1/256 contains one
+            // point.
             for log in 0..=8 {
                 let (nx, ny) = (1usize << log, 256usize >> log);
                 let mut boxes = vec![0; 256];

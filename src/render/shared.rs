@@ -1,66 +1,68 @@
-//! Paths of neighbouring pixels, which share what they find behind the first surfaces they meet.
+//! Path reuse among neighbouring pixels: the paths of a block share their secondary vertices.
 //!
-//! What a path comes to from there sends light to the neighbours as well, and one more ray tells whether they see it. Each
-//! such point is weighed as if it had been drawn from the mean of the densities with which all that see it could have drawn
-//! it (the balance heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by
-//! re-using paths"). So no estimate is biased, and a pixel has the indirect light of as many points as there are pixels, for
-//! little more than a ray each. What it costs is that the errors of those pixels are alike.
+//! A secondary vertex also lights the primary vertices of the neighbours, and one more ray per neighbour tests its
+//! visibility. It is weighed as a sample of the mean of the pdfs of all primary vertices that see it (the balance
+//! heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by re-using paths").
+//! Estimates remain unbiased, and a pixel gets the indirect light of as many vertices as the block has pixels, for
+//! little more than one ray each. In return, the errors of these pixels are correlated.
 //!
-//! Only surfaces that spread light take part, at both ends: a mirror sends to each pixel something else. All others'
-//! paths go on alone.
+//! Primary and secondary vertices must be non-specular: a mirror reflects something else to each pixel. Paths with
+//! other vertices are traced alone.
 
-use super::bsdf::{Bsdf, Kind, Lobes};
+use super::bsdf::{Bsdf, Lobes, ScatterKind};
 use super::light::{LightSample, Receiver};
-use super::path::{self, Found, Leg, Length, Observer, Seen};
+use super::path::{self, Leg, Observer, PathLength, PrimaryHit, Strategy};
 use super::sampler::Sampler;
 use super::vertex::{Surface, Vertex};
 use super::world::{Pane, World};
 use crate::scene::accel::Ray;
 use glam::Vec3;
 
-/// Most paths that share.
-pub const MOST: usize = 8;
+/// Largest number of paths that share vertices. [judged, not recorded]
+pub const MAX_SHARED: usize = 8;
 
-/// An observer of several paths that begin with the same first leg.
-pub trait Witness: Observer {
+/// An observer of several paths that have the same first segment.
+pub trait ReplayObserver: Observer {
     type Tape: Tape;
 
-    /// Goes back to the eye, from where the path leaves on another way. What it has brought stays.
+    /// Returns to the eye, to leave it along another path. Contributions so far are kept.
     fn restart(&mut self);
 
-    /// Before the light chosen for a vertex stand these panes.
+    /// Receives the panes between a vertex and its light sample.
     fn take_panes(&mut self, _panes: &[Pane]) {}
 
-    /// The path goes on as the one on a tape, with this importance when it sets out on it.
+    /// Continues the path along a recorded subpath, with this importance at its start.
     fn replay(&mut self, tape: &Self::Tape, importance: Vec3);
 
-    /// The same after going back to the eye and on from the first surface, of a mesh, whose lobes send this much on.
+    /// Returns to the eye, scatters at the primary vertex (of a mesh, with these lobes), and continues along a recorded
+    /// subpath with this importance at its start.
     fn replay_from(&mut self, mesh: u32, lobes: Lobes, tape: &Self::Tape, importance: Vec3);
 }
 
-/// What happens to a path from some vertex on, to be told to several witnesses.
+/// Records a subpath from a vertex on, to replay it to several observers.
 pub trait Tape: Observer {
-    /// Those who will be told come off surfaces of these meshes, which have a layer on the diffuse one or not.
+    /// Announces the primary vertices whose observers will replay the tape: the mesh of each, and whether its BSDF has
+    /// layers besides the diffuse one.
     fn expect(&mut self, _viewers: impl Iterator<Item = (u32, bool)>) {}
 
-    /// Begins anew, at a point that they see.
+    /// Starts a new recording at a secondary vertex.
     fn begin(&mut self);
 
-    /// Begins anew behind such a point, which is of a mesh.
+    /// Starts a new recording behind a secondary vertex of a mesh.
     fn begin_behind(&mut self, _mesh: u32) {
         self.begin();
     }
 
-    /// Ends; whether there is light to tell of.
+    /// Ends the recording; returns whether it has any light.
     fn end(&mut self) -> bool;
 }
 
-/// Scratch memory for what there is to tell of a point.
+/// Scratch memory for the recording of a secondary vertex.
 #[derive(Default)]
 pub struct Scratch<T> {
-    /// The path from there on; where it sends to each what is theirs, the path beyond it.
+    /// The subpath from the vertex on; behind the vertex, if its light depends on the viewer.
     tape: T,
-    /// The panes before the light chosen for it.
+    /// The panes between the vertex and its light sample.
     panes: Vec<Pane>,
 }
 
@@ -74,290 +76,332 @@ impl<T> Scratch<T> {
 pub struct Start {
     /// Of unit direction.
     pub ray: Ray,
-    /// Chooses the light for the first surface, as a point of the unit square.
-    pub lighting: (f64, f32),
-    pub length: Length,
+    /// Uniform in the unit square: selects the light sample at the primary vertex.
+    pub light_u: (f64, f32),
+    pub length: PathLength,
     pub sampler: Sampler,
 }
 
-/// The first surface a path meets, where it takes part.
-struct Sight<'w> {
+/// The primary vertex of a path that takes part in sharing.
+struct PrimaryVertex<'w> {
     vertex: Vertex,
     bsdf: Bsdf<'w>,
-    /// What light from the surfaces it sees is worth, as [`Length::worth`] has it.
-    worth: Vec3,
-    departure: Option<Departure>,
+    /// Roulette weight of light from the secondary vertices: see [`PathLength::roulette_weight`].
+    roulette_weight: Vec3,
+    continuation: Option<Continuation>,
 }
 
-/// Where a path goes from there.
-struct Departure {
+/// The BSDF sample at a primary vertex.
+struct Continuation {
     direction: Vec3,
     lobes: Lobes,
-    density: f32,
+    pdf: f32,
     leg: Leg,
 }
 
-/// A point that a path has come to from there, and the light it has for all that see it.
-struct Find<'w> {
+/// A secondary vertex and its outgoing light, for every primary vertex that sees it.
+struct SecondaryVertex<'w> {
     vertex: Vertex,
-    light: Light<'w>,
+    light: SecondaryLight<'w>,
 }
 
-enum Light<'w> {
-    /// It sends the same to all.
-    Alike,
-    /// What it sends depends on who sees it.
-    Turned {
+enum SecondaryLight<'w> {
+    /// The same radiance in all directions.
+    ViewIndependent,
+    /// Radiance that depends on the direction of the viewer.
+    ViewDependent {
         surface: Surface<'w>,
-        /// A light, and what its emission counts for before it is scattered.
-        chosen: Option<(LightSample, Vec3)>,
-        /// Direction and density with which the path goes on.
-        beyond: Option<(Vec3, f32)>,
+        /// A light sample and its weight without the BSDF ([`path::connection_weight`]).
+        light_sample: Option<(LightSample, Vec3)>,
+        /// Direction and solid-angle pdf of the BSDF sample behind the vertex.
+        continuation: Option<(Vec3, f32)>,
     },
 }
 
-/// One who sees it.
+/// A primary vertex that sees a secondary vertex.
 #[derive(Clone, Copy)]
 struct Viewer {
     number: usize,
-    /// Towards the find.
+    /// Towards the secondary vertex.
     direction: Vec3,
     lobes: Lobes,
-    /// Density per steradian with which it could have found it.
-    density: f32,
-    /// Steradians it has of a square metre there.
-    angle: f32,
+    /// Solid-angle pdf with which its BSDF samples that direction.
+    pdf: f32,
+    /// Factor from solid angle to area at the secondary vertex: cosine / squared distance.
+    solid_angle_per_area: f32,
 }
 
-/// Makes one estimate of the radiance along each of some rays. Each witness is told of its own.
-pub fn trace<W: Witness>(world: &World, starts: &mut [Start], witnesses: &mut [W], scratch: &mut Scratch<W::Tape>) {
-    let mut sights: [Option<Sight>; MOST] = [const { None }; MOST];
-    for ((sight, start), witness) in sights.iter_mut().zip(&mut *starts).zip(&mut *witnesses) {
-        *sight = look(world, start, witness);
+/// Estimates the radiance along several rays with one path each. Each observer receives the light of its own ray.
+pub fn trace<W: ReplayObserver>(
+    world: &World,
+    starts: &mut [Start],
+    observers: &mut [W],
+    scratch: &mut Scratch<W::Tape>,
+) {
+    let mut primaries: [Option<PrimaryVertex>; MAX_SHARED] = [const { None }; MAX_SHARED];
+    for ((primary, start), observer) in primaries.iter_mut().zip(&mut *starts).zip(&mut *observers) {
+        *primary = trace_primary(world, start, observer);
     }
-    // Light that any of them may see must not be given up because it means little to one.
-    let worth = sights.iter().flatten().map(|s| s.worth).fold(Vec3::ZERO, Vec3::max);
-    scratch.tape.expect(sights.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
+    // Use the largest roulette weight of the block: light that matters to any of its pixels must survive.
+    let roulette_weight = primaries.iter().flatten().map(|s| s.roulette_weight).fold(Vec3::ZERO, Vec3::max);
+    scratch.tape.expect(primaries.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {
-        let departure = sights[number].as_mut().and_then(|s| s.departure.take());
-        if let (Some(sight), Some(departure)) = (&sights[number], &departure)
-            && let Some(find) =
-                find(world, sight, departure, worth, &mut starts[number], &mut witnesses[number], scratch)
+        let continuation = primaries[number].as_mut().and_then(|s| s.continuation.take());
+        if let (Some(primary), Some(continuation)) = (&primaries[number], &continuation)
+            && let Some(secondary) = trace_secondary(
+                world,
+                primary,
+                continuation,
+                roulette_weight,
+                &mut starts[number],
+                &mut observers[number],
+                scratch,
+            )
         {
-            let viewers = Viewers::of(world, &find, number, departure, &sights);
-            viewers.tell(&find, &sights, witnesses, scratch);
+            let viewers = Viewers::of(world, &secondary, number, continuation, &primaries);
+            viewers.replay(&secondary, &primaries, observers, scratch);
         }
     }
 }
 
-/// Follows a path to the first surface; one that takes no part to its end.
-fn look<'w, W: Witness>(world: &'w World, start: &mut Start, witness: &mut W) -> Option<Sight<'w>> {
-    let Start { ray, lighting, length, sampler } = start;
-    let leg = Leg::from_eye(*ray, *lighting);
-    let (vertex, distance) = path::arrive(world, &leg, sampler, witness)?;
-    if length.most == 0 {
+/// Traces a path to its primary vertex, or to its end if that vertex cannot share.
+fn trace_primary<'w, W: ReplayObserver>(
+    world: &'w World,
+    start: &mut Start,
+    observer: &mut W,
+) -> Option<PrimaryVertex<'w>> {
+    let Start { ray, light_u, length, sampler } = start;
+    let leg = Leg::from_eye(*ray, *light_u);
+    let (vertex, distance) = path::intersect(world, &leg, sampler, observer)?;
+    if length.max_bounces == 0 {
         return None;
     }
     let bsdf = vertex.bsdf(world, -leg.ray.direction);
     if !bsdf.is_shareable() {
-        if let Some(next) = path::go_on(world, &leg, &vertex, distance, 0, length, sampler, witness) {
-            path::walk(world, next, 1, *length, sampler, witness);
+        if let Some(next) = path::continue_path(world, &leg, &vertex, distance, 0, length, sampler, observer) {
+            path::walk(world, next, 1, *length, sampler, observer);
         }
         return None;
     }
-    witness.meet(|| Seen::new(&vertex, &bsdf, distance));
+    observer.primary_hit(|| PrimaryHit::new(&vertex, &bsdf, distance));
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    if let Some(light) = path::choose_light(world, &receiver, &bsdf, leg.lighting) {
-        path::add_light(world, &vertex, &bsdf, Vec3::ONE, &light, witness);
+    if let Some(light) = path::sample_light(world, &receiver, &bsdf, leg.light_u) {
+        path::add_direct_light(world, &vertex, &bsdf, Vec3::ONE, &light, observer);
     }
-    let departure = path::choose_direction(&bsdf, sampler).and_then(|(scattered, lighting)| {
-        let Kind::Spread(density) = scattered.kind else { return None };
+    let continuation = path::sample_direction(&bsdf, sampler).and_then(|(scattered, light_u)| {
+        let ScatterKind::NonSpecular(pdf) = scattered.kind else { return None };
         let (direction, throughput) = (scattered.direction, scattered.weight);
-        let rival = Some((receiver, density));
-        let leg = Leg { ray: vertex.ray(direction), from: vertex.id, throughput, rival, lighting };
+        let mis = Some((receiver, pdf));
+        let leg = Leg { ray: vertex.ray(direction), from: vertex.id, throughput, mis, light_u };
         let brings = throughput.is_finite() && throughput != Vec3::ZERO;
-        brings.then_some(Departure { direction, lobes: scattered.lobes, density, leg })
+        brings.then_some(Continuation { direction, lobes: scattered.lobes, pdf, leg })
     });
     let colour = bsdf.colour();
-    let worth = colour * *length.worth.get_or_insert_with(|| path::reciprocal(colour));
-    Some(Sight { vertex, bsdf, worth, departure })
+    let roulette_weight = colour * *length.roulette_weight.get_or_insert_with(|| path::reciprocal(colour));
+    Some(PrimaryVertex { vertex, bsdf, roulette_weight, continuation })
 }
 
-/// Follows a path on to what it finds next. What is its own alone the witness is told of: light it meets there, and all
-/// that comes of a point that takes no part.
-fn find<'w, W: Witness>(
+/// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary surface,
+/// and all light of a secondary vertex that cannot be shared.
+fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
-    sight: &Sight,
-    departure: &Departure,
-    worth: Vec3,
+    primary: &PrimaryVertex,
+    continuation: &Continuation,
+    roulette_weight: Vec3,
     start: &mut Start,
-    witness: &mut W,
+    observer: &mut W,
     scratch: &mut Scratch<W::Tape>,
-) -> Option<Find<'w>> {
-    let Departure { direction, lobes, density, leg } = departure;
+) -> Option<SecondaryVertex<'w>> {
+    let Continuation { direction, lobes, pdf, leg } = continuation;
     let Start { length, sampler, .. } = start;
-    witness.restart();
-    witness.scatter(sight.vertex.mesh, Kind::Spread(*density), *lobes);
-    let (vertex, distance) = path::arrive(world, leg, sampler, witness)?;
-    if length.most == 1 {
+    observer.restart();
+    observer.scatter(primary.vertex.mesh, ScatterKind::NonSpecular(*pdf), *lobes);
+    let (vertex, distance) = path::intersect(world, leg, sampler, observer)?;
+    if length.max_bounces == 1 {
         return None;
     }
     let surface = vertex.surface(world);
     let bsdf = surface.seen_from(-*direction);
-    if !bsdf.is_shareable() || !sees_for_sure(world, sight, &vertex) {
-        if let Some(next) = path::go_on(world, leg, &vertex, distance, 1, length, sampler, witness) {
-            path::walk(world, next, 2, *length, sampler, witness);
+    if !bsdf.is_shareable() || !is_surely_visible(world, primary, &vertex) {
+        if let Some(next) = path::continue_path(world, leg, &vertex, distance, 1, length, sampler, observer) {
+            path::walk(world, next, 2, *length, sampler, observer);
         }
         return None;
     }
-    // The path from there on is told of as if it began there.
-    let length = Length { most: length.most, worth: Some(worth) };
-    let light = if bsdf.looks_alike() {
-        send_to_all(world, &vertex, &bsdf, leg.lighting, length, sampler, &mut scratch.tape)
+    // Record the subpath as if it began at the secondary vertex.
+    let length = PathLength { max_bounces: length.max_bounces, roulette_weight: Some(roulette_weight) };
+    let light = if bsdf.is_view_independent() {
+        record_view_independent(world, &vertex, &bsdf, leg.light_u, length, sampler, &mut scratch.tape)
     } else {
-        send_to_each(world, &vertex, surface, &bsdf, leg.lighting, length, sampler, scratch)
+        record_view_dependent(world, &vertex, surface, &bsdf, leg.light_u, length, sampler, scratch)
     };
-    light.map(|light| Find { vertex, light })
+    light.map(|light| SecondaryVertex { vertex, light })
 }
 
-/// The light of a find that sends the same to all.
-fn send_to_all<'w, T: Tape>(
+/// Records the light of a secondary vertex that sends the same radiance to all viewers.
+fn record_view_independent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
-    lighting: (f64, f32),
-    length: Length,
+    light_u: (f64, f32),
+    length: PathLength,
     sampler: &mut Sampler,
     tape: &mut T,
-) -> Option<Light<'w>> {
+) -> Option<SecondaryLight<'w>> {
     tape.begin();
-    if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, lighting, sampler, tape) {
+    if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, light_u, sampler, tape) {
         path::walk(world, next, 2, length, sampler, tape);
     }
-    tape.end().then_some(Light::Alike)
+    tape.end().then_some(SecondaryLight::ViewIndependent)
 }
 
-/// The light of a find that sends to each what is theirs.
-fn send_to_each<'w, T: Tape>(
+/// Records the light of a secondary vertex whose radiance depends on the viewer.
+fn record_view_dependent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
     surface: Surface<'w>,
     bsdf: &Bsdf,
-    lighting: (f64, f32),
-    length: Length,
+    light_u: (f64, f32),
+    length: PathLength,
     sampler: &mut Sampler,
     scratch: &mut Scratch<T>,
-) -> Option<Light<'w>> {
+) -> Option<SecondaryLight<'w>> {
     let Scratch { tape, panes } = scratch;
     tape.begin_behind(vertex.mesh);
     panes.clear();
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    let light = path::choose_light(world, &receiver, bsdf, lighting).filter(|l| l.emission != Vec3::ZERO);
-    let chosen = light.and_then(|light| {
-        let (lobes, density) = bsdf.eval(light.direction);
+    let light = path::sample_light(world, &receiver, bsdf, light_u).filter(|l| l.emission != Vec3::ZERO);
+    let light_sample = light.and_then(|light| {
+        let (lobes, pdf) = bsdf.eval(light.direction);
         if lobes.sum() == Vec3::ZERO {
             return None;
         }
-        let importance = path::reach(world, vertex, &light, density, Some(panes));
+        let importance = path::connection_weight(world, vertex, &light, pdf, Some(panes));
         (importance != Vec3::ZERO).then_some((light, importance))
     });
-    let beyond = path::choose_direction(bsdf, sampler).and_then(|(scattered, lighting)| {
-        let Kind::Spread(density) = scattered.kind else { return None };
+    let continuation = path::sample_direction(bsdf, sampler).and_then(|(scattered, light_u)| {
+        let ScatterKind::NonSpecular(pdf) = scattered.kind else { return None };
         let leg = Leg {
             ray: vertex.ray(scattered.direction),
             from: vertex.id,
             throughput: Vec3::ONE,
-            rival: Some((receiver, density)),
-            lighting,
+            mis: Some((receiver, pdf)),
+            light_u,
         };
-        let length = Length { worth: length.worth.map(|worth| worth * scattered.weight), ..length };
+        let length = PathLength {
+            roulette_weight: length.roulette_weight.map(|roulette_weight| roulette_weight * scattered.weight),
+            ..length
+        };
         path::walk(world, leg, 2, length, sampler, tape);
-        tape.end().then_some((scattered.direction, density))
+        tape.end().then_some((scattered.direction, pdf))
     });
-    let has_light = chosen.is_some() || beyond.is_some();
-    has_light.then_some(Light::Turned { surface, chosen, beyond })
+    let has_light = light_sample.is_some() || continuation.is_some();
+    has_light.then_some(SecondaryLight::ViewDependent { surface, light_sample, continuation })
 }
 
-/// Whether nothing stands between, not even what lets light pass: a path that came that way came by chance, or met it.
-fn sees(world: &World, from: &Vertex, to: &Vertex, direction: Vec3) -> bool {
+/// Whether the segment between two vertices is free of surfaces, transparent ones included: a path that passed one did
+/// so by chance, or scattered there.
+fn is_visible(world: &World, from: &Vertex, to: &Vertex, direction: Vec3) -> bool {
     let origin = from.off_surface(direction);
     let target = to.off_surface(-direction);
     world.is_clear(&Ray { origin, direction: target - origin, t_max: 1.0 }, [from.id, to.id])
 }
 
-/// The same of a point that was found from there: nothing is to be asked where all surfaces are solid.
-fn sees_for_sure(world: &World, sight: &Sight, found: &Vertex) -> bool {
-    let direction = found.position - sight.vertex.position;
-    !world.is_see_through() || sees(world, &sight.vertex, found, direction)
+/// Whether a secondary vertex is deterministically visible from its own primary vertex; always in scenes of opaque
+/// surfaces.
+fn is_surely_visible(world: &World, primary: &PrimaryVertex, secondary: &Vertex) -> bool {
+    let direction = secondary.position - primary.vertex.position;
+    !world.is_see_through() || is_visible(world, &primary.vertex, secondary, direction)
 }
 
-/// All that see a find.
+/// All primary vertices that see a secondary vertex.
 struct Viewers {
-    list: [Option<Viewer>; MOST],
-    /// Sum of their densities per square metre.
-    density: f32,
+    list: [Option<Viewer>; MAX_SHARED],
+    /// Sum of their area pdfs at the secondary vertex.
+    area_pdf: f32,
 }
 
 impl Viewers {
-    fn of(world: &World, find: &Find, finder: usize, departure: &Departure, sights: &[Option<Sight>; MOST]) -> Self {
-        let surface = &find.vertex;
-        let angle = |from: &Vertex, cosine: f32| cosine.abs() / from.position.distance_squared(surface.position);
-        let cosine = surface.normal.dot(departure.direction);
+    fn of(
+        world: &World,
+        secondary: &SecondaryVertex,
+        owner: usize,
+        continuation: &Continuation,
+        primaries: &[Option<PrimaryVertex>; MAX_SHARED],
+    ) -> Self {
+        let surface = &secondary.vertex;
+        let solid_angle_per_area =
+            |from: &Vertex, cosine: f32| cosine.abs() / from.position.distance_squared(surface.position);
+        let cosine = surface.normal.dot(continuation.direction);
         let list = std::array::from_fn(|number| {
-            let sight = sights[number].as_ref()?;
-            if number == finder {
-                let Departure { direction, lobes, density, .. } = *departure;
-                return Some(Viewer { number, direction, lobes, density, angle: angle(&sight.vertex, cosine) });
+            let primary = primaries[number].as_ref()?;
+            if number == owner {
+                let Continuation { direction, lobes, pdf, .. } = *continuation;
+                return Some(Viewer {
+                    number,
+                    direction,
+                    lobes,
+                    pdf,
+                    solid_angle_per_area: solid_angle_per_area(&primary.vertex, cosine),
+                });
             }
-            let direction = (surface.position - sight.vertex.position).normalize_or_zero();
+            let direction = (surface.position - primary.vertex.position).normalize_or_zero();
             let theirs = surface.normal.dot(direction);
-            // They must be on the same side of it.
+            // Both primary vertices must be on the same side of the surface.
             if !(theirs * cosine > 0.0) {
                 return None;
             }
-            let (lobes, density) = sight.bsdf.eval(direction);
-            let sees = density > 0.0 && sees(world, &sight.vertex, surface, direction);
-            sees.then_some(Viewer { number, direction, lobes, density, angle: angle(&sight.vertex, theirs) })
+            let (lobes, pdf) = primary.bsdf.eval(direction);
+            let is_visible = pdf > 0.0 && is_visible(world, &primary.vertex, surface, direction);
+            is_visible.then_some(Viewer {
+                number,
+                direction,
+                lobes,
+                pdf,
+                solid_angle_per_area: solid_angle_per_area(&primary.vertex, theirs),
+            })
         });
-        let density = list.iter().flatten().map(|v: &Viewer| v.density * v.angle).sum();
-        let mut viewers = Self { list, density };
-        // Points of surfaces that touch are the finder's own.
-        if !(density.is_finite() && density > 0.0) {
-            viewers.list.iter_mut().flatten().for_each(|v| v.angle = f32::from(v.number == finder));
-            viewers.density = departure.density;
+        let area_pdf = list.iter().flatten().map(|v: &Viewer| v.pdf * v.solid_angle_per_area).sum();
+        let mut viewers = Self { list, area_pdf };
+        // Where surfaces touch, the pdfs are not finite: only the path's own pixel uses the vertex.
+        if !(area_pdf.is_finite() && area_pdf > 0.0) {
+            viewers.list.iter_mut().flatten().for_each(|v| v.solid_angle_per_area = f32::from(v.number == owner));
+            viewers.area_pdf = continuation.pdf;
         }
         viewers
     }
 
-    /// Tells the witnesses what light they get from it.
-    fn tell<W: Witness>(
+    /// Replays the light of the secondary vertex to the observers of all its viewers.
+    fn replay<W: ReplayObserver>(
         &self,
-        find: &Find,
-        sights: &[Option<Sight>; MOST],
-        witnesses: &mut [W],
+        secondary: &SecondaryVertex,
+        primaries: &[Option<PrimaryVertex>; MAX_SHARED],
+        observers: &mut [W],
         scratch: &Scratch<W::Tape>,
     ) {
-        let mesh = find.vertex.mesh;
+        let mesh = secondary.vertex.mesh;
         for viewer in self.list.iter().flatten() {
-            let (Some(sight), witness) = (&sights[viewer.number], &mut witnesses[viewer.number]) else { continue };
-            let importance = viewer.lobes.sum() * (viewer.angle / self.density);
-            let Light::Turned { surface, chosen, beyond } = &find.light else {
-                witness.replay_from(sight.vertex.mesh, viewer.lobes, &scratch.tape, importance);
+            let (Some(primary), observer) = (&primaries[viewer.number], &mut observers[viewer.number]) else {
                 continue;
             };
-            witness.restart();
-            witness.scatter(sight.vertex.mesh, Kind::Spread(viewer.density), viewer.lobes);
+            let importance = viewer.lobes.sum() * (viewer.solid_angle_per_area / self.area_pdf);
+            let SecondaryLight::ViewDependent { surface, light_sample, continuation } = &secondary.light else {
+                observer.replay_from(primary.vertex.mesh, viewer.lobes, &scratch.tape, importance);
+                continue;
+            };
+            observer.restart();
+            observer.scatter(primary.vertex.mesh, ScatterKind::NonSpecular(viewer.pdf), viewer.lobes);
             let bsdf = surface.seen_from(-viewer.direction);
-            if let Some((light, reach)) = chosen {
+            if let Some((light, weight)) = light_sample {
                 let (lobes, _) = bsdf.eval(light.direction);
-                witness.take_panes(&scratch.panes);
-                let importance = importance * lobes.sum() * *reach;
-                witness.add(light.source, importance, light.emission, Found::Chosen { mesh, lobes });
+                observer.take_panes(&scratch.panes);
+                let importance = importance * lobes.sum() * *weight;
+                observer.add(light.source, importance, light.emission, Strategy::LightSample { mesh, lobes });
             }
-            if let Some((direction, density)) = beyond {
+            if let Some((direction, pdf)) = continuation {
                 let (lobes, _) = bsdf.eval(*direction);
-                witness.scatter(mesh, Kind::Spread(*density), lobes);
-                witness.replay(&scratch.tape, importance * lobes.sum() / *density);
+                observer.scatter(mesh, ScatterKind::NonSpecular(*pdf), lobes);
+                observer.replay(&scratch.tape, importance * lobes.sum() / *pdf);
             }
         }
     }

@@ -1,21 +1,21 @@
-//! What happens to a path from some vertex on, for those that only add up and for those that tell light apart.
+//! Recordings of subpaths: one that sums contributions, one that also tracks the states of light path expressions.
 
-use super::LightSource;
-use super::bsdf::{Kind, Lobes};
-use super::layers::Recorder;
-use super::lpe::{Brought, Table, Trail};
-use super::path::{Found, Observer};
-use super::shared::{Tape, Witness};
+use super::bsdf::{Lobes, ScatterKind};
+use super::contribution::LightSource;
+use super::layers::{Layers, Recorder};
+use super::lpe::{Automaton, PathOutcome, Trail};
+use super::path::{Observer, Strategy};
+use super::shared::{ReplayObserver, Scratch, Tape};
 use super::world::{Pane, World};
 use glam::Vec3;
 
-/// Adds contributions up.
+/// Sums contributions.
 #[derive(Clone, Copy, Default)]
 pub struct Sum(pub Vec3);
 
 impl Observer for Sum {
     #[inline]
-    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3, _: Found) {
+    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3, _: Strategy) {
         self.0 += importance * emission;
     }
 }
@@ -30,7 +30,7 @@ impl Tape for Sum {
     }
 }
 
-impl Witness for Sum {
+impl ReplayObserver for Sum {
     type Tape = Self;
 
     fn restart(&mut self) {}
@@ -46,48 +46,49 @@ impl Witness for Sum {
     }
 }
 
-/// Adds contributions up, and follows a path from every state that those who will be told of it can be in.
-pub struct Told<'a> {
+/// Sums contributions and tracks a subpath from every automaton state in which the observers that replay it may be.
+pub struct LpeTape<'a> {
     world: &'a World,
-    table: &'a Table,
+    automaton: &'a Automaton,
     sum: Vec3,
     trail: Trail<'a>,
-    /// The states behind the first surfaces, and those in which the path begins.
+    /// The states behind the primary vertices, and the states in which the subpath begins.
     viewers: Vec<u16>,
     origins: Vec<u16>,
-    outcome: Vec<Brought>,
+    outcome: Vec<PathOutcome>,
 }
 
-impl<'a> Told<'a> {
-    pub fn new(world: &'a World, table: &'a Table) -> Self {
+impl<'a> LpeTape<'a> {
+    pub fn new(world: &'a World, automaton: &'a Automaton) -> Self {
         let [viewers, origins] = [const { Vec::new() }; 2];
-        Self { world, table, sum: Vec3::ZERO, trail: Trail::new(table), viewers, origins, outcome: Vec::new() }
+        Self { world, automaton, sum: Vec3::ZERO, trail: Trail::new(automaton), viewers, origins, outcome: Vec::new() }
     }
 }
 
-impl Observer for Told<'_> {
+impl Observer for LpeTape<'_> {
     #[inline(always)]
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let contribution = importance * emission;
         self.sum += contribution;
-        self.trail.add(self.world, contribution.into(), source, found);
+        self.trail.add(self.world, contribution.into(), source, strategy);
     }
 
     #[inline]
-    fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
+    fn scatter(&mut self, mesh: u32, kind: ScatterKind, lobes: Lobes) {
         self.trail.scatter(mesh, kind, lobes);
     }
 
     #[inline]
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
-        self.trail.wants_panes()
+        self.trail.panes_wanted()
     }
 }
 
-impl Tape for Told<'_> {
+impl Tape for LpeTape<'_> {
     fn expect(&mut self, viewers: impl Iterator<Item = (u32, bool)>) {
         self.viewers.clear();
-        viewers.for_each(|(mesh, layers)| self.table.spread(self.table.start(), mesh, layers, &mut self.viewers));
+        viewers
+            .for_each(|(mesh, layers)| self.automaton.spread(self.automaton.start(), mesh, layers, &mut self.viewers));
     }
 
     fn begin(&mut self) {
@@ -98,19 +99,26 @@ impl Tape for Told<'_> {
 
     fn begin_behind(&mut self, mesh: u32) {
         self.origins.clear();
-        self.viewers.iter().for_each(|&state| self.table.spread(state, mesh, true, &mut self.origins));
+        self.viewers.iter().for_each(|&state| self.automaton.spread(state, mesh, true, &mut self.origins));
         self.sum = Vec3::ZERO;
         self.trail.start_from(&self.origins);
     }
 
     fn end(&mut self) -> bool {
-        self.trail.finish_from(&self.origins, &mut self.outcome);
+        self.trail.end_from(&self.origins, &mut self.outcome);
         self.sum != Vec3::ZERO
     }
 }
 
-impl<'a> Witness for Recorder<'a> {
-    type Tape = Told<'a>;
+impl Layers<'_> {
+    /// Scratch memory for subpaths that several recorders replay.
+    pub fn scratch(&self) -> Scratch<LpeTape<'_>> {
+        Scratch::new(LpeTape::new(self.world, &self.automaton))
+    }
+}
+
+impl<'a> ReplayObserver for Recorder<'a> {
+    type Tape = LpeTape<'a>;
 
     #[inline]
     fn restart(&mut self) {
@@ -122,14 +130,14 @@ impl<'a> Witness for Recorder<'a> {
     }
 
     #[inline]
-    fn replay(&mut self, told: &Told, importance: Vec3) {
-        self.beauty += importance * told.sum;
-        self.trail.follow(&told.outcome, importance.into());
+    fn replay(&mut self, tape: &LpeTape, importance: Vec3) {
+        self.beauty += importance * tape.sum;
+        self.trail.follow(&tape.outcome, importance.into());
     }
 
     #[inline]
-    fn replay_from(&mut self, mesh: u32, lobes: Lobes, told: &Told, importance: Vec3) {
-        self.beauty += importance * told.sum;
-        self.trail.follow_from(mesh, lobes, &told.outcome, importance.into());
+    fn replay_from(&mut self, mesh: u32, lobes: Lobes, tape: &LpeTape, importance: Vec3) {
+        self.beauty += importance * tape.sum;
+        self.trail.follow_from(mesh, lobes, &tape.outcome, importance.into());
     }
 }

@@ -1,25 +1,24 @@
-//! A point of a surface that a path has reached: where it is, how it is oriented, and what it is made of there.
+//! A surface point on a path: its position, orientation and material.
 
 use super::bsdf::{Bsdf, Substance};
-use super::facet::{self, Facet};
-use super::finish::{self, Finish};
+use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
-use super::world::{NONE, World};
+use super::texture_context::TextureContext;
+use super::world::World;
 use crate::scene::accel::{Hit, Ray};
-use crate::scene::{Material, Mesh, TextureRef};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 
 pub struct Vertex {
     pub mesh: u32,
-    /// Index within the mesh, and among all triangles of the scene.
+    /// Index of the triangle within the mesh.
     pub triangle: u32,
     pub id: u32,
     pub barycentric: Vec2,
-    /// Relative to the world's centre.
+    /// Relative to the centre of the world.
     pub position: Vec3,
     /// Unit geometric normal of the front face.
     pub normal: Vec3,
-    /// Distance that clears the rounding of `position`.
+    /// Offset along the normal that exceeds the rounding error of `position`.
     offset: f32,
 }
 
@@ -29,7 +28,7 @@ impl Vertex {
         Self::new(world, hit.triangle, Vec2::new(hit.u, hit.v))
     }
 
-    /// A point of the triangle of this number among all.
+    /// A point of triangle number `id` of the scene.
     #[inline]
     pub fn new(world: &World, id: u32, barycentric: Vec2) -> Self {
         let facet = world.facet(id);
@@ -44,7 +43,8 @@ impl Vertex {
         }
     }
 
-    /// A point in the scene's coordinates that is on no surface, facing along a unit normal. It clears surfaces it may happen to lie in.
+    /// A free point in scene coordinates that faces along a unit normal. Its offset also clears surfaces that it may
+    /// happen to lie in.
     pub fn free(world: &World, position: Vec3, normal: Vec3) -> Self {
         let (low, high) = world.accel().bounds();
         let position = world.from_scene(position);
@@ -53,8 +53,8 @@ impl Vertex {
         Self { mesh, triangle, id: NONE, barycentric, position, normal, offset: largest * facet::OFFSET }
     }
 
-    /// The point moved off its surface to the side of `direction` (Wächter and Binder 2019, with the scale of the
-    /// triangle in place of that of the point: coordinates near 0 carry the errors of larger ones).
+    /// The point offset from its surface to the side of `direction` (Wächter and Binder 2019, but scaled by the
+    /// triangle instead of the point: coordinates near 0 carry the rounding errors of larger ones).
     #[inline]
     pub fn off_surface(&self, direction: Vec3) -> Vec3 {
         self.position + self.normal * self.offset.copysign(self.normal.dot(direction))
@@ -65,133 +65,65 @@ impl Vertex {
         Ray::new(self.off_surface(direction), direction)
     }
 
-    /// What scatters light that leaves along `wo`.
+    /// The BSDF seen from direction `wo`.
     #[inline]
     pub fn bsdf<'w>(&self, world: &'w World, wo: Vec3) -> Bsdf<'w> {
         self.surface(world).seen_from(wo)
     }
 
-    /// What is there, whoever looks at it.
+    /// The view-independent shading data of the point.
     #[inline]
     pub fn surface<'w>(&self, world: &'w World) -> Surface<'w> {
         let facet = world.facet(self.id);
-        let finish = world.finish(facet);
-        // Most surfaces are flat and of one substance.
-        let shading = if facet.is_smooth() || finish.bumpy { self.shading_normal(world, facet) } else { self.normal };
-        let substance = if finish.varies {
-            Spot::new(world, facet, self.triangle, self.barycentric).substance(finish)
+        let compiled = world.compiled_material(facet);
+        // Most surfaces are flat and of uniform material.
+        let shading =
+            if facet.is_smooth() || compiled.has_normal_map { self.shading_normal(world, facet) } else { self.normal };
+        let substance = if compiled.is_textured {
+            TextureContext::new(world.scene(), facet, self.triangle, self.barycentric).substance(compiled)
         } else {
-            finish.substance
+            compiled.substance
         };
-        Surface { substance, layered: finish.layered, normals: [shading, self.normal], table: world.albedo_table() }
+        Surface { substance, layered: compiled.layered, normals: [shading, self.normal], table: world.albedo_table() }
     }
 
     fn shading_normal(&self, world: &World, facet: &Facet) -> Vec3 {
-        let spot = Spot::new(world, facet, self.triangle, self.barycentric);
-        let (mesh, material) = (spot.mesh, spot.material);
+        let context = TextureContext::new(world.scene(), facet, self.triangle, self.barycentric);
+        let (mesh, material) = (context.mesh, context.material);
         let mut normal = self.normal;
         if !mesh.normals.is_empty() {
             let [a, b, c] = mesh.triangles[self.triangle as usize].map(|i| mesh.normals[i as usize]);
             let v = self.barycentric;
             let n = (a * (1.0 - v.x - v.y) + b * v.x + c * v.y).normalize_or(normal);
-            // Normals that point to the other side than the winding are taken to mean the axis only.
+            // Flip normals that oppose the winding: only their axis is used.
             normal = if n.dot(normal) < 0.0 { -n } else { n };
         }
         let Some(texture) = &material.normal_texture else { return normal };
-        let Some((along_u, along_v)) = spot.tangents(facet, texture) else { return normal };
-        let texel = spot.look_up(texture).truncate();
+        let Some((along_u, along_v)) = context.tangents(facet, texture) else { return normal };
+        let texel = context.look_up(texture).truncate();
         let n = texel * 2.0 - Vec3::ONE;
         let t = (along_u - normal * normal.dot(along_u)).normalize_or_zero();
-        // Green points up in the image, which is towards smaller v.
+        // Orient the bitangent: green points up in the image, towards smaller v.
         let b = normal.cross(t);
         let b = if b.dot(along_v) > 0.0 { -b } else { b };
         (t * (n.x * material.normal_scale) + b * (n.y * material.normal_scale) + normal * n.z).normalize_or(normal)
     }
 }
 
-/// What a surface is at a point.
+/// View-independent shading data of a surface point.
 pub struct Surface<'w> {
     substance: Substance,
-    /// Whether there may be more than a diffuse layer.
+    /// Whether the material may have more than a diffuse layer.
     layered: bool,
-    /// Shading and geometric normal of the front.
+    /// Shading normal and geometric normal of the front side.
     normals: [Vec3; 2],
     table: Option<&'w AlbedoTable>,
 }
 
 impl<'w> Surface<'w> {
-    /// What scatters light that leaves along `wo`.
+    /// The BSDF seen from direction `wo`.
     #[inline]
     pub fn seen_from(&self, wo: Vec3) -> Bsdf<'w> {
         Bsdf::new(&self.substance, self.layered, self.normals, wo, self.table)
-    }
-}
-
-/// A point of a triangle with all that its textures hang on.
-pub struct Spot<'w> {
-    world: &'w World,
-    pub mesh: &'w Mesh,
-    pub material: &'w Material,
-    triangle: u32,
-    barycentric: Vec2,
-}
-
-impl<'w> Spot<'w> {
-    /// `triangle` is the index in the mesh.
-    pub fn new(world: &'w World, facet: &Facet, triangle: u32, barycentric: Vec2) -> Self {
-        let scene = world.scene();
-        let (mesh, material) = (&scene.meshes[facet.mesh as usize], &scene.materials[facet.material()]);
-        Self { world, mesh, material, triangle, barycentric }
-    }
-
-    /// Share of the surface that is there.
-    pub fn opacity(&self) -> f32 {
-        let texture = self.material.base_color_texture.as_ref();
-        self.material.alpha * texture.map_or(1.0, |t| self.look_up(t).w)
-    }
-
-    /// What is there.
-    pub fn substance(&self, finish: &Finish) -> Substance {
-        if !finish.varies {
-            return finish.substance;
-        }
-        let material = self.material;
-        let mut base = material.base_color;
-        if let Some(texture) = &material.base_color_texture {
-            base *= self.look_up(texture).truncate();
-        }
-        let (mut metallic, mut roughness) = (material.metallic, material.roughness);
-        if let Some(texture) = &material.metallic_roughness_texture {
-            let texel = self.look_up(texture);
-            (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
-        }
-        finish::substance(material, base, metallic, roughness)
-    }
-
-    fn look_up(&self, texture: &TextureRef) -> Vec4 {
-        let uvs = &self.mesh.uvs[texture.uv_set];
-        let mut uv = Vec2::ZERO;
-        if !uvs.is_empty() {
-            let [p, q, r] = self.mesh.triangles[self.triangle as usize].map(|i| uvs[i as usize]);
-            let v = self.barycentric;
-            uv = texture.transform.transform_point2(p * (1.0 - v.x - v.y) + q * v.x + r * v.y);
-        }
-        self.world.scene().textures[texture.texture].sample(uv)
-    }
-
-    fn corner_uvs(&self, texture: &TextureRef) -> Option<[Vec2; 3]> {
-        let uvs = &self.mesh.uvs[texture.uv_set];
-        let corners = || self.mesh.triangles[self.triangle as usize];
-        (!uvs.is_empty()).then(|| corners().map(|i| texture.transform.transform_point2(uvs[i as usize])))
-    }
-
-    /// Directions in which u and v grow.
-    fn tangents(&self, facet: &Facet, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
-        let [a, b, c] = facet.corners();
-        let [p, q, r] = self.corner_uvs(texture)?;
-        let (e, f, d, g) = (b - a, c - a, q - p, r - p);
-        let determinant = d.perp_dot(g);
-        let (u, v) = ((e * g.y - f * d.y) / determinant, (f * d.x - e * g.x) / determinant);
-        (u.is_finite() && v.is_finite()).then_some((u, v))
     }
 }

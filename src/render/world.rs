@@ -1,12 +1,12 @@
-//! A scene made ready for tracing.
+//! A scene prepared for tracing.
 
+use super::compiled_material::CompiledMaterial;
 use super::emissive::Emitters;
-use super::facet::{self, Facet};
-use super::finish::Finish;
+use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
 use super::light::Lights;
 use super::requirements::{self, Requirements};
-use super::vertex::Spot;
+use super::texture_context::TextureContext;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
@@ -16,51 +16,49 @@ use crate::scene::{AlphaMode, Environment, Material, Mesh, Scene, TextureRef};
 use glam::{DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
-/// A scene made ready for tracing: acceleration structure and light distributions. Triangles are numbered through the
-/// meshes in order. Inside, all coordinates are relative to a centre, so that scenes far from the origin lose nothing.
+/// A scene prepared for tracing: acceleration structure, triangle data and light distributions. Triangles have
+/// scene-wide numbers (ids), mesh after mesh. Internal coordinates are relative to a centre, so that scenes far from
+/// the origin keep their precision.
 pub struct World {
     scene: Arc<Scene>,
     accel: Accel,
     centre: DVec3,
-    /// Number of the first triangle of each mesh, and of all triangles at the end.
+    /// Id of the first triangle of each mesh, followed by the number of all triangles.
     first: Vec<u32>,
     facets: Vec<Facet>,
-    finishes: Vec<Finish>,
+    compiled_materials: Vec<CompiledMaterial>,
     lights: Lights,
     albedo_table: Option<AlbedoTable>,
     requirements: Requirements,
-    /// Whether light passes through any material: only then do rays ask what they hit.
+    /// Whether any material lets light through; only then does a ray test the opacity of its hits.
     any_see_through: bool,
 }
 
-/// A surface that lets light through in a straight line.
+/// A surface on a shadow ray that lets light pass in a straight line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pane {
-    /// Distance from the start of the ray in units of its direction.
+    /// Ray parameter of the hit, in units of the ray's direction.
     pub t: f32,
     pub triangle: u32,
-    /// Share of light that finds nothing in its way.
+    /// Share of the light that misses the surface: 1 - opacity.
     pub beside: f32,
-    /// Share that passes through what is there, per channel.
+    /// Share of the light transmitted by the surface, per channel.
     pub through: Vec3,
 }
 
-/// No triangle, no emitter.
-pub const NONE: u32 = u32::MAX;
-
 impl World {
-    /// Checks the indices of a scene and builds what rendering it needs. An empty scene is allowed. To be called on the
-    /// library's own pool.
+    /// Validates a scene and prepares it for rendering. The scene may be empty. Call it on the library's own thread
+    /// pool.
     ///
     /// # Errors
-    /// Indices, sizes or values of the scene that cannot be used, by name; too many triangles; no memory; cancelled.
+    /// Indices, sizes or values of the scene that are invalid, by name; too many triangles; no memory; cancelled.
     pub fn build(scene: Arc<Scene>, job: Job) -> Result<Self> {
         check(&scene)?;
         let count: usize = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         if count >= 1 << 31 {
             return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));
         }
-        // Number the triangles through all meshes, and move them to the centre.
+        // Number the triangles of all meshes and move them to the centre.
         let centre = facet::centre(&scene.meshes);
         let mut first = Vec::with_capacity(scene.meshes.len() + 1);
         let mut facets = try_vec(count, Facet::EMPTY)?;
@@ -77,32 +75,43 @@ impl World {
         }
         first.push(next as u32);
         let accel = Accel::build(&triangles, job.part(0.0, 0.8))?;
-        // Gather the lights.
+        // Build the light distributions.
         let (emitters, pieces) = Emitters::build(&scene, &facets, &first)?;
         emitters.emitters.iter().enumerate().for_each(|(i, e)| facets[e.id as usize].emitter = i as u32);
         job.check()?;
         let (low, high) = accel.bounds();
         let lights = Lights::build(&scene, emitters, pieces, centre, (high - low).length() / 2.0)?;
-        // Find out what can be left out.
+        // Analyse which shading features the scene requires.
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
-        let (mut requirements, finishes) = requirements::analyse(&scene, albedo_table.as_ref());
+        let (mut requirements, compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
         requirements.flat_triangles = accel.dropped();
         let any_see_through = requirements.glass || requirements.alpha;
         job.report(1.0);
-        Ok(Self { scene, accel, centre, first, facets, finishes, lights, albedo_table, requirements, any_see_through })
+        Ok(Self {
+            scene,
+            accel,
+            centre,
+            first,
+            facets,
+            compiled_materials,
+            lights,
+            albedo_table,
+            requirements,
+            any_see_through,
+        })
     }
 
-    /// What the scene requires, and what tracing leaves out.
+    /// The shading features that the scene requires; tracing omits the others.
     pub fn requirements(&self) -> &Requirements {
         &self.requirements
     }
 
-    /// Forgets what the scene does not require: every hit then asks every question. Estimates stay the same but for
-    /// rounding; this is to measure what the analysis saves.
+    /// Discards the analysis of the scene, so that every hit evaluates every shading feature. Estimates change by
+    /// rounding only; for benches of the gain of the analysis.
     pub fn generalise(&mut self) {
-        self.finishes.iter_mut().for_each(|f| *f = f.unanalysed());
-        self.facets.iter_mut().for_each(|f| *f = f.unanalysed());
+        self.compiled_materials.iter_mut().for_each(|f| *f = f.without_analysis());
+        self.facets.iter_mut().for_each(|f| *f = f.without_analysis());
         self.any_see_through = true;
     }
 
@@ -110,38 +119,38 @@ impl World {
         &self.scene
     }
 
-    /// Takes rays made by [`World::ray`]: its coordinates are relative to the centre.
+    /// The acceleration structure, relative to the centre; it takes rays made by [`World::ray`].
     pub fn accel(&self) -> &Accel {
         &self.accel
     }
 
-    /// A ray of the scene's coordinates, for tracing.
+    /// Converts a ray from scene coordinates to world coordinates.
     pub fn ray(&self, origin: Vec3, direction: Vec3) -> Ray {
         Ray::new(self.from_scene(origin), direction)
     }
 
-    /// A point of the scene's coordinates, for tracing.
+    /// Converts a point from scene coordinates to world coordinates.
     pub fn from_scene(&self, position: Vec3) -> Vec3 {
         (position.as_dvec3() - self.centre).as_vec3()
     }
 
-    /// A point of tracing in the scene's coordinates.
+    /// Converts a point from world coordinates to scene coordinates.
     pub fn in_scene(&self, position: Vec3) -> Vec3 {
         (position.as_dvec3() + self.centre).as_vec3()
     }
 
-    /// Number of the triangle of a mesh among all triangles.
+    /// Id of a triangle of a mesh.
     pub fn id(&self, mesh: u32, triangle: u32) -> u32 {
         self.first[mesh as usize] + triangle
     }
 
-    /// The mesh and the triangle in it of a number.
+    /// The mesh of a triangle id, and the index of the triangle in it.
     pub fn locate(&self, id: u32) -> (u32, u32) {
         let mesh = self.facets[id as usize].mesh;
         (mesh, id - self.first(mesh))
     }
 
-    /// Number of the first triangle of a mesh.
+    /// Id of the first triangle of a mesh.
     #[inline]
     pub(super) fn first(&self, mesh: u32) -> u32 {
         self.first[mesh as usize]
@@ -153,8 +162,8 @@ impl World {
     }
 
     #[inline]
-    pub(super) fn finish(&self, facet: &Facet) -> &Finish {
-        &self.finishes[facet.material()]
+    pub(super) fn compiled_material(&self, facet: &Facet) -> &CompiledMaterial {
+        &self.compiled_materials[facet.material()]
     }
 
     #[inline]
@@ -162,7 +171,7 @@ impl World {
         &self.lights
     }
 
-    /// The light around the scene, if there is any.
+    /// The environment, if it emits.
     #[inline]
     pub(super) fn environment(&self) -> Option<&Environment> {
         self.scene.environment.as_ref().filter(|_| self.requirements.environment)
@@ -173,14 +182,15 @@ impl World {
         self.albedo_table.as_ref()
     }
 
-    /// The emitter that a triangle is.
+    /// Index of the emitter of a triangle, if the triangle emits.
     #[inline]
     pub(super) fn emitter_of(&self, id: u32) -> Option<usize> {
         let emitter = self.facet(id).emitter;
         (emitter != NONE).then_some(emitter as usize)
     }
 
-    /// The nearest hit of a ray that leaves triangle `from`; `seed` decides whether it meets what is only partly there.
+    /// The nearest hit of a ray that leaves triangle `from`. `seed` decides at random whether the ray hits partly
+    /// transparent surfaces.
     #[inline]
     pub(super) fn closest(&self, ray: &Ray, from: u32, seed: impl Fn() -> u64) -> Option<Hit> {
         if !self.any_see_through {
@@ -189,25 +199,25 @@ impl World {
         self.accel.closest(ray, |hit| hit.triangle != from && self.is_there(hit, &seed))
     }
 
+    /// Whether a hit counts, by the opacity of the surface: stochastic for blended materials.
     fn is_there(&self, hit: &Hit, seed: &impl Fn() -> u64) -> bool {
         let facet = self.facet(hit.triangle);
-        if !self.finish(facet).partial {
+        if !self.compiled_material(facet).has_alpha {
             return true;
         }
-        let spot = self.spot(facet, hit);
-        match spot.material.alpha_mode {
+        let context = self.context(facet, hit);
+        match context.material.alpha_mode {
             AlphaMode::Opaque => true,
-            AlphaMode::Mask(cutoff) => spot.opacity() >= cutoff,
+            AlphaMode::Mask(cutoff) => context.opacity() >= cutoff,
             AlphaMode::Blend => {
                 let u = (rng::hash(seed(), &[u64::from(hit.triangle)]) >> 40) as f32 / (1 << 24) as f32;
-                u < spot.opacity()
+                u < context.opacity()
             }
         }
     }
 
-    /// Share of light, per channel, that goes straight from the start of a ray to its end, neither of the two triangles
-    /// counted. Partly transparent surfaces and clear panes let their share through; `panes` receives those met, in no
-    /// particular order.
+    /// Transmittance per channel between the ends of a ray, whose two triangles do not count. Partly transparent
+    /// surfaces and clear panes attenuate it. `panes` receives these surfaces in no particular order.
     pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], mut panes: Option<&mut Vec<Pane>>) -> Vec3 {
         if let Some(panes) = &mut panes {
             panes.clear();
@@ -216,7 +226,7 @@ impl World {
             let blocked = self.accel.occluded(ray, |hit| !ends.contains(&hit.triangle));
             return if blocked { Vec3::ZERO } else { Vec3::ONE };
         }
-        // In f64, so that the order in which surfaces are met does not show after rounding.
+        // Multiply in f64, so that the order of the hits does not show after rounding.
         let mut share = DVec3::ONE;
         let blocked = self.accel.occluded(ray, |hit| {
             if ends.contains(&hit.triangle) {
@@ -232,14 +242,14 @@ impl World {
         if blocked { Vec3::ZERO } else { share.as_vec3() }
     }
 
-    /// Whether light passes through any surface.
+    /// Whether any surface of the scene lets light through.
     #[inline]
     pub(super) fn is_see_through(&self) -> bool {
         self.any_see_through
     }
 
-    /// Whether nothing at all stands between the start of a ray and its end, neither of the two triangles counted: nothing
-    /// that a path could meet.
+    /// Whether the segment between the ends of a ray is free of surfaces, transparent ones included. The triangles of
+    /// the two ends do not count.
     #[inline]
     pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
         let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;
@@ -248,30 +258,30 @@ impl World {
 
     fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {
         let facet = self.facet(hit.triangle);
-        let finish = self.finish(facet);
-        if !finish.see_through {
+        let compiled = self.compiled_material(facet);
+        if !compiled.lets_light_through {
             return Pane { t: hit.t, triangle: hit.triangle, beside: 0.0, through: Vec3::ZERO };
         }
-        let spot = self.spot(facet, hit);
-        let there = match spot.material.alpha_mode {
+        let context = self.context(facet, hit);
+        let there = match context.material.alpha_mode {
             AlphaMode::Opaque => 1.0,
-            AlphaMode::Mask(cutoff) => f32::from(u8::from(spot.opacity() >= cutoff)),
-            AlphaMode::Blend => spot.opacity().clamp(0.0, 1.0),
+            AlphaMode::Mask(cutoff) => f32::from(u8::from(context.opacity() >= cutoff)),
+            AlphaMode::Blend => context.opacity().clamp(0.0, 1.0),
         };
-        let through = if spot.material.transmission > 0.0 && there > 0.0 {
-            spot.substance(finish).through(facet.normal.dot(direction.normalize_or_zero()))
+        let through = if context.material.transmission > 0.0 && there > 0.0 {
+            context.substance(compiled).through(facet.normal.dot(direction.normalize_or_zero()))
         } else {
             Vec3::ZERO
         };
         Pane { t: hit.t, triangle: hit.triangle, beside: 1.0 - there, through: through * there }
     }
 
-    fn spot(&self, facet: &Facet, hit: &Hit) -> Spot<'_> {
-        Spot::new(self, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
+    fn context(&self, facet: &Facet, hit: &Hit) -> TextureContext<'_> {
+        TextureContext::new(&self.scene, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
     }
 }
 
-/// Checks everything that tracing takes for granted.
+/// Checks everything that tracing relies on.
 fn check(scene: &Scene) -> Result<()> {
     for (i, mesh) in scene.meshes.iter().enumerate() {
         check_mesh(scene, mesh).map_err(|e| e.within(format!("mesh {i} ({:?})", mesh.name)))?;

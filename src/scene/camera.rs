@@ -9,14 +9,14 @@ pub struct Camera {
     pub position: Vec3,
     /// Unit viewing direction.
     pub forward: Vec3,
-    /// Unit, orthogonal to `forward`: up in the image.
+    /// Unit vector orthogonal to `forward`: up in the image.
     pub up: Vec3,
     /// Full vertical angle of view in radians, in (0, π).
     pub fov_y: f32,
 }
 
 impl Camera {
-    /// A camera at `position` that looks at `target`, kept upright.
+    /// A camera at `position` that looks at `target`, with the world's up direction upright in the image.
     pub fn look_at(position: Vec3, target: Vec3, fov_y: f32) -> Self {
         let forward = (target - position).normalize_or(Vec3::NEG_Z);
         let side = forward.cross(Vec3::Y).try_normalize().unwrap_or(Vec3::X);

@@ -1,4 +1,4 @@
-//! A number that tells scenes apart: whether two machines, or two days, speak of the same one.
+//! A hash that identifies a scene across machines and runs.
 
 use super::{Environment, Mesh, Scene, Texture};
 use crate::image::Image;
@@ -6,8 +6,8 @@ use crate::rng;
 use std::fmt::{self, Debug, Write};
 
 impl Scene {
-    /// A hash of all there is in the scene but its cameras. Scenes that differ have different ones but for a chance of 2^-64;
-    /// it is no protection against forgery. It may change from version to version.
+    /// A hash of everything in the scene except its cameras. Different scenes collide with probability 2^-64; it
+    /// offers no protection against forgery. It may change between versions of the library.
     pub fn fingerprint(&self) -> u64 {
         let Self { meshes, materials, textures, lights, distributions, environment, cameras: _ } = self;
         let mut digest = Digest(0);
@@ -58,9 +58,9 @@ impl Digest {
         self.array(data);
     }
 
-    /// What is small goes in as it is written for people to read: all of it, with all digits, also what is added some day.
+    /// Hashes small values by their debug text, which has all digits and includes fields added in future.
     fn text(&mut self, value: &dyn Debug) {
-        // The digest takes everything.
+        // Writing to the digest cannot fail.
         let _ = writeln!(self, "{value:?}");
     }
 }

@@ -2,14 +2,14 @@
 
 use glam::{Mat3, Vec3};
 
-/// A texture as a material uses it.
+/// A material's reference to a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureRef {
     /// Index into the scene's textures.
     pub texture: usize,
-    /// Which of the mesh's sets of texture coordinates: 0 or 1.
+    /// Index of the mesh's set of texture coordinates: 0 or 1.
     pub uv_set: usize,
-    /// Applied to (u, v, 1) before the look-up (`KHR_texture_transform`).
+    /// Applied to (u, v, 1) before the lookup (`KHR_texture_transform`).
     pub transform: Mat3,
 }
 
@@ -22,9 +22,9 @@ impl TextureRef {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AlphaMode {
     Opaque,
-    /// Points whose alpha is below the cutoff are not there.
+    /// Points with alpha below the cutoff are absent.
     Mask(f32),
-    /// Points are there with the probability of their alpha.
+    /// Points are present with probability alpha.
     Blend,
 }
 
@@ -48,11 +48,11 @@ pub struct Material {
     /// Emitted luminance per channel in cd/m²: `emissiveFactor × emissiveStrength`.
     pub emission: Vec3,
     pub emission_texture: Option<TextureRef>,
-    /// Whether back faces reflect and emit as front faces do. Others still block light.
+    /// Whether back faces reflect and emit as front faces do. Back faces of single-sided materials still block light.
     pub double_sided: bool,
-    /// Share of light that passes through instead of being reflected diffusely, in `[0, 1]`.
+    /// Share of light transmitted instead of reflected diffusely, in `[0, 1]`.
     pub transmission: f32,
-    /// Index of refraction of the dielectric, at least 1; at 1 it does not reflect at all.
+    /// Index of refraction of the dielectric layer, at least 1; with 1 it does not reflect.
     pub ior: f32,
 }
 
@@ -79,7 +79,7 @@ impl Default for Material {
 }
 
 impl Material {
-    /// A perfectly matt material of one colour: an index of refraction of 1 leaves no reflecting layer on top.
+    /// A perfectly diffuse material of one colour: with an index of refraction of 1 it has no specular layer.
     pub fn diffuse(name: &str, base_color: Vec3) -> Self {
         Self { name: name.into(), base_color, metallic: 0.0, ior: 1.0, double_sided: true, ..Self::default() }
     }

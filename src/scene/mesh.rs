@@ -3,7 +3,7 @@
 use crate::rng::hash;
 use glam::{Vec2, Vec3};
 
-/// Triangles in world space. Front faces are counter-clockwise.
+/// Triangles in world space. Front faces are wound counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// The host's name of the object; surfaces are looked up by it.
@@ -11,16 +11,17 @@ pub struct Mesh {
     /// Index into the scene's materials.
     pub material: usize,
     pub positions: Vec<Vec3>,
-    /// One per position, or empty: then faces are flat.
+    /// One per position; if empty, faces are flat.
     pub normals: Vec<Vec3>,
-    /// Up to two sets of texture coordinates, each one per position or empty; (0, 0) is the top-left of a texture.
+    /// Up to two sets of texture coordinates, each with one entry per position or empty; (0, 0) is the top-left of a
+    /// texture.
     pub uvs: [Vec<Vec2>; 2],
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// A parallelogram of two triangles that faces along `u` × `v`. Its texture coordinates are (0, 0) at the corner, and (1, 0) and (0, 1)
-    /// along `u` and `v`.
+    /// A parallelogram of two triangles whose front faces along `u` × `v`. Its texture coordinates are (0, 0) at the
+    /// corner, (1, 0) along `u` and (0, 1) along `v`.
     pub fn parallelogram(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Self {
         Self {
             material,
@@ -35,10 +36,11 @@ impl Mesh {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }
 
-    /// Whether its triangles, wound alike, enclose a volume: then every edge is passed as often one way as the other. Corners at
-    /// the same place are one. Edges are counted by their hashes, which takes no memory and is wrong once in 2^64 meshes.
+    /// Whether the consistently wound triangles enclose a volume: every edge is then traversed equally often in both
+    /// directions. Vertices at equal positions count as one. Edges are compared by a sum of hashes, which needs no
+    /// memory and errs for one in 2^64 meshes.
     pub fn is_closed(&self) -> bool {
-        // -0 + 0 = 0.
+        // Adding zero turns -0 into 0.
         let place = |p: Vec3| hash(0, &(p + Vec3::ZERO).to_array().map(|v| v.to_bits().into()));
         let boundary = (0..self.triangles.len()).fold(0u64, |sum, triangle| {
             let [a, b, c] = self.corners(triangle).map(place);
@@ -55,7 +57,7 @@ mod tests {
 
     #[test]
     fn a_box_is_closed_until_a_side_is_taken_away() {
-        // Each side has corners of its own, as where normals are sharp.
+        // Each side has its own vertices, as in meshes with sharp normals.
         let mut cube = Mesh::default();
         let mut corner = Vec3::splat(-1.0);
         for axis in 0..3 {
@@ -68,7 +70,7 @@ mod tests {
             }
         }
         assert!(cube.is_closed());
-        // Zeros of either sign are one place.
+        // Zeros of either sign are the same position.
         cube.positions.iter_mut().for_each(|p| p.x += 1.0);
         corner.x = 0.0;
         cube.positions.iter_mut().filter(|p| **p == corner).take(1).for_each(|p| p.x = -0.0);

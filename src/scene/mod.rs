@@ -1,7 +1,8 @@
-//! The 3D scene: what a host describes, before anything is built for rendering.
+//! The 3D scene as described by a host, before any acceleration structure is built.
 //!
-//! Metres, right-handed, Y up. All meshes are in world space: a loader applies its node transforms. Emission is in
-//! cd/m² (`factor × texture × strength`, as glTF has it), punctual lights in candela (point, spot, luminaire) and lux (directional).
+//! Metres, right-handed, Y up. All meshes are in world space: a loader applies the node transforms. Emission is in
+//! cd/m² (`factor × texture × strength`, as in glTF), punctual lights in candela (point, spot, luminaire) or lux
+//! (directional).
 
 pub mod accel;
 pub mod camera;
@@ -24,14 +25,14 @@ pub use validate::check_place;
 use crate::photometry::Luminaire;
 use std::sync::Arc;
 
-/// Everything a host can describe. Indices between the lists are checked by [`Scene::validate`].
+/// A scene description. [`Scene::validate`] checks the indices between the lists.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     pub meshes: Vec<Mesh>,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
     pub lights: Vec<PunctualLight>,
-    /// Measured intensities, for the luminaires among the lights.
+    /// Measured intensity distributions, referenced by the luminaires among the lights.
     pub distributions: Vec<Arc<Luminaire>>,
     pub environment: Option<Environment>,
     pub cameras: Vec<Camera>,

@@ -1,10 +1,10 @@
-//! Textures: images with wrapping, sampled bilinearly.
+//! Textures: images with wrapping and bilinear sampling.
 
 use crate::image::Image;
 use crate::image::patches::any_light;
 use glam::{Vec2, Vec4};
 
-/// How a texture continues outside `[0, 1]`.
+/// Continuation of a texture outside `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     Repeat,
@@ -25,7 +25,7 @@ impl Texture {
         Self { name: name.into(), image, wrap: [Wrap::Repeat; 2] }
     }
 
-    /// Bilinear sample; a missing alpha is 1, a grey image gives r = g = b.
+    /// Bilinear sample; missing alpha is 1, and a grey image gives r = g = b.
     pub fn sample(&self, uv: Vec2) -> Vec4 {
         let ([x0, x1], tx) = neighbours(uv.x, self.image.width, self.wrap[0]);
         let ([y0, y1], ty) = neighbours(uv.y, self.image.height, self.wrap[1]);
@@ -40,18 +40,18 @@ impl Texture {
         self.continued((uv * size).floor())
     }
 
-    /// The texel at whole coordinates, which may lie outside the image: there the texture continues as it wraps.
+    /// The texel at integer coordinates, wrapped if they lie outside the image.
     pub fn continued(&self, texel: Vec2) -> Vec4 {
         let x = wrap_index(texel.x, self.image.width, self.wrap[0]);
         let y = wrap_index(texel.y, self.image.height, self.wrap[1]);
         self.texel(x, y)
     }
 
-    /// Whether no texel of a square within the image has a colour above 0.
+    /// Whether no texel of a square inside the image has a colour above 0.
     pub fn is_black(&self, [x, y]: [usize; 2], side: usize) -> bool {
         let channels = self.image.channels;
         let row = |y: usize| &self.image.data[(y * self.image.width + x) * channels..][..side * channels];
-        // Two channels are no colour, and count as white.
+        // An image with two channels has no colour and counts as white.
         channels != 2 && (y..y + side).all(|y| !any_light(row(y), channels))
     }
 
@@ -66,20 +66,21 @@ impl Texture {
     }
 }
 
-/// The texel, row by row, that covers a point in a texture of `width × height` texels.
+/// Row-major index of the texel that covers a point in a texture of `width × height` texels.
 pub fn texel_at(uv: Vec2, [width, height]: [usize; 2], wrap: [Wrap; 2]) -> usize {
     let texel = (uv * Vec2::new(width as f32, height as f32)).floor();
     wrap_index(texel.y, height, wrap[1]) * width + wrap_index(texel.x, width, wrap[0])
 }
 
-/// The two texels whose centres a coordinate lies between, and where between them.
+/// The two texels whose centres enclose a coordinate, and its fractional position between them.
 fn neighbours(u: f32, size: usize, wrap: Wrap) -> ([usize; 2], f32) {
     let position = (u * size as f32 - 0.5).max(-16_777_216.0).min(16_777_216.0);
-    // A conversion cuts towards 0: one less for what is negative. (`floor` is a function call on older processors.)
+    // A cast truncates towards 0, so subtract one from negative values. (`floor` is a function call on older
+    // processors.)
     let cut = position as i32;
     let base = cut - i32::from(cut as f32 > position);
     let t = position - base as f32;
-    // Inside the image, which is most of the time, nothing wraps.
+    // Fast path: inside the image no wrapping is needed.
     if base >= 0 && base as usize + 1 < size {
         return ([base as usize, base as usize + 1], t);
     }
@@ -87,10 +88,10 @@ fn neighbours(u: f32, size: usize, wrap: Wrap) -> ([usize; 2], f32) {
 }
 
 fn wrap_index(i: f32, size: usize, wrap: Wrap) -> usize {
-    // Beyond 2^24 a float cannot tell neighbouring texels apart; NaN becomes 0.
+    // Beyond 2^24, `f32` does not distinguish neighbouring texels; NaN becomes 0.
     let i = i.clamp(-16_777_216.0, 16_777_216.0) as i32;
     let n = size as i32;
-    // Most of the time nothing wraps, and dividing takes its time.
+    // Fast path: avoid the division if no wrapping is needed.
     if (0..n).contains(&i) {
         return i as usize;
     }
@@ -119,7 +120,7 @@ mod tests {
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Clamp, u)), [0.0, 0.0, 3.0, 3.0]);
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Mirror, u)), [0.0, 0.0, 3.0, 3.0]);
         assert!(at(Wrap::Repeat, f32::NAN).is_finite() && at(Wrap::Clamp, f32::INFINITY).is_finite());
-        // Between the centres of texels, across the seam and far outside.
+        // Interpolation between texel centres, across the seam and far outside.
         let between = |wrap, u| {
             Texture { name: String::new(), image: image.clone(), wrap: [wrap; 2] }.sample(Vec2::new(u, 0.5)).x
         };

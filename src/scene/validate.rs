@@ -1,4 +1,4 @@
-//! Checks a scene before anything is built from it.
+//! Validates a scene before anything is built from it.
 
 use super::{AlphaMode, Camera, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
 use crate::error::{Error, ErrorKind, Result, check_range};
@@ -7,16 +7,16 @@ use glam::{Mat3, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fmt::Display;
 
-/// Largest coordinate of anything that has a place, in metres: products of two of them, and of what follows from them, stay
-/// within the range of `f32`.
+/// Largest coordinate of any position, in metres: products of two coordinates, and quantities derived from them, then
+/// stay within the range of `f32` [rounding].
 const MAX_COORDINATE: f32 = 1e15;
 
 fn is_place(point: Vec3) -> bool {
-    // No number is not less, either.
+    // NaN compares false and is rejected.
     point.abs().cmple(Vec3::splat(MAX_COORDINATE)).all()
 }
 
-/// Checks that things may be at a point; `what` is asked only if not.
+/// Checks that a position is in range; `what` is evaluated only on failure.
 pub fn check_place<W: Display>(what: impl FnOnce() -> W, point: Vec3) -> Result<()> {
     if is_place(point) {
         return Ok(());
@@ -27,11 +27,12 @@ pub fn check_place<W: Display>(what: impl FnOnce() -> W, point: Vec3) -> Result<
     )))
 }
 
-/// How far a direction may be from unit length or right angles.
+/// Tolerance of the length and orthogonality of directions [rounding].
 const DIRECTION_TOLERANCE: f32 = 1e-3;
 
 impl Scene {
-    /// Checks every index, length and range; the error names the first offending object, its value and what is allowed.
+    /// Checks every index, length and range. The error names the first invalid object, its value and the allowed
+    /// range.
     pub fn validate(&self) -> Result<()> {
         for (i, texture) in self.textures.iter().enumerate() {
             check_texture(texture).map_err(|e| e.within(format_args!("texture {i} {:?}", texture.name)))?;
@@ -145,7 +146,7 @@ impl Scene {
         for (what, len) in lengths {
             if len != 0 && len != count {
                 return Err(Error::argument(format!(
-                    "it has {len} {what}; there must be none or {count}, as positions"
+                    "it has {len} {what}; there must be {count}, one per position, or none"
                 )));
             }
         }
@@ -188,7 +189,7 @@ fn check_image(image: &Image) -> Result<()> {
     }
 }
 
-/// Light and its reflection are never negative.
+/// Emitted light and reflectance must not be negative.
 fn check_positive(image: &Image) -> Result<()> {
     match image.data.iter().position(|&v| v < 0.0) {
         Some(i) => {

@@ -30,6 +30,8 @@ mod classify;
 mod distance;
 mod ellipsoid;
 mod exponential;
+mod face;
+mod instances;
 mod logistic;
 mod refine;
 mod samples;
@@ -77,15 +79,41 @@ pub struct Params {
     /// Differences of the guide, in its own units (for colour those of CIELAB), below which neighbours are of one surface,
     /// in `[1e-3, 1e6]`.
     pub refine_tolerance: f64,
+    /// What the positive strokes lie on.
+    pub subject: Subject,
+}
+
+/// What is segmented: "stuff", which has a look but no shape, or "things", which have both (Kirillov et al. 2019, "Panoptic
+/// Segmentation").
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Subject {
+    /// Lamps where `within` is given and the features are [`CHANNELS`], else a surface.
+    #[default]
+    Auto,
+    /// A surface: every pixel is judged by its features, and must lie on the face of the room that the strokes lie on.
+    Surface,
+    /// Lamps: compact regions with a sharp contour, brighter than their surroundings ([`instances`]).
+    Lamps,
 }
 
 /// What is chosen from where the caller does not: colour; colour and position; colour and normal; everything. More is not
 /// better: what does not tell the classes apart still leads astray where no stroke is.
 pub const SUBSETS: [u32; 4] = [0b111, 0b111_0_111, 0b111_000_0_111, (1 << CHANNELS) - 1];
 
+/// The channels of depth and position.
+const POSITION: u32 = 0b111_1000;
+
 impl Default for Params {
     fn default() -> Self {
-        Self { samples_per_class: 1000, channels: 0, ridge: 1e-3, seed: 1, refine_radius: 0, refine_tolerance: 8.0 }
+        Self {
+            samples_per_class: 1000,
+            channels: 0,
+            ridge: 1e-3,
+            seed: 1,
+            refine_radius: 0,
+            refine_tolerance: 8.0,
+            subject: Subject::Auto,
+        }
     }
 }
 
@@ -128,7 +156,8 @@ pub struct Segmentation {
     /// Expected share of wrong pixels, in `[0, 1]`, by cross-validation: the error on held-out parts of strokes where
     /// pixels are like those painted, the error on wholly held-out strokes where they are `unseen`.
     pub error: f64,
-    pub model: Model,
+    /// The classifier; of lamps and of a caller's own mask there is none.
+    pub model: Option<Model>,
     /// The channels it looks at; bit `i` is channel `i`.
     pub channels: u32,
     /// Samples used of the negative and the positive class.
@@ -156,7 +185,7 @@ impl Segmentation {
             confidence: confidence.clone(),
             unseen: Image::new(confidence.width, confidence.height, 1)?,
             error: 0.0,
-            model: Model::Linear,
+            model: None,
             channels: 0,
             samples: [0, 0],
             contradictory: 0,
@@ -187,12 +216,25 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
     check_range("the number of feature channels", features.channels, 1, MOST_CHANNELS)?;
-    let subsets = subsets(features.channels, params.channels)?;
+    let mut subsets = subsets(features.channels, params.channels)?;
     if let Some(within) = input.within {
         features.check_same_size("features", within, "within")?;
         check_range("the number of channels of within", within.channels, 1, 1)?;
     }
 
+    let is_lamps = match params.subject {
+        Subject::Auto => input.within.is_some() && features.channels == CHANNELS,
+        Subject::Surface => false,
+        Subject::Lamps => true,
+    };
+    if is_lamps {
+        check_range("the number of feature channels where lamps are sought", features.channels, 3, MOST_CHANNELS)?;
+        return instances::run(input, job);
+    }
+
+    if params.channels == 0 && input.within.is_none() && face::is_laid_out(input) {
+        subsets.retain(|subset| subset & POSITION == 0);
+    }
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
     // Making room for the answers takes a while, which learning can share.
     let blank = || classify::Blank::new(features.width, features.height);
@@ -208,6 +250,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     if params.refine_radius > 0 {
         classified.refine(input, params, job.part(done, 1.0))?;
     }
+    if input.within.is_none() {
+        face::restrict(input, &mut classified)?;
+    }
     let unseen = classified.mean_unseen;
     let error = chosen.familiar.error * (1.0 - unseen) + chosen.unfamiliar.error * unseen;
     Ok(Segmentation {
@@ -215,7 +260,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         confidence: classified.confidence,
         unseen: classified.unseen,
         error,
-        model: chosen.model,
+        model: Some(chosen.model),
         channels: chosen.columns.iter().map(|&i| 1 << channels[i]).sum(),
         samples: samples.counts,
         contradictory: samples.contradictory,

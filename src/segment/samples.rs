@@ -2,7 +2,7 @@
 
 use super::{Input, Params, Stroke};
 use crate::error::{Error, Result};
-use crate::image::{try_collect, try_vec};
+use crate::image::{make_room, try_collect, try_vec};
 use crate::rng;
 
 /// Where a sample is from: what cross-validation holds out together.
@@ -38,37 +38,7 @@ const PROBES: usize = 2048;
 /// Draws the samples. Later strokes win where strokes disagree.
 pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Samples> {
     let features = input.features;
-    let pixels = features.width * features.height;
-
-    // The last stroke to cover each pixel, and whether one of the other class did before.
-    const NONE: u32 = u32::MAX >> 1;
-    const CONTRADICTED: u32 = !NONE;
-    let mut owner = try_vec(pixels, NONE)?;
-    let (mut contradictory, mut off_image) = (0, 0);
-    for (s, stroke) in input.strokes.iter().enumerate() {
-        for &p in &stroke.pixels {
-            let Some(slot) = owner.get_mut(p as usize) else {
-                off_image += 1;
-                continue;
-            };
-            let (last, mut flag) = (*slot & NONE, *slot & CONTRADICTED);
-            if last != NONE && flag == 0 && input.strokes[last as usize].positive != stroke.positive {
-                flag = CONTRADICTED;
-                contradictory += 1;
-            }
-            *slot = s as u32 | flag;
-        }
-    }
-    // Each stroke's own, each pixel once, with the hash that it is drawn by.
-    let mut own = |(s, stroke): (usize, &Stroke)| {
-        try_collect(stroke.pixels.iter().filter_map(|&p| {
-            let slot = owner.get_mut(p as usize).filter(|slot| **slot & NONE == s as u32)?;
-            *slot = NONE;
-            Some((rng::hash(params.seed, &[u64::from(p)]), p))
-        }))
-    };
-    let mut owned = input.strokes.iter().enumerate().map(&mut own).collect::<Result<Vec<Vec<(u64, u32)>>>>()?;
-
+    let Owned { mut pixels_of, contradictory, off_image } = owned(input, params.seed)?;
     let mut samples = Samples {
         values: Vec::new(),
         dimension: channels.len(),
@@ -80,7 +50,7 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
         off_image,
     };
     for positive in [false, true] {
-        let mut strokes: Vec<&mut Vec<(u64, u32)>> = (input.strokes.iter().zip(&mut owned))
+        let mut strokes: Vec<&mut Vec<(u64, u32)>> = (input.strokes.iter().zip(&mut pixels_of))
             .filter(|(s, pixels)| s.positive == positive && !pixels.is_empty())
             .map(|(_, pixels)| pixels)
             .collect();
@@ -115,6 +85,72 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
         }
     }
     Ok(samples)
+}
+
+/// The pixels that each stroke owns: later strokes win where strokes disagree.
+struct Owned {
+    /// Of each stroke, each pixel once, with the hash by which it is drawn.
+    pixels_of: Vec<Vec<(u64, u32)>>,
+    contradictory: usize,
+    off_image: usize,
+}
+
+fn owned(input: &Input, seed: u64) -> Result<Owned> {
+    let pixels = input.features.width * input.features.height;
+    // The last stroke to cover each pixel, and whether one of the other class did before.
+    const NONE: u32 = u32::MAX >> 1;
+    const CONTRADICTED: u32 = !NONE;
+    let mut owner = try_vec(pixels, NONE)?;
+    let (mut contradictory, mut off_image) = (0, 0);
+    for (s, stroke) in input.strokes.iter().enumerate() {
+        for &p in &stroke.pixels {
+            let Some(slot) = owner.get_mut(p as usize) else {
+                off_image += 1;
+                continue;
+            };
+            let (last, mut flag) = (*slot & NONE, *slot & CONTRADICTED);
+            if last != NONE && flag == 0 && input.strokes[last as usize].positive != stroke.positive {
+                flag = CONTRADICTED;
+                contradictory += 1;
+            }
+            *slot = s as u32 | flag;
+        }
+    }
+    // Each stroke's own, each pixel once, with the hash that it is drawn by.
+    let mut own = |(s, stroke): (usize, &Stroke)| {
+        try_collect(stroke.pixels.iter().filter_map(|&p| {
+            let slot = owner.get_mut(p as usize).filter(|slot| **slot & NONE == s as u32)?;
+            *slot = NONE;
+            Some((rng::hash(seed, &[u64::from(p)]), p))
+        }))
+    };
+    let pixels_of = input.strokes.iter().enumerate().map(&mut own).collect::<Result<Vec<Vec<(u64, u32)>>>>()?;
+    Ok(Owned { pixels_of, contradictory, off_image })
+}
+
+/// The pixels of the strokes by class.
+pub struct Ownership {
+    /// Of each positive stroke.
+    pub positive: Vec<Vec<u32>>,
+    /// Of all negative strokes.
+    pub negative: Vec<u32>,
+    pub contradictory: usize,
+    pub off_image: usize,
+}
+
+/// Deals the pixels to the strokes: the later stroke counts.
+pub fn ownership(input: &Input) -> Result<Ownership> {
+    let Owned { pixels_of, contradictory, off_image } = owned(input, 0)?;
+    let (mut positive, mut negative) = (Vec::new(), Vec::new());
+    for (stroke, pixels) in input.strokes.iter().zip(&pixels_of) {
+        if stroke.positive {
+            positive.push(try_collect(pixels.iter().map(|&(_, p)| p))?);
+        } else {
+            make_room(&mut negative, pixels.len())?;
+            negative.extend(pixels.iter().map(|&(_, p)| p));
+        }
+    }
+    Ok(Ownership { positive, negative, contradictory, off_image })
 }
 
 /// Features of some pixels all over the place to be segmented, `channels.len()` values each.

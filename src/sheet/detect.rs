@@ -1,4 +1,4 @@
-//! Marks in a photo: saddles of brightness with four quadrants around them.
+//! Detection of marks in a photo: saddles of brightness surrounded by four quadrants.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,29 +6,30 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat2, DVec2};
 
-/// The search runs on a photo of at most this many pixels on its longer side.
-const SIDE: usize = 1400;
-/// Scales of the search in its pixels: marks of four to about forty pixels across.
+/// Maximum length of the longer side of the image in which marks are searched for.
+const MAX_SIDE: usize = 1400;
+/// Scales of the search in pixels of that image: marks of four to about forty pixels across [origin not recorded].
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
-/// Most candidates kept.
-const MOST: usize = 24;
-/// Least share of the second harmonic in the brightness around a mark; two cycles of a square wave have 0.81.
-const HARMONIC: f64 = 0.55;
-/// Least difference between black and white (encoded), as the amplitude of that harmonic.
-const CONTRAST: f64 = 0.06;
+/// Maximum number of candidates.
+const MAX_CANDIDATES: usize = 24;
+/// Minimum share of the second harmonic in the brightness around a mark; two periods of a square wave have 0.81
+/// [origin not recorded].
+const MIN_HARMONIC: f64 = 0.55;
+/// Minimum amplitude of that harmonic, which measures the (encoded) contrast of black and white [origin not recorded].
+const MIN_CONTRAST: f64 = 0.06;
 
-/// A place that looks like a mark.
+/// A position that looks like a mark.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
-    /// In pixels of the photo.
+    /// Position in pixels of the photo.
     pub at: DVec2,
     strength: f64,
 }
 
-/// Places that look like marks, the clearest first.
+/// Positions that look like marks, strongest first.
 pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
     let longest = grey.width.max(grey.height);
-    let reduced = longest.min(SIDE) as f64 / longest as f64;
+    let reduced = longest.min(MAX_SIDE) as f64 / longest as f64;
     let side = |n: usize| ((n as f64 * reduced).round() as usize).max(1);
     let small = pyramid::resize(grey, side(grey.width), side(grey.height), job.part(0.0, 0.2))?;
     let scale = DVec2::new(grey.width as f64 / small.width as f64, grey.height as f64 / small.height as f64);
@@ -45,19 +46,19 @@ pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
             }
         }
     }
-    // Where scales agree, the clearest.
+    // Where several scales find a mark, keep the strongest.
     found.sort_by(|a, b| b.strength.total_cmp(&a.strength));
     let apart = 6.0 * scale.max_element();
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in found {
-        if kept.iter().all(|k| k.at.distance(candidate.at) > apart) && kept.len() < MOST {
+        if kept.iter().all(|k| k.at.distance(candidate.at) > apart) && kept.len() < MAX_CANDIDATES {
             kept.push(candidate);
         }
     }
     Ok(kept)
 }
 
-/// Pixels where the determinant of the Hessian is more negative than anywhere near.
+/// Local maxima of the negated determinant of the Hessian.
 fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     let (width, height) = (image.width, image.height);
     let mut response = Image::new(width, height, 1)?;
@@ -73,16 +74,18 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
             row[x] = (xy * xy - xx * yy) * sigma.powi(4);
         }
     })?;
-    let reach = (1.5 * sigma).ceil() as usize;
+    let radius_in_pixels = (1.5 * sigma).ceil() as usize;
     let rows = exec::map(height, job, |y| {
         let mut row = Vec::new();
         for x in 0..width {
             let here = response.pixel(x, y)[0];
-            if here < LEAST {
+            if here < MIN_RESPONSE {
                 continue;
             }
-            let mut around = (y.saturating_sub(reach)..(y + reach + 1).min(height))
-                .flat_map(|j| response.row(j)[x.saturating_sub(reach)..(x + reach + 1).min(width)].iter());
+            let mut around =
+                (y.saturating_sub(radius_in_pixels)..(y + radius_in_pixels + 1).min(height)).flat_map(|j| {
+                    response.row(j)[x.saturating_sub(radius_in_pixels)..(x + radius_in_pixels + 1).min(width)].iter()
+                });
             if around.all(|v| *v <= here) {
                 row.push((x, y));
             }
@@ -92,10 +95,10 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// Saddles weaker than this are noise: of a full mark the response is about 0.01.
-const LEAST: f32 = 2e-4;
+/// Minimum response of a saddle; the response of an ideal mark is about 0.01 [origin not recorded].
+const MIN_RESPONSE: f32 = 2e-4;
 
-/// How clearly a circle around a place passes through two dark and two bright quadrants; 0 if it does not.
+/// Strength of the pattern of two dark and two bright quadrants on a circle around a position; 0 if absent.
 fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     const STEPS: usize = 32;
     let value = |i: usize| {
@@ -111,18 +114,18 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     }
     let amplitude = 2.0 * second.length() / STEPS as f64;
     let share = amplitude * amplitude / 2.0 / power.max(1e-12);
-    if share > HARMONIC && amplitude > CONTRAST { amplitude * share } else { 0.0 }
+    if share > MIN_HARMONIC && amplitude > MIN_CONTRAST { amplitude * share } else { 0.0 }
 }
 
-/// The saddle near a place to a part of a pixel: the point all gradients around it are across from (Förstner and Gülch 1987).
-/// `None` if it runs away.
+/// Sub-pixel refinement of a saddle: the point to which all surrounding gradients are perpendicular (Förstner and
+/// Gülch 1987). `None` if it diverges.
 pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
     let mut at = start;
     for _ in 0..12 {
         let (mut matrix, mut right) = (DMat2::ZERO, DVec2::ZERO);
-        let reach = radius.ceil() as isize;
-        for j in -reach..=reach {
-            for i in -reach..=reach {
+        let radius_in_pixels = radius.ceil() as isize;
+        for j in -radius_in_pixels..=radius_in_pixels {
+            for i in -radius_in_pixels..=radius_in_pixels {
                 let offset = DVec2::new(i as f64, j as f64);
                 let weight = (-2.0 * offset.length_squared() / (radius * radius)).exp();
                 let p = at + offset;

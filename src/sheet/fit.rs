@@ -1,7 +1,7 @@
-//! Which mark is which, and the map from the page to the photo.
+//! Identification of the marks, and the map from the page to the photo.
 
 use super::detect::{Candidate, refine};
-use super::layout::Layout;
+use super::page::Page;
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::geometry::linear::solve;
@@ -9,61 +9,63 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::DVec2;
 
-/// Fewer marks could be anything.
-const FEWEST: usize = 6;
-/// How far a mark may be from where a first guess puts it, and then the refined one, as shares of the sheet's size there.
-const LOOSE: f64 = 0.02;
-const TIGHT: f64 = 0.004;
+/// Minimum number of marks: fewer could be a coincidence.
+const MIN_MARKS: usize = 6;
+/// Maximum distance of a mark from its predicted position, under the first and the refined map, as shares of the
+/// sheet's size in the photo [origin not recorded].
+const FIRST_TOLERANCE: f64 = 0.02;
+const FINAL_TOLERANCE: f64 = 0.004;
 
 pub struct Fit {
     /// From pixels of the page to pixels of the photo.
     pub to_photo: Homography,
-    /// Indices of the marks it rests on.
+    /// Indices of the marks used.
     pub marks: Vec<usize>,
-    /// Root mean square distance of marks from where it puts them, in pixels of the photo.
+    /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
-    /// Pixels of the photo in a pixel of the page.
+    /// Pixels of the photo per pixel of the page.
     pub scale: f64,
 }
 
-pub fn fit(layout: &Layout, grey: &Image, candidates: &[Candidate], job: Job) -> Result<Fit> {
-    let first = guess(layout, candidates, job)?;
+pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Result<Fit> {
+    let first = guess(page, candidates, job)?;
     let found = first.ok_or_else(|| too_few(candidates.len()))?;
 
-    // Each mark to a part of a pixel, in a window that stays inside it.
+    // Refine each mark to sub-pixel precision, in a window inside the mark.
     let mut pairs = Vec::new();
     for (mark, at) in found.pairs {
-        let centre = layout.marks[mark];
-        let reach = |step: DVec2| found.map.apply(centre + step * layout.radius).distance(found.map.apply(centre));
-        let radius = (0.6 * reach(DVec2::X).min(reach(DVec2::Y))).max(2.0);
+        let centre = page.marks[mark];
+        let length_in_photo =
+            |step: DVec2| found.map.apply(centre + step * page.radius).distance(found.map.apply(centre));
+        let radius = (0.6 * length_in_photo(DVec2::X).min(length_in_photo(DVec2::Y))).max(2.0);
         if let Some(at) = refine(grey, at, radius) {
             pairs.push((mark, at));
         }
     }
-    let extent = extent(layout, &found.map);
-    let mut map = least_squares(layout, found.map, &pairs);
-    // What does not fit the others is no mark.
-    pairs.retain(|&(mark, at)| map.apply(layout.marks[mark]).distance(at) < TIGHT * extent);
-    if pairs.len() < FEWEST {
+    let extent = extent(page, &found.map);
+    let mut map = least_squares(page, found.map, &pairs);
+    // Discard marks inconsistent with the others.
+    pairs.retain(|&(mark, at)| map.apply(page.marks[mark]).distance(at) < FINAL_TOLERANCE * extent);
+    if pairs.len() < MIN_MARKS {
         return Err(too_few(pairs.len()));
     }
-    map = least_squares(layout, map, &pairs);
-    let squares: f64 = pairs.iter().map(|&(m, at)| map.apply(layout.marks[m]).distance_squared(at)).sum();
+    map = least_squares(page, map, &pairs);
+    let squares: f64 = pairs.iter().map(|&(m, at)| map.apply(page.marks[m]).distance_squared(at)).sum();
     let residual = (squares / pairs.len() as f64).sqrt();
-    let scale = extent / DVec2::new(layout.width as f64, layout.height as f64).length();
+    let scale = extent / DVec2::new(page.width as f64, page.height as f64).length();
     Ok(Fit { to_photo: map, marks: pairs.iter().map(|p| p.0).collect(), residual, scale })
 }
 
 fn too_few(count: usize) -> Error {
     Error::degenerate(format!(
-        "{count} places look like alignment marks, and no six of them lie as on the sheet; photograph the whole sheet, flat \
-         and sharp, and give the paper size it was printed with"
+        "{count} places look like alignment marks, and no six of them are arranged as on the sheet; photograph the \
+         whole sheet, flat and sharp, and give the paper size it was printed with"
     ))
 }
 
 /// Length of the page's diagonal in the photo.
-fn extent(layout: &Layout, map: &Homography) -> f64 {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|m| map.apply(layout.marks[m]));
+fn extent(page: &Page, map: &Homography) -> f64 {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|m| map.apply(page.marks[m]));
     a.distance(c).max(b.distance(d))
 }
 
@@ -73,9 +75,9 @@ struct Guess {
     misfit: f64,
 }
 
-/// The map under which most marks lie on candidates: four candidates at a time are taken for the corners, or for the middles of
-/// the sides, since at least one of these quadruples is whole when a mark is missing.
-fn guess(layout: &Layout, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
+/// The map under which most marks coincide with candidates. Each quadruple of candidates is tried as the corners, and
+/// as the midpoints of the sides: if one mark is missing, at least one of these quadruples is complete.
+fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;
     for a in 0..n {
@@ -85,12 +87,12 @@ fn guess(layout: &Layout, candidates: &[Candidate], job: Job) -> Result<Option<G
                 for d in c + 1..n {
                     let Some(quad) = around([a, b, c, d].map(|i| candidates[i].at)) else { continue };
                     for (first, turn) in (0..8).map(|k| (k / 4 * 4, k % 4)) {
-                        let from = [0, 1, 2, 3].map(|i| layout.marks[first + i]);
+                        let from = [0, 1, 2, 3].map(|i| page.marks[first + i]);
                         let to = [0, 1, 2, 3].map(|i| quad[(i + turn) % 4]);
                         let Ok(map) = Homography::from_corners(from, to) else { continue };
-                        let guess = agreement(layout, map, candidates);
+                        let guess = agreement(page, map, candidates);
                         let better = |b: &Guess| (guess.pairs.len(), -guess.misfit) > (b.pairs.len(), -b.misfit);
-                        if guess.pairs.len() >= FEWEST && best.as_ref().is_none_or(better) {
+                        if guess.pairs.len() >= MIN_MARKS && best.as_ref().is_none_or(better) {
                             best = Some(guess);
                         }
                     }
@@ -101,7 +103,7 @@ fn guess(layout: &Layout, candidates: &[Candidate], job: Job) -> Result<Option<G
     Ok(best)
 }
 
-/// Four points in the order of a convex quadrangle, clockwise as seen (y down).
+/// Orders four points as a convex quadrilateral, clockwise as seen (y down); `None` if they are not convex.
 fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     let centre = points.iter().sum::<DVec2>() / 4.0;
     let mut ordered = points;
@@ -113,11 +115,11 @@ fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     (0..4).all(|i| turns(i) > 1.0).then_some(ordered)
 }
 
-/// The marks that lie on candidates under a map.
-fn agreement(layout: &Layout, map: Homography, candidates: &[Candidate]) -> Guess {
-    let tolerance = LOOSE * extent(layout, &map);
+/// The marks that coincide with candidates under a map.
+fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
+    let tolerance = FIRST_TOLERANCE * extent(page, &map);
     let (mut pairs, mut misfit) = (Vec::new(), 0.0);
-    for (mark, place) in layout.marks.iter().enumerate() {
+    for (mark, place) in page.marks.iter().enumerate() {
         let at = map.apply(*place);
         let distance = |c: &&Candidate| c.at.distance(at);
         let nearest = candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -129,17 +131,17 @@ fn agreement(layout: &Layout, map: Homography, candidates: &[Candidate]) -> Gues
     Guess { map, pairs, misfit }
 }
 
-/// The map with the least sum of squared distances in the photo: Gauss-Newton from a good start.
-fn least_squares(layout: &Layout, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
-    // Coordinates of the page in about [-1, 1], so that the eight numbers are of a size.
-    let half = DVec2::new(layout.width as f64, layout.height as f64) / 2.0;
+/// The map of minimum squared distances in the photo, by Gauss-Newton from a good start.
+fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
+    // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
+    let half = DVec2::new(page.width as f64, page.height as f64) / 2.0;
     let to_unit = glam::DMat3::from_scale(half.recip()) * glam::DMat3::from_translation(-half);
     let mut h = start.0 * to_unit.inverse();
     h *= 1.0 / h.z_axis.z;
     for _ in 0..10 {
         let (mut matrix, mut right) = ([[0.0; 8]; 8], [0.0; 8]);
         for &(mark, at) in pairs {
-            let p = (layout.marks[mark] - half) / half;
+            let p = (page.marks[mark] - half) / half;
             let q = h * p.extend(1.0);
             let image = q.truncate() / q.z;
             for axis in 0..2 {
@@ -154,7 +156,7 @@ fn least_squares(layout: &Layout, start: Homography, pairs: &[(usize, DVec2)]) -
             }
         }
         let Some(step) = solve(matrix, right) else { break };
-        // The numbers row by row, the last fixed to 1.
+        // The parameters row by row; the last entry is fixed to 1.
         for (i, s) in step.iter().enumerate() {
             h.col_mut(i % 3)[i / 3] += s;
         }

@@ -1,18 +1,19 @@
-//! Print sheets (StyLit, section 4.2): the exemplar printed at low contrast between alignment marks, for an artist to paint
-//! over; and a photo or scan of the painted sheet brought back onto the exemplar by its marks.
+//! Print sheets (StyLit, section 4.2): the exemplar is printed at low contrast between alignment marks for an artist
+//! to paint over; a photo or scan of the painted sheet is registered to the exemplar by its marks.
 //!
-//! A mark is a disk of two black and two white quadrants. Where they meet is a saddle of brightness, which perspective leaves
-//! where it is and which is found to a small part of a pixel. Ten marks stand around the picture: at the corners, at the
-//! middles of the sides, and two more that tell which way up the sheet is. Six are enough.
+//! A mark is a disk of two black and two white quadrants. Their common corner is a saddle of brightness, which is
+//! invariant under perspective and can be located to a small fraction of a pixel. Ten marks surround the picture: at
+//! the corners, at the midpoints of the sides, and two more that determine the orientation of the sheet. Six marks
+//! suffice.
 //!
-//! `layout` says where things are on the page, [`print`] draws it, `detect` finds marks in a photo, `fit` tells which mark is
-//! which, and [`align`] resamples the photo and evens out its light by the white of the marks.
+//! `page` lays out the page, [`print`] draws it, `detect` finds marks in a photo, `fit` identifies them, and [`align`]
+//! resamples the photo and removes uneven illumination by the white of the marks.
 //!
-//! Not modelled: paper that is not flat, and lenses that bend lines; `Aligned::residual` shows both.
+//! Not modelled: curved paper and lens distortion; `Aligned::residual` reveals both.
 
 mod detect;
 mod fit;
-mod layout;
+mod page;
 
 #[cfg(test)]
 mod tests;
@@ -25,7 +26,7 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use crate::{exec, rectify};
 use glam::{DVec2, Vec3};
-use layout::Layout;
+use page::Page;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
@@ -33,11 +34,11 @@ pub struct Params {
     pub paper: DVec2,
     /// Dots per inch of the printed sheet, in `[20, 1200]`.
     pub dpi: f64,
-    /// Contrast of the printed picture, in `[0, 1]`; 1 prints it as it is.
+    /// Contrast of the printed picture, in `[0, 1]`; 1 prints it unchanged.
     pub contrast: f32,
-    /// Distance of the marks from the edge of the paper in millimetres, in `[0, 50]`: printers leave a margin.
+    /// Distance of the marks from the edge of the paper in millimetres, in `[0, 50]`: printers need a margin.
     pub margin: f64,
-    /// Whether to even out the light of the photo.
+    /// Whether to remove uneven illumination from the photo.
     pub even_light: bool,
 }
 
@@ -61,21 +62,21 @@ impl Params {
 /// Width and height of a sheet in pixels.
 pub fn size(params: &Params) -> Result<(usize, usize)> {
     params.check()?;
-    let layout = Layout::new(params, 1, 1)?;
-    Ok((layout.width, layout.height))
+    let page = Page::new(params, 1, 1)?;
+    Ok((page.width, page.height))
 }
 
-/// Draws the sheet for a picture (linear, 1 is white; 1, 3 or 4 channels): linear RGB.
+/// Draws the sheet for a picture (linear, 1 is white; 1, 3 or 4 channels) in linear RGB.
 pub fn print(picture: &Image, params: &Params, job: Job) -> Result<Image> {
     params.check()?;
-    let layout = Layout::new(params, picture.width, picture.height)?;
-    let [left, top] = layout.corner.map(|v| v.round() as usize);
-    let [width, height] = layout.size.map(|v| (v.round() as usize).max(1));
+    let page = Page::new(params, picture.width, picture.height)?;
+    let [left, top] = page.corner.map(|v| v.round() as usize);
+    let [width, height] = page.size.map(|v| (v.round() as usize).max(1));
     let shown = pyramid::resize(&picture.to_rgb()?, width, height, job.part(0.0, 0.5))?;
-    let mut sheet = Image::new(layout.width, layout.height, 3)?;
-    exec::for_rows(&mut sheet.data, 3 * layout.width, job.part(0.5, 1.0), |y, row| {
+    let mut sheet = Image::new(page.width, page.height, 3)?;
+    exec::for_rows(&mut sheet.data, 3 * page.width, job.part(0.5, 1.0), |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            pixel.fill(layout.mark_shade(x, y));
+            pixel.fill(page.mark_shade(x, y));
             if (left..left + width).contains(&x) && (top..top + height).contains(&y) {
                 for (out, v) in pixel.iter_mut().zip(shown.pixel(x - left, y - top)) {
                     let v = if v.is_finite() { linear_to_srgb(v.clamp(0.0, 1.0)) } else { 0.0 };
@@ -87,29 +88,29 @@ pub fn print(picture: &Image, params: &Params, job: Job) -> Result<Image> {
     Ok(sheet)
 }
 
-/// A painted sheet brought back onto its picture.
+/// A painted sheet registered to its picture.
 #[derive(Clone, Debug)]
 pub struct Aligned {
-    /// Linear RGB of the picture's size; where the light was evened out, paper is 1.
+    /// Linear RGB at the picture's size; after removal of uneven illumination, paper is 1.
     pub image: Image,
     /// From pixels of the picture to pixels of the photo.
     pub to_photo: Homography,
-    /// Number of marks it rests on.
+    /// Number of marks used.
     pub marks: usize,
-    /// Root mean square distance between marks and where the map puts them, in pixels of the photo.
+    /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
     /// Expected alignment error in pixels of the picture.
     pub error: f64,
 }
 
-/// Finds the marks in a photo (linear RGB) of a sheet printed for a picture of `width × height` pixels with the same
-/// parameters, and resamples the photo onto the picture.
+/// Finds the marks in a photo (linear RGB) of a sheet that was printed for a picture of `width × height` pixels with
+/// the same parameters, and resamples the photo onto the picture.
 ///
 /// # Errors
-/// Degenerate if fewer than six marks are found where a sheet could have them.
+/// `Degenerate` if fewer than six marks are found in a consistent arrangement.
 pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: Job) -> Result<Aligned> {
     params.check()?;
-    let layout = Layout::new(params, width, height)?;
+    let page = Page::new(params, width, height)?;
     let mut grey = Image::new(photo.width, photo.height, 1)?;
     exec::for_rows(&mut grey.data, photo.width, job.part(0.0, 0.05), |y, row| {
         for (x, out) in row.iter_mut().enumerate() {
@@ -118,40 +119,40 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
         }
     })?;
     let candidates = detect::candidates(&grey, job.part(0.05, 0.5))?;
-    let found = fit::fit(&layout, &grey, &candidates, job.part(0.5, 0.7))?;
-    let to_photo = found.to_photo.after(layout.from_picture(width, height));
+    let found = fit::fit(&page, &grey, &candidates, job.part(0.5, 0.7))?;
+    let to_photo = found.to_photo.after(page.from_picture(width, height));
     let mut image = rectify::warp(&photo.to_rgb()?, &to_photo, width, height, job.part(0.7, 0.95))?;
     if params.even_light {
-        even_light(&mut image, photo, &layout, &found, width, height, job.part(0.95, 1.0))?;
+        even_light(&mut image, photo, &page, &found, width, height, job.part(0.95, 1.0))?;
     }
-    // A map from n points with two coordinates each is as uncertain as eight of its numbers.
-    let scale = layout.size[0] / width as f64 * found.scale;
+    // A map with eight parameters fitted to n points has the expected error residual · √(8 / 2n).
+    let scale = page.size[0] / width as f64 * found.scale;
     let error = found.residual * (8.0 / (2.0 * found.marks.len() as f64)).sqrt() / scale;
     job.report(1.0);
     Ok(Aligned { image, to_photo, marks: found.marks.len(), residual: found.residual, error })
 }
 
-/// Divides by the white of the paper beside each mark: its logarithm is taken to be bilinear over the sheet.
+/// Divides by the white of the paper in each mark; its logarithm is interpolated bilinearly over the sheet.
 fn even_light(
     image: &mut Image,
     photo: &Image,
-    layout: &Layout,
+    page: &Page,
     found: &fit::Fit,
     width: usize,
     height: usize,
     job: Job,
 ) -> Result<()> {
     let terms = |p: DVec2| {
-        let q = p / DVec2::new(layout.width as f64, layout.height as f64);
+        let q = p / DVec2::new(page.width as f64, page.height as f64);
         [1.0, q.x, q.y, q.x * q.y]
     };
     let mut white = [[0.0f64; 4]; 3];
     for (channel, coefficients) in white.iter_mut().enumerate() {
         let (mut matrix, mut right) = ([[0.0; 4]; 4], [0.0; 4]);
         for &mark in &found.marks {
-            let centre = layout.marks[mark];
-            // The middles of the white quadrants.
-            let places = [1.0, -1.0].map(|s| centre + s * DVec2::new(0.4, -0.4) * layout.radius);
+            let centre = page.marks[mark];
+            // Sample the centres of the white quadrants.
+            let places = [1.0, -1.0].map(|s| centre + s * DVec2::new(0.4, -0.4) * page.radius);
             let value = places.map(|p| {
                 let at = found.to_photo.apply(p);
                 f64::from(photo.sample(at.x, at.y, channel.min(photo.channels - 1)))
@@ -163,11 +164,10 @@ fn even_light(
                 (0..4).for_each(|j| matrix[i][j] += row[i] * row[j]);
             }
         }
-        *coefficients = solve(matrix, right).ok_or_else(|| {
-            Error::degenerate("the marks that were found lie on one line: the light cannot be evened out")
-        })?;
+        *coefficients = solve(matrix, right)
+            .ok_or_else(|| Error::degenerate("the marks found are collinear: uneven light cannot be corrected"))?;
     }
-    let from_picture = layout.from_picture(width, height);
+    let from_picture = page.from_picture(width, height);
     exec::for_rows(&mut image.data, 3 * width, job, |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
             let at = terms(from_picture.apply(DVec2::new(x as f64 + 0.5, y as f64 + 0.5)));

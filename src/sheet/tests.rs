@@ -17,8 +17,8 @@ fn params() -> Params {
     Params { dpi: 100.0, ..Params::default() }
 }
 
-/// A photo of a sheet: its corners lie at `corners` of a photo of 1300 × 1000 pixels, on a dark table, the light falls
-/// off to one side, and there is noise.
+/// A photo of 1300 × 1000 pixels of a sheet whose corners lie at `corners`, on a dark table, with light that falls off
+/// to one side, and noise.
 fn photograph(sheet: &Image, corners: [[f64; 2]; 4]) -> (Image, Homography) {
     let (w, h) = (sheet.width as f64, sheet.height as f64);
     let page = [[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]].map(DVec2::from);
@@ -39,9 +39,9 @@ fn photograph(sheet: &Image, corners: [[f64; 2]; 4]) -> (Image, Homography) {
     (photo, to_photo)
 }
 
-/// Largest distance in pixels of the picture between where corners of the picture are and where they were found.
-fn misalignment(aligned: &Aligned, layout: &Layout, to_photo: Homography) -> f64 {
-    let truth = to_photo.after(layout.from_picture(160, 120));
+/// Maximum distance, in pixels of the picture, between true and estimated positions of points of the picture.
+fn misalignment(aligned: &Aligned, page: &Page, to_photo: Homography) -> f64 {
+    let truth = to_photo.after(page.from_picture(160, 120));
     let back = aligned.to_photo.inverse();
     let corners = [[0.0, 0.0], [160.0, 0.0], [160.0, 120.0], [0.0, 120.0], [80.0, 60.0]].map(DVec2::from);
     corners.into_iter().map(|c| back.apply(truth.apply(c)).distance(c)).fold(0.0, f64::max)
@@ -53,15 +53,15 @@ const CORNERS: [[f64; 2]; 4] = [[130.0, 95.0], [1195.0, 165.0], [1120.0, 905.0],
 fn a_photo_of_the_sheet_is_aligned_whichever_way_up() {
     let (picture, params) = (picture(), params());
     let sheet = print(&picture, &params, Monitor::default().job()).unwrap();
-    let layout = Layout::new(&params, 160, 120).unwrap();
+    let page = Page::new(&params, 160, 120).unwrap();
     for turn in 0..4 {
         let corners = std::array::from_fn(|i| CORNERS[(i + turn) % 4]);
         let (photo, to_photo) = photograph(&sheet, corners);
         let aligned = align(&photo, 160, 120, &params, Monitor::default().job()).unwrap();
         assert_eq!(aligned.marks, 10);
-        let off = misalignment(&aligned, &layout, to_photo);
+        let off = misalignment(&aligned, &page, to_photo);
         assert!(off < 0.05 && aligned.residual < 0.3, "turned {turn}: {off} {}", aligned.residual);
-        // The light is even: what was white is white, everywhere.
+        // After removal of uneven illumination, white is white everywhere.
         let white = |x: usize, y: usize| aligned.image.rgb(x, y) - print_of(&picture, x, y, &params);
         for (x, y) in [(4, 4), (155, 4), (155, 115), (4, 115)] {
             assert!(white(x, y).abs().max_element() < 0.06, "{}", white(x, y));
@@ -69,7 +69,7 @@ fn a_photo_of_the_sheet_is_aligned_whichever_way_up() {
     }
 }
 
-/// What a pixel of the picture looks like printed.
+/// The printed value of a pixel of the picture.
 fn print_of(picture: &Image, x: usize, y: usize, params: &Params) -> Vec3 {
     let faded = |v: f32| srgb_to_linear(1.0 - params.contrast * (1.0 - linear_to_srgb(v)));
     Vec3::from_array(picture.rgb(x, y).to_array().map(faded))
@@ -79,13 +79,13 @@ fn print_of(picture: &Image, x: usize, y: usize, params: &Params) -> Vec3 {
 fn any_one_mark_may_be_missing() {
     let params = params();
     let sheet = print(&picture(), &params, Monitor::default().job()).unwrap();
-    let layout = Layout::new(&params, 160, 120).unwrap();
+    let page = Page::new(&params, 160, 120).unwrap();
     for missing in 0..10 {
         let mut painted = sheet.clone();
-        let centre = layout.marks[missing];
+        let centre = page.marks[missing];
         for y in 0..painted.height {
             for x in 0..painted.width {
-                if centre.distance(DVec2::new(x as f64, y as f64)) < 1.3 * layout.radius {
+                if centre.distance(DVec2::new(x as f64, y as f64)) < 1.3 * page.radius {
                     painted.pixel_mut(x, y).copy_from_slice(&[0.5, 0.2, 0.1]);
                 }
             }
@@ -93,7 +93,7 @@ fn any_one_mark_may_be_missing() {
         let (photo, to_photo) = photograph(&painted, CORNERS);
         let aligned = align(&photo, 160, 120, &params, Monitor::default().job()).unwrap();
         assert_eq!(aligned.marks, 9, "without mark {missing}");
-        assert!(misalignment(&aligned, &layout, to_photo) < 0.06, "without mark {missing}");
+        assert!(misalignment(&aligned, &page, to_photo) < 0.06, "without mark {missing}");
     }
 }
 
@@ -101,14 +101,14 @@ fn any_one_mark_may_be_missing() {
 fn the_stated_error_is_about_the_true_one_and_a_scan_is_exact() {
     let params = Params { even_light: false, ..params() };
     let sheet = print(&picture(), &params, Monitor::default().job()).unwrap();
-    let layout = Layout::new(&params, 160, 120).unwrap();
+    let page = Page::new(&params, 160, 120).unwrap();
     let scan = align(&sheet, 160, 120, &params, Monitor::default().job()).unwrap();
     let identity = Homography(glam::DMat3::IDENTITY);
-    let off = misalignment(&scan, &layout, identity);
+    let off = misalignment(&scan, &page, identity);
     assert!(off < 0.01, "{off} {}", scan.residual);
     let (photo, to_photo) = photograph(&sheet, CORNERS);
     let aligned = align(&photo, 160, 120, &params, Monitor::default().job()).unwrap();
-    let off = misalignment(&aligned, &layout, to_photo);
+    let off = misalignment(&aligned, &page, to_photo);
     assert!(off < 5.0 * aligned.error && aligned.error < 0.1, "{off} {}", aligned.error);
 }
 
@@ -132,7 +132,7 @@ fn what_is_no_sheet_is_an_error_that_says_so() {
     }
 }
 
-/// Paper that arches by four pixels of the sheet from its middle to its sides.
+/// Paper that curves by four pixels of the sheet from its middle to its sides.
 #[test]
 fn a_curled_sheet_shows_in_the_residual() {
     let params = params();

@@ -1,4 +1,4 @@
-//! The same work at every level of instructions that the processor has.
+//! Runs the library's pipelines at every level that the processor supports.
 
 use super::{Level, forced};
 use crate::demo::{self, photo};
@@ -13,7 +13,7 @@ widest! {
     }
 }
 
-/// What `work` makes at each level is what it makes at the lowest: names and texts, which tell every bit of a number.
+/// Asserts that `work` yields identical results at every level: pairs of a name and a text that represents every bit.
 fn same_at_all_levels(work: impl Fn() -> Vec<(String, String)>) {
     let mut levels = forced::levels();
     let lowest = forced::at(levels.next().unwrap(), &work);
@@ -39,7 +39,7 @@ fn a_level_can_be_forced_and_ends_with_the_work() {
     same_at_all_levels(|| vec![("sum".into(), scaled_sum(&values, 0.1).to_string())]);
 }
 
-/// A photo of the demonstration's office, small enough for a test, and the demonstration's room.
+/// A photo of the demonstration's office at a size suitable for a test, and the demonstration's room.
 fn input(pool: &Pool) -> (Input, f64) {
     let office = demo::exemplar_room().unwrap();
     let camera = office.scene.cameras[office.camera].clone();
@@ -56,8 +56,8 @@ fn input(pool: &Pool) -> (Input, f64) {
     (input, f64::from(office.ceiling_height - camera.position.y))
 }
 
-/// The stages of the lighting transfer, each fed with what the one before it made: features, masks, the texture and its
-/// lamps, the light solved for and the picture.
+/// The stages of the lighting transfer, each fed with the result of the one before: features, masks, texture and
+/// lamps, solved light, rendered image.
 #[test]
 fn the_lighting_transfer_is_the_same_to_the_bit_at_every_level() {
     let pool = Pool::new(2).unwrap();

@@ -1,24 +1,25 @@
-//! Sequences (section 5, future work): the matches of the frame before, moved along with what they show, are kept where they
-//! still fit, so that paint sticks to things; what has moved into the light, or into view, is painted anew.
+//! Sequences (section 5, future work): the matches of the previous frame, advected by the motion, are kept where they
+//! still fit, so that paint sticks to objects. Places that moved into different light or into view are matched anew.
 //!
-//! How much is kept is `Params::coherence`: at 1 all that fits, at 0 nothing, and between them blocks chosen anew for each
-//! frame, which boil as hand-painted frames do (after the temporal noise control of Fišer et al. 2014, "Color Me Noisy").
+//! `Params::coherence` controls the share that is kept: with 1 every match that fits, with 0 none, and in between a
+//! random set of blocks per frame, which flicker like hand-painted frames (after the temporal noise control of Fišer
+//! et al. 2014, "Color Me Noisy").
 
 use super::Params;
 use super::budget::budget;
 use super::level::{Level, Problem};
-use super::schedule::paint;
+use super::multires::paint;
 use crate::error::Result;
 use crate::image::{Image, try_collect};
 use crate::job::Job;
 use crate::patch::{Field, NONE, halve};
 use crate::rng::Rng;
 
-/// Side in pixels of what is kept or given up together.
+/// Side in pixels of the blocks that are kept or discarded as a whole.
 const BLOCK: usize = 24;
 
-/// The field of the frame before seen in this one: each patch takes the match of the patch its centre comes from. `motion` is
-/// of the size of the guides; the problem may have been halved.
+/// The field of the previous frame advected into this one: each patch takes the match of the patch its centre comes
+/// from. `motion` has the size of the guides; the problem may have been halved.
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
     if halved == 0 {
         return advect(before, motion, problem.patch);
@@ -34,7 +35,7 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
     for (i, at) in field.at.iter_mut().enumerate() {
         let (x, y) = (i % before.width, i / before.width);
         let step = motion.pixel(x + patch / 2, y + patch / 2);
-        // Half a pixel more rounds to the nearest; NaN is nowhere.
+        // Adding half a pixel rounds to the nearest; NaN is outside.
         let from = (inside(x as f32 + step[0] + 0.5, before.width), inside(y as f32 + step[1] + 0.5, before.height));
         if let (Some(px), Some(py)) = from {
             *at = before.at[py * before.width + px];
@@ -43,8 +44,8 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
     Ok(field)
 }
 
-/// Measures the moved field and says which patches keep its matches: those left of the knee of their errors, as far as their
-/// block is not to boil.
+/// Measures the advected field and selects the patches that keep its matches: those left of the knee of the errors,
+/// except in blocks that are matched anew.
 pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
     let mut picture = level.problem.blank_picture()?;
     paint(&mut picture, field, level.problem, params.vote, job, |_| true)?;

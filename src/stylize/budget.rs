@@ -1,22 +1,23 @@
-//! The error budget (§3.3, Eq. 4): which matches are good enough to be used.
+//! The error budget (§3.3, Eq. 4): selects the matches that are good enough to be used.
 //!
-//! The sorted matching errors, both axes scaled to `[0, 1]` (errors by their 99th percentile: of a million patches the very
-//! worst is an accident, and would move the knee), follow a hyperbola `f(x) = 1 / (a - b x)`. Its knee, where
-//! `f′ = 1`, parts feasible from forced matches. `f′ = b f²`, so the knee is where `a - b x = √b`:
+//! The sorted matching errors follow a hyperbola `f(x) = 1 / (a - b x)` when both axes are scaled to `[0, 1]`. (Errors
+//! are scaled by their 99th percentile: the largest of a million errors is an outlier that would move the knee.) The
+//! knee, where `f′ = 1`, separates feasible from forced matches. Since `f′ = b f²`, the knee satisfies `a - b x = √b`:
 //! `k = a/b - √(1/b)`. The paper prints a plus sign, which lies beyond the pole at `a/b`.
 //!
-//! Where no hyperbola fits, as when most exemplar patches have no place left and the curve is a step (Fig. 7), the knee is
-//! the point farthest below the diagonal. A curve that never runs below it has no knee: flat errors are all feasible.
+//! If no hyperbola fits, for instance when the curve is a step because most exemplar patches have no suitable place
+//! (Fig. 7), the knee is the point farthest below the diagonal. A curve that never runs below the diagonal has no
+//! knee: all of its errors are feasible.
 
-/// Fewer errors than this have no shape to fit.
-const FEWEST: usize = 8;
-/// Points of the sorted curve that are fitted.
+/// Minimum number of errors to fit a curve.
+const MIN_ERRORS: usize = 8;
+/// Sample points of the sorted curve in the fit.
 const SAMPLES: usize = 256;
 
-/// Least share of the variance that a hyperbola must explain.
-const FIT: f64 = 0.8;
-/// A curve that runs less than this below the diagonal has no knee.
-const SAG: f64 = 0.01;
+/// Minimum share of the variance that a hyperbola must explain [origin not recorded].
+const MIN_EXPLAINED: f64 = 0.8;
+/// Minimum distance below the diagonal of a curve with a knee [origin not recorded].
+const MIN_SAG: f64 = 0.01;
 
 /// The hyperbola `1 / (a - b x)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +34,7 @@ impl Hyperbola {
         (self.b > 0.0 && pole > 1.0 && knee > 0.0 && knee < 1.0).then_some(knee)
     }
 
-    /// Share of the variance of `points` that it explains.
+    /// The share of the variance of `points` that the hyperbola explains.
     fn explained(self, points: &[(f64, f64)]) -> f64 {
         let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
         let variance: f64 = points.iter().map(|p| (p.1 - mean).powi(2)).sum();
@@ -41,10 +42,10 @@ impl Hyperbola {
         1.0 - rest / variance
     }
 
-    /// Fits sorted points `(x, y)` in the unit square.
+    /// Fits points `(x, y)` in the unit square, sorted by `x`.
     ///
-    /// `1/y = a - b x` is linear; weighting by `y⁴` makes its least squares those of `y` itself to first order. Three
-    /// Gauss-Newton steps on `y` follow. `None` where the points have no slope.
+    /// `1/y = a - b x` is linear; weights `y⁴` make its least squares equal to those of `y` to first order. Three
+    /// Gauss-Newton steps on `y` follow. `None` if the points have no slope.
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
         let points = || points.iter().filter(|p| p.1 > 0.0);
         let mut fit = solve(points().map(|&(x, y)| ([y * y, -x * y * y], y)))?;
@@ -65,7 +66,7 @@ impl Hyperbola {
     }
 }
 
-/// Least squares for two unknowns: rows of coefficients and right-hand sides.
+/// Solves a linear least-squares problem of two unknowns, given rows of coefficients and right-hand sides.
 fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Hyperbola> {
     let (mut m, mut r) = ([0.0; 3], [0.0; 2]);
     for ([p, q], v) in rows {
@@ -80,23 +81,23 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Hyperbola> {
         .then(|| Hyperbola { a: (m[2] * r[0] - m[1] * r[1]) / det, b: (m[0] * r[1] - m[1] * r[0]) / det })
 }
 
-/// What may be spent on matches.
+/// The error budget of matches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Share of the matches left of the knee; 1 where there is none and all are feasible.
+    /// Share of the matches left of the knee; 1 if there is no knee and all are feasible.
     pub knee: f64,
-    /// Sum of the errors left of the knee: T of Eq. 4.
+    /// Sum of the errors left of the knee: T in Eq. 4.
     pub total: f64,
 }
 
-/// The budget of ascending `errors`. Flat or few errors, and errors without a knee, are all feasible.
+/// The budget of `errors` in ascending order. Constant or few errors, and errors without a knee, are all feasible.
 pub fn budget(errors: &[u32]) -> Budget {
     let sum = |errors: &[u32]| errors.iter().map(|&e| f64::from(e)).sum();
     let all = || Budget { knee: 1.0, total: f64::INFINITY };
-    // The last hundredth sets no scale.
+    // Exclude the last hundredth from the scale.
     let n = errors.len();
     let worst = if n > 0 { errors[(n - 1) * 99 / 100] } else { 0 };
-    if n < FEWEST || worst == 0 || errors[0] == worst {
+    if n < MIN_ERRORS || worst == 0 || errors[0] == worst {
         return all();
     }
     let samples = SAMPLES.min(n);
@@ -106,9 +107,9 @@ pub fn budget(errors: &[u32]) -> Budget {
             ((i as f64 + 0.5) / n as f64, f64::from(errors[i]) / f64::from(worst))
         })
         .collect();
-    // A hyperbola through (1, 1) that has a knee runs below the diagonal there, by (1 - √(1/b))².
+    // A hyperbola through (1, 1) with a knee runs below the diagonal there, by (1 - √(1/b))².
     let knee = farthest_below_diagonal(&points).map(|farthest| {
-        let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= FIT);
+        let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= MIN_EXPLAINED);
         hyperbola.and_then(Hyperbola::knee).unwrap_or(farthest)
     });
     match knee {
@@ -119,7 +120,7 @@ pub fn budget(errors: &[u32]) -> Budget {
 
 fn farthest_below_diagonal(points: &[(f64, f64)]) -> Option<f64> {
     let farthest = points.iter().max_by(|p, q| (p.0 - p.1).total_cmp(&(q.0 - q.1)))?;
-    (farthest.0 - farthest.1 > SAG).then_some(farthest.0)
+    (farthest.0 - farthest.1 > MIN_SAG).then_some(farthest.0)
 }
 
 #[cfg(test)]
@@ -163,7 +164,8 @@ mod tests {
         for errors in [vec![], vec![5], vec![1, 2, 3, 4, 5, 6, 900], vec![0; 100], vec![7; 100]] {
             assert_eq!(budget(&errors).total, f64::INFINITY, "{errors:?}");
         }
-        // Concave: the slope falls. One outlier in a flat curve: no hyperbola, but nothing breaks.
+        // A concave curve, whose slope falls; then one outlier in a flat curve, which no hyperbola fits but which must
+        // not fail.
         assert_eq!(budget(&curve(1000, |x| x.sqrt())).knee, 1.0);
         let mut outlier = vec![10u32; 1000];
         outlier[999] = u32::MAX - 1;
@@ -172,7 +174,7 @@ mod tests {
         // A step: a fifth fits, the rest is forced (Fig. 7).
         let step = curve(1000, |x| if x < 0.2 { 0.01 } else { 0.9 + 0.1 * x });
         assert!((super::budget(&step).knee - 0.2).abs() < 0.01);
-        // Most are perfect.
+        // Most errors are zero.
         let mut zeros = vec![0u32; 1000];
         zeros[990..].iter_mut().enumerate().for_each(|(i, e)| *e = 1 + i as u32);
         assert!(budget(&zeros).knee > 0.9);

@@ -1,4 +1,4 @@
-//! How nearest patches are found: PatchMatch, or a table that is not.
+//! The nearest-patch searches: PatchMatch, or a k-d table.
 
 use super::level::Level;
 use super::{Finder, Params};
@@ -6,10 +6,11 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::patch::{Domain, Field, Means, Search, Sweep, Table};
 
-/// Patches of the table compared with each patch; three times as many take twice the time and lower Eq. 3 by a hundredth.
+/// Patches of the table compared with each patch. Three times as many take twice the time and lower Eq. 3 by one
+/// percent [bench stylit].
 const TRIES: usize = 8;
 
-/// What the searches of one iteration share.
+/// Data shared by the searches of one iteration.
 pub(super) struct Nearest<'a> {
     level: &'a Level<'a>,
     sweeps: usize,
@@ -41,7 +42,7 @@ impl<'a> Nearest<'a> {
         Ok(Self { level, sweeps: params.sweeps, tables })
     }
 
-    /// Improves the matches of target patches among exemplar patches, as `search` counts them; `index` numbers the call.
+    /// Improves the matches of target patches among exemplar patches under `search`; `index` numbers the call.
     pub fn forward(
         &self,
         search: &Search,
@@ -51,7 +52,7 @@ impl<'a> Nearest<'a> {
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
         match &self.tables {
-            None => self.sweep(search, field, Sweep { index, reach: 64, fresh: 4 }, job, active),
+            None => self.sweep(search, field, Sweep { index, radius: 64, initial_samples: 4 }, job, active),
             Some(t) => search.look_up(field, &t.source, &t.target_means, TRIES, job, active),
         }
     }
@@ -67,7 +68,7 @@ impl<'a> Nearest<'a> {
     ) -> Result<()> {
         let search = self.level.reverse(free);
         match &self.tables {
-            None => self.sweep(&search, field, Sweep { index, reach: 32, fresh: 2 }, job, active),
+            None => self.sweep(&search, field, Sweep { index, radius: 32, initial_samples: 2 }, job, active),
             Some(t) => search.look_up(field, &t.target, &t.source_means, TRIES, job, active),
         }
     }

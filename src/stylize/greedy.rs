@@ -1,4 +1,4 @@
-//! Hertzmann et al., "Image Analogies" (2001), for comparison: pixels are set once, in scan order.
+//! Hertzmann et al., "Image Analogies" (2001), for comparison: sets each pixel once, in scan order.
 
 use super::level::Level;
 use crate::error::Result;
@@ -6,11 +6,12 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::patch::{Field, NONE, pack, unpack};
 
-/// How much worse a coherent match may be on the finest level (κ of Hertzmann et al., §3.2).
+/// Coherence parameter κ at the finest level (Hertzmann et al., §3.2): tolerance for coherent matches [origin not
+/// recorded].
 const COHERENCE: f64 = 5.0;
 
-/// Sets every patch centre to the match that is nearest, or to one that continues a neighbour already set if it is
-/// nearly as near. In scan order, hence on one thread.
+/// Sets every patch centre to the nearest match, or to a match that continues an already set neighbour if its distance
+/// is within the tolerance. Runs in scan order, hence on one thread.
 pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, depth: usize, job: Job) -> Result<()> {
     let patch = level.problem.patch;
     let half = patch / 2;
@@ -28,7 +29,7 @@ pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, dep
             let nearest = search.distance(x, y, px, py, u32::MAX);
             let mut limit = (f64::from(nearest) * tolerance).min(f64::from(u32::MAX)) as u32;
 
-            // Continue the neighbours set so far: the row above and the pixel to the left.
+            // Try to continue the neighbours set so far: three in the row above and the pixel to the left.
             for (dx, dy) in [(-1isize, 0isize), (-1, -1), (0, -1), (1, -1)] {
                 let (nx, ny) = (x as isize + dx, y as isize + dy);
                 if nx < 0 || ny < 0 || nx as usize >= field.width {

@@ -1,4 +1,4 @@
-//! Guides: channel pairs of exemplar and target, brought to `[0, 1]` on a common scale.
+//! Guides: pairs of exemplar and target channels, normalised to `[0, 1]` with a common scale.
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;
@@ -7,45 +7,45 @@ use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::patch::{halve, level_size};
 
-/// What the numbers of a guide mean.
+/// The meaning of a guide's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Linear light, ≥ 0: rendered buffers. Compared as it would look on a screen: scaled so that the 99.9th percentile
-    /// of exemplar and target together is white, if it lies beyond white, then sRGB-encoded and clipped, so that a
-    /// highlight of a million counts as white and does not outvote the rest.
+    /// Linear light, ≥ 0: rendered buffers, compared as displayed. They are scaled so that the 99.9th percentile of
+    /// exemplar and target together is white if it exceeds white, then sRGB-encoded and clipped, so that a highlight
+    /// of a million counts as white and does not dominate.
     Light,
-    /// Data without a curve: normals, object codes, edge maps. The joint range of all channels is mapped onto `[0, 1]`.
+    /// Linear data: normals, object codes, edge maps. The joint range of all channels is mapped to `[0, 1]`.
     Data,
 }
 
-/// One property of the scene, drawn for the exemplar and for the target.
+/// One property of the scene, rendered for the exemplar and for the target.
 #[derive(Clone, Copy)]
 pub struct Guide<'a> {
-    /// What messages call it.
+    /// Name in error messages.
     pub name: &'a str,
     pub source: &'a Image,
     pub target: &'a Image,
-    /// Weight against the other guides, in `[0, 1e6]`.
+    /// Weight relative to the other guides, in `[0, 1e6]`.
     pub weight: f32,
     pub range: Range,
 }
 
-/// Most channels of all guides together: with an artwork of four they fill the 64 of an image.
+/// Maximum number of channels of all guides together: with an artwork of four they fill the 64 channels of an image.
 pub const MAX_CHANNELS: usize = 60;
 
-/// All guides side by side.
+/// All guides, interleaved.
 pub(super) struct Channels {
     pub source: Image,
     pub target: Image,
-    /// Weight of each channel: a guide's weight is divided among its channels, and all sum to 1 (or 0).
+    /// Weight of each channel: a guide's weight is divided among its channels, and all weights sum to 1 (or 0).
     pub weights: Vec<f64>,
-    /// Pixels with a sample that is NaN or infinite.
+    /// Pixels with a NaN or infinite sample.
     pub broken_source: Vec<bool>,
     pub broken_target: Vec<bool>,
 }
 
 impl Channels {
-    /// Takes the guides in, at half the resolution if `half`: then everything else is done on a quarter of the pixels.
+    /// Combines the guides, at half the resolution if `half`: all further work then handles a quarter of the pixels.
     pub fn new(guides: &[Guide], match_appearance: f32, half: bool, job: Job) -> Result<Self> {
         let first = guides.first().ok_or_else(no_guides)?;
         let count: usize = guides.iter().map(|g| g.source.channels).sum();
@@ -97,7 +97,7 @@ pub(super) fn no_guides() -> Error {
     Error::argument("guides is empty; give at least one pair")
 }
 
-/// Moves a channel's range from that of the source towards that of the target: its 5th and 95th percentile.
+/// Shifts a channel's range, from the 5th to the 95th percentile, from that of the source towards that of the target.
 fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f32) {
     let ends = |image: &Image| {
         let step = (image.width * image.height >> 18).max(1) * image.channels;
@@ -107,7 +107,7 @@ fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f
         (at(5), at(95) - at(5))
     };
     let ((low, range), (new_low, new_range)) = (ends(source), ends(target));
-    // What is nearly flat has no contrast to be changed.
+    // Leave the contrast of nearly flat channels unchanged.
     let gain = if range > 0.02 { new_range / range } else { 1.0 };
     let channels = source.channels;
     for v in source.data.iter_mut().skip(channel).step_by(channels) {
@@ -116,7 +116,7 @@ fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f
     }
 }
 
-/// Replaces samples that are no numbers by 0 and says which pixels had one.
+/// Replaces non-finite samples by 0 and returns which pixels had one.
 fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
     let (channels, row_len) = (image.channels, image.row_len());
     let mut broken = try_vec(image.width * image.height, false)?;
@@ -133,7 +133,7 @@ fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
     Ok(broken)
 }
 
-/// A scale and offset, then perhaps the sRGB curve. NaN and infinity pass through, to be found later.
+/// A scale and offset, optionally followed by the sRGB curve. NaN and infinity pass through, to be detected later.
 struct Normalisation {
     offset: f32,
     scale: f32,
@@ -151,12 +151,12 @@ impl Normalisation {
 }
 
 impl Guide<'_> {
-    /// What one side of it is called.
+    /// The name of one side of the guide.
     pub(super) fn side(&self, side: &str) -> String {
         format!("the {side} of guide {:?}", self.name)
     }
 
-    /// Checks what can be told of a guide by itself.
+    /// Checks that do not involve other guides.
     pub fn check_alone(&self) -> Result<()> {
         check_range(&self.side("weight"), self.weight, 0.0, 1e6)?;
         if self.source.channels != self.target.channels {
@@ -192,7 +192,7 @@ impl Guide<'_> {
             Range::Data => Normalisation { offset: 0.0, scale: 0.0, curve: false },
             Range::Light if high <= 1.0 => Normalisation { offset: 0.0, scale: 1.0, curve: true },
             Range::Light => {
-                // The percentile, over at most a million samples: white must not hang on single pixels.
+                // Compute the percentile from at most a million samples: white must not depend on single pixels.
                 let step = ((self.source.data.len() + self.target.data.len()) >> 20).max(1);
                 let mut values: Vec<f32> = finite().step_by(step).collect();
                 let rank = (values.len() - 1) * 999 / 1000;

@@ -7,21 +7,21 @@ use crate::exec;
 use crate::image::colour::linear_to_srgb;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
-use crate::patch::{Domain, Features, Kernel, Quantiser, Search, halve, halve_mask};
+use crate::patch::{Domain, Kernel, QuantisedImage, Quantiser, Search, halve, halve_mask};
 
-/// The problem at one resolution, in floats: what the next coarser one is made from.
+/// The problem at one resolution in floating point, from which the next coarser one is derived.
 pub(super) struct Problem {
     pub patch: usize,
     /// Artwork, encoded for display.
     pub style: Image,
     pub guides: Channels,
-    /// Pixels patches may be taken from.
+    /// Exemplar pixels that patches may be taken from.
     pub source_mask: Option<Vec<bool>>,
-    /// Pixels to make.
+    /// Target pixels to synthesise.
     pub target_mask: Option<Vec<bool>>,
     /// Encoded colours outside `target_mask`.
     pub known: Option<Image>,
-    /// Pixels of the exemplar and of the target that were no numbers.
+    /// Number of non-finite pixels in the exemplar and in the target.
     pub broken: (usize, usize),
 }
 
@@ -35,7 +35,7 @@ impl Problem {
         let first = input.guides.first().ok_or_else(no_guides)?;
         check_side(&first.side("target"), first.target)?;
         artwork.check_same_size("artwork", first.source, &first.side("source"))?;
-        // A preview works on half the resolution, if patches fit into that.
+        // A preview works at half the resolution if patches fit into it.
         let sides = [artwork.width, artwork.height, first.target.width, first.target.height];
         let shortest = sides.into_iter().min().unwrap_or(1);
         let half = params.preview && shortest >= 2 * params.patch;
@@ -44,7 +44,7 @@ impl Problem {
         let mut source_mask = mask("source_mask", input.source_mask, first.source)?;
         let mut target_mask = mask("target_mask", input.target_mask, first.target)?;
 
-        // Exemplar pixels that are no numbers are masked out.
+        // Mask out non-finite exemplar pixels.
         let pixels = style.data.chunks_exact(style.channels);
         let mut broken = try_collect(pixels.map(|p| p.iter().any(|v| !v.is_finite())))?;
         encode(&mut style, job)?;
@@ -70,16 +70,16 @@ impl Problem {
             motion.check_same_size("motion", first.target, "the target of the guides")?;
             if motion.channels != 2 || input.previous.is_none() {
                 return Err(Error::argument(format!(
-                    "motion has {} channels and previous is {}; it must have 2, and there must be a previous field",
+                    "motion has {} channels and previous is {}; motion needs 2 channels and a previous field",
                     motion.channels,
-                    if input.previous.is_some() { "there" } else { "missing" }
+                    if input.previous.is_some() { "given" } else { "missing" }
                 )));
             }
         }
         if params.preview {
             pca::compress(&mut guides, job)?;
         }
-        // The Lit Sphere looks up single pixels; elsewhere an odd width that fits.
+        // The Lit Sphere looks up single pixels; in other modes, reduce the patch to an odd width that fits.
         let patch = match params.mode {
             Mode::LitSphere => 1,
             _ if params.patch <= shortest => params.patch,
@@ -94,12 +94,12 @@ impl Problem {
         s.width.min(s.height).min(t.width).min(t.height)
     }
 
-    /// Whether it is of the artwork's own size: a preview is not.
+    /// Whether it has the artwork's full size, as opposed to a preview.
     pub fn is_of(&self, artwork: &Image) -> bool {
         (self.style.width, self.style.height) == (artwork.width, artwork.height)
     }
 
-    /// What is known of the target, else black; encoded for display.
+    /// The known part of the target, black elsewhere; encoded for display.
     pub fn blank_picture(&self) -> Result<Image> {
         match &self.known {
             Some(known) => known.try_clone(),
@@ -130,15 +130,15 @@ impl Problem {
     }
 }
 
-/// Half the mask of pixels that may be used, an image of the size of `of`: all four under a pixel must be, but a region
-/// thinner than two pixels must not vanish.
+/// Halves the mask of usable pixels of an image of the size of `of`. All four pixels under a pixel must be usable,
+/// except where that would empty the mask: regions thinner than two pixels must not vanish.
 fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     let inside = halve_mask(mask, of.width, of.height, false)?;
     Ok(Some(if inside.contains(&true) { inside } else { halve_mask(mask, of.width, of.height, true)? }))
 }
 
-/// Reads a mask of the size of `of`.
+/// Thresholds a mask of the size of `of`.
 fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     mask.check_same_size(name, of, "the guides of its side")?;
@@ -152,7 +152,7 @@ fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>
     Ok(Some(set))
 }
 
-/// Encodes linear colours for display; what is no number becomes black.
+/// Encodes linear colours for display; non-finite values become black.
 pub(super) fn encode(image: &mut Image, job: Job) -> Result<()> {
     let row_len = image.row_len();
     exec::for_rows(&mut image.data, row_len, job, |_, row| row.iter_mut().for_each(|v| *v = encoded(*v)))
@@ -175,29 +175,29 @@ fn encode_known(known: &Image, target: &Image, channels: usize, job: Job) -> Res
     Ok(encoded)
 }
 
-/// The problem at one resolution, in integers.
+/// The problem at one resolution in integers.
 pub(super) struct Level<'a> {
     pub problem: &'a Problem,
-    pub source: Features,
-    pub target: Features,
-    /// Exemplar patches that may be used and target patches that need one.
+    pub source: QuantisedImage,
+    pub target: QuantisedImage,
+    /// Exemplar patches that may be used, and target patches that need a match.
     pub allowed: Domain,
     pub wanted: Domain,
     colours: Vec<Quantiser>,
-    /// Squared integer step of a difference of 1 at weight 1.
+    /// Squared integer step that corresponds to a difference of 1 at weight 1.
     unit: f64,
     pub kernel: Kernel,
     pub seed: u64,
 }
 
 impl<'a> Level<'a> {
-    /// Quantises guides (and the artwork unless its weight `colour` is 0).
+    /// Quantises the guides, and the artwork unless its weight `colour` is 0.
     pub fn new(problem: &'a Problem, params: &Params, colour: f64, seed: u64, job: Job) -> Result<Self> {
         let (style, guides) = (&problem.style, &problem.guides);
         let channels = style.channels;
         let mut weights = vec![colour / channels as f64; channels];
         weights.extend(guides.weights.iter().map(|w| w * f64::from(params.guide_weight)));
-        // Without colours and guides there is nothing to compare: any match is as good as another.
+        // With neither colours nor guides, all matches are equally good.
         if weights.iter().all(|&w| w == 0.0) {
             weights[channels] = f64::MIN_POSITIVE;
         }
@@ -205,13 +205,13 @@ impl<'a> Level<'a> {
         let mut quantisers = Quantiser::for_weights(&weights, problem.patch);
         let guide_quantisers = quantisers.split_off(channels);
 
-        let mut source = Features::new(style.width, style.height, weights.len())?;
-        let mut target = Features::new(guides.target.width, guides.target.height, weights.len())?;
+        let mut source = QuantisedImage::new(style.width, style.height, weights.len())?;
+        let mut target = QuantisedImage::new(guides.target.width, guides.target.height, weights.len())?;
         source.fill(0, &quantisers, style, job.part(0.0, 0.2))?;
         source.fill(channels, &guide_quantisers, &guides.source, job.part(0.2, 0.6))?;
         target.fill(channels, &guide_quantisers, &guides.target, job.part(0.6, 1.0))?;
         let allowed = Domain::new(source.width, source.height, problem.patch, problem.source_mask.as_deref(), false)?;
-        // A region thinner than a patch: patches that touch it are better than none.
+        // In a region thinner than a patch, allow patches that touch it.
         let allowed = if allowed.is_empty() {
             Domain::new(source.width, source.height, problem.patch, problem.source_mask.as_deref(), true)?
         } else {
@@ -221,12 +221,12 @@ impl<'a> Level<'a> {
         Ok(Self { problem, source, target, allowed, wanted, colours: quantisers, unit, kernel: Kernel::detect(), seed })
     }
 
-    /// Takes over the colours of the picture so far.
+    /// Stores the colours of the current picture.
     pub fn set_picture(&mut self, picture: &Image, job: Job) -> Result<()> {
         self.target.fill(0, &self.colours, picture, job)
     }
 
-    /// The wanted patches that would look different with another picture: the distances of all others stay as they are.
+    /// The wanted patches whose pixels differ in another picture; the distances of all others remain valid.
     pub fn changed_by(&self, picture: &Image, job: Job) -> Result<Vec<bool>> {
         let (width, lanes) = (picture.width, self.target.lanes);
         let mut differs = try_vec(width * picture.height, false)?;
@@ -241,7 +241,7 @@ impl<'a> Level<'a> {
         Ok(touched)
     }
 
-    /// Takes over the colour of one pixel.
+    /// Stores the colour of one pixel.
     pub fn set_pixel(&mut self, x: usize, y: usize, colour: &[f32]) {
         let start = (y * self.target.width + x) * self.target.lanes;
         for ((out, q), v) in self.target.data[start..].iter_mut().zip(&self.colours).zip(colour) {
@@ -249,12 +249,13 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// What a distance of 1 per pixel of a patch, in the units of Eq. 1 with channels in `[0, 1]`, comes to.
+    /// The integer distance that corresponds to 1 per pixel of a patch, in the units of Eq. 1 with channels in `[0,
+    /// 1]`.
     pub fn unit(&self) -> f64 {
         (self.problem.patch * self.problem.patch) as f64 * self.unit
     }
 
-    /// Search from target patches for exemplar patches.
+    /// The search from target patches for exemplar patches.
     pub fn forward(&self) -> Search<'_> {
         Search {
             query: &self.target,
@@ -267,7 +268,7 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Search from exemplar patches for target patches among `free`.
+    /// The search from exemplar patches for target patches among `free`.
     pub fn reverse<'b>(&'b self, free: &'b Domain) -> Search<'b> {
         Search { query: &self.source, base: &self.target, allowed: free, seed: !self.seed, ..self.forward() }
     }

@@ -1,5 +1,5 @@
-//! Guides compressed to their principal components (§3.4, preview): rendered buffers are much alike, so a few
-//! components tell as much as all channels.
+//! Compression of guides to their principal components (§3.4, preview): rendered buffers are strongly correlated, so a
+//! few components carry nearly all information.
 
 use super::guides::Channels;
 use crate::error::Result;
@@ -7,21 +7,21 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Share of the variance to keep.
-const KEEP: f64 = 0.995;
-/// With three colours these fill eight lanes.
-const MOST: usize = 5;
+/// Share of the variance to keep [origin not recorded].
+const KEPT_VARIANCE: f64 = 0.995;
+/// Maximum number of components: with three colours they fill eight lanes.
+const MAX_COMPONENTS: usize = 5;
 
-/// Replaces the channels by principal components. Distances in the weighted space stay the same but for the variance
-/// dropped: each component is stretched to `[0, 1]` and weighted by the square of its range.
+/// Replaces the channels by principal components. Distances in the weighted space change only by the dropped variance:
+/// each component is stretched to `[0, 1]` and weighted by the square of its range.
 pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let n = guides.weights.len();
-    if n <= MOST {
+    if n <= MAX_COMPONENTS {
         return Ok(());
     }
     let roots: Vec<f64> = guides.weights.iter().map(|w| w.sqrt()).collect();
 
-    // Covariance of the weighted channels over exemplar and target, from at most 2¹⁶ pixels.
+    // Compute the covariance of the weighted channels over exemplar and target, from about 2¹⁶ pixels.
     let pixels = || guides.source.data.chunks_exact(n).chain(guides.target.data.chunks_exact(n));
     let step = (((guides.source.data.len() + guides.target.data.len()) / n) >> 16).max(1);
     let (mut mean, mut count) = (vec![0.0; n], 0.0);
@@ -51,13 +51,13 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let total: f64 = values.iter().sum();
     let mut kept = 0.0;
     let count = values.iter().take_while(|&&v| {
-        let more = kept < KEEP * total;
+        let more = kept < KEPT_VARIANCE * total;
         kept += v;
         more
     });
-    let count = count.count().clamp(1, MOST);
+    let count = count.count().clamp(1, MAX_COMPONENTS);
 
-    // Project, then stretch to the joint range.
+    // Project the channels, then stretch each component to its joint range.
     let project = |image: &Image| -> Result<Image> {
         let mut out = Image::new(image.width, image.height, count)?;
         exec::for_rows(&mut out.data, image.width * count, job, |y, row| {
@@ -87,7 +87,7 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     Ok(())
 }
 
-/// Eigenvalues of a symmetric matrix, largest first, and unit eigenvectors as rows: cyclic Jacobi rotations.
+/// Eigenvalues of a symmetric matrix, largest first, and unit eigenvectors as rows (cyclic Jacobi rotations).
 fn symmetric_eigen(mut m: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
     let mut v: Vec<f64> = (0..n * n).map(|i| if i % (n + 1) == 0 { 1.0 } else { 0.0 }).collect();
     for _ in 0..30 {
@@ -101,7 +101,7 @@ fn symmetric_eigen(mut m: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
                 if m[p * n + q] == 0.0 {
                     continue;
                 }
-                // The rotation that makes m[p][q] vanish.
+                // The rotation that annihilates m[p][q].
                 let theta = (m[q * n + q] - m[p * n + p]) / (2.0 * m[p * n + q]);
                 let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let t = if theta == 0.0 { 1.0 } else { t };
@@ -138,7 +138,7 @@ mod tests {
         let m: Vec<f64> =
             (0..n * n).map(|i| ((i / n * i % n + i % n * (i / n)) % 7) as f64 + f64::from(i % 7 == 0)).collect();
         let m: Vec<f64> = (0..n * n).map(|i| m[i] + m[i % n * n + i / n]).collect();
-        // Shifted to be positive definite.
+        // Shift the matrix to be positive definite.
         let m: Vec<f64> = m.iter().enumerate().map(|(i, v)| v + if i % (n + 1) == 0 { 100.0 } else { 0.0 }).collect();
         let (values, vectors) = symmetric_eigen(m.clone(), n);
         for i in 0..n {
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn compressed_guides_keep_their_distances() {
-        // Nine channels of which two are independent.
+        // Nine channels of rank two.
         let image = |seed: usize| {
             Image::from_fn(31, 17, |x, y| {
                 let (a, b) = (((x * 7 + seed) % 31) as f32 / 31.0, ((y * 5 + seed) % 17) as f32 / 17.0);

@@ -1,4 +1,4 @@
-//! What a run did and how well: energy, coverage, patch usage, guide error.
+//! Measurements of a run: energy, coverage, patch usage, guide error.
 
 use super::level::{Level, Problem};
 use super::retrieve::Pass;
@@ -8,25 +8,25 @@ use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::patch::{Field, NONE, unpack};
 
-/// One resolution level.
+/// The report of one resolution level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LevelReport {
     pub width: usize,
     pub height: usize,
-    /// Eq. 3 per target patch and per pixel of it, after each iteration: mean weighted squared difference of channels in
-    /// `[0, 1]`, artwork counting 1 in all and guides μ.
+    /// Eq. 3 per target patch and per pixel of it, after each iteration: the mean weighted squared difference of
+    /// channels in `[0, 1]`, with total weight 1 of the artwork and μ of the guides.
     pub energy: Vec<f64>,
     /// Retrieval passes of each iteration.
     pub passes: Vec<Vec<Pass>>,
 }
 
-/// How often exemplar patches are used in the result.
+/// Usage statistics of the exemplar patches in the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Usage {
     /// Share of the allowed exemplar patches that are used.
     pub used: f64,
-    /// Most uses of one patch.
-    pub most: u32,
+    /// Maximum number of uses of a single patch.
+    pub max_uses: u32,
     /// Entropy of the usage in bits; at most log2 of the number of target patches.
     pub entropy: f64,
 }
@@ -36,17 +36,18 @@ pub struct Report {
     /// Coarsest level first.
     pub levels: Vec<LevelReport>,
     pub usage: Usage,
-    /// One channel per target pixel: root mean square difference of the weighted guides between the target and what was
-    /// painted there, in `[0, 1]`. High where the exemplar has nothing that fits (Fig. 17).
+    /// One channel per target pixel: root mean square difference of the weighted guides between the target and the
+    /// exemplar position painted there, in `[0, 1]`. High where the exemplar has nothing suitable (Fig. 17).
     pub guide_error: Image,
-    /// Two channels per target pixel: x and y in the artwork, in pixels, of what was painted there, or rather of the patch
-    /// whose centre is nearest; -1 where nothing was.
+    /// Two channels per target pixel: x and y, in pixels of the artwork, of the source of its paint, according to the
+    /// patch with the nearest centre; -1 where there is none.
     pub sources: Image,
-    /// How often the sides of the result are half those of the target: 1 in preview, else 0.
+    /// Number of halvings from the target's size to the result's: 1 in preview, else 0.
     pub halvings: usize,
-    /// Width of patches that was used.
+    /// The patch width used.
     pub patch: usize,
-    /// Exemplar pixels left out because they are NaN or infinite, and target guide pixels taken as 0 for it.
+    /// Number of exemplar pixels left out because they are NaN or infinite, and of target guide pixels set to 0 for
+    /// the same reason.
     pub broken_source: usize,
     pub broken_target: usize,
 }
@@ -67,7 +68,7 @@ impl Usage {
         };
         Ok(Self {
             used: used.clone().count() as f64 / level.allowed.len().max(1) as f64,
-            most: used.clone().copied().max().unwrap_or(0),
+            max_uses: used.clone().copied().max().unwrap_or(0),
             entropy: used.map(|&c| entropy(c)).sum(),
         })
     }
@@ -78,7 +79,7 @@ pub(super) fn energy(field: &Field, level: &Level) -> f64 {
     field.energy() / level.wanted.len().max(1) as f64 / level.unit()
 }
 
-/// The exemplar pixel that the patch with the nearest centre puts at a target pixel.
+/// The exemplar pixel that the patch with the nearest centre places at a target pixel.
 fn source_of(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, usize)> {
     let nearest = |pixel: usize, count: usize| pixel.saturating_sub(patch / 2).min(count - 1);
     let (fx, fy) = (nearest(x, field.width), nearest(y, field.height));
@@ -103,7 +104,7 @@ pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<
     Ok(out)
 }
 
-/// Where in the artwork, which was halved `halvings` times for matching, each pixel comes from.
+/// The source position of each pixel in the artwork, which was halved `halvings` times for matching.
 pub(super) fn sources(field: &Field, problem: &Problem, halvings: usize, job: Job) -> Result<Image> {
     let target = &problem.guides.target;
     let mut out = Image::new(target.width, target.height, 2)?;

@@ -1,16 +1,19 @@
 //! Reversed retrieval under an error budget (§3.3).
 //!
-//! In each pass every exemplar patch looks for its nearest target patch among those still free. The errors give a budget;
-//! in order of rising error the patches take their targets until it is spent. Where two want the same target the closer
-//! one has it, among equals the first. Then all exemplar patches may be used again for what is left. When enough is covered,
-//! or a pass brings next to nothing, the remaining target patches look for their nearest exemplar patch instead.
+//! In each pass every exemplar patch searches for its nearest target patch among the free ones. The errors determine a
+//! budget; in order of rising error the patches take their targets until the budget is spent. If two want the same
+//! target, the closer one takes it (the first, if equal). In the next pass all exemplar patches are available again
+//! for the remaining targets. When enough is covered, or a pass gains next to nothing, the remaining target patches
+//! search for their nearest exemplar patch instead.
 //!
-//! A field made this way is rich but frayed: neighbouring places are painted from patches that were never neighbours. So
-//! in the end a target patch may continue a neighbour's match where that is closer than its own, or so nearly as close that
-//! it is worth a seam less (`Params::settle`, `Params::seam`; not in the paper). Nothing is searched for anew, so what is used stays as varied as the budget made it, in larger pieces;
-//! on the pair in `tests/real_stylize.rs` it brings Eq. 3 down threefold and keeps more of the texture.
+//! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were never
+//! neighbours. Therefore a target patch may finally continue a neighbour's match if that match is closer than its own,
+//! or if the seam it saves outweighs the difference (`Params::settle`, `Params::seam`; not in the paper). This
+//! involves no new search, so the usage stays as varied, in larger pieces. On the pair in `tests/real_stylize.rs` it
+//! lowers Eq. 3 threefold and keeps more of the texture.
 //!
-//! A pass starts from the last one: an exemplar patch whose target was taken looks around it; the others stay.
+//! Each pass starts from the previous one: an exemplar patch whose target was taken searches around it; the others
+//! keep theirs.
 
 use super::budget::budget;
 use super::finder::Nearest;
@@ -22,22 +25,22 @@ use crate::image::try_collect;
 use crate::job::Job;
 use crate::patch::{Domain, Field, NONE, pack, unpack};
 
-/// What a retrieval pass did.
+/// The outcome of a retrieval pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
     /// Share of the exemplar patches left of the knee.
     pub knee: f64,
-    /// Target patches that were given a match in this pass.
+    /// Number of target patches matched in this pass.
     pub gained: usize,
-    /// Share of the wanted target patches with a match after it.
+    /// Share of the wanted target patches that are matched after it.
     pub coverage: f64,
 }
 
-/// A pass that covers less than this share of the target is the last.
-const LEAST_GAIN: f64 = 0.005;
+/// The last pass is the first that covers less than this share of the target [origin not recorded].
+const MIN_GAIN: f64 = 0.005;
 
-/// Matches every wanted target patch; `field` holds matches or hints of the last iteration, with distances that hold but
-/// where `changed`, and what it returns has the distances of this one. Where `kept` is set the match of `field` stays as it is.
+/// Matches every wanted target patch. `field` holds the matches or hints of the previous iteration, whose distances
+/// are valid except where `changed`; the result replaces it. Matches with `kept` set stay unchanged.
 pub(super) fn retrieve(
     level: &Level,
     field: &mut Field,
@@ -72,17 +75,18 @@ pub(super) fn retrieve(
         let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode, job)?;
         let coverage = (wanted - free.len()) as f64 / wanted as f64;
         passes.push(Pass { knee, gained, coverage });
-        if (gained as f64) < LEAST_GAIN * wanted as f64 {
+        if (gained as f64) < MIN_GAIN * wanted as f64 {
             break;
         }
     }
 
-    // Ordinary retrieval for what is left, from the last iteration's matches and those of the neighbours.
+    // Match the remaining patches by ordinary retrieval, starting from the previous iteration's matches and those of
+    // neighbours.
     for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
     nearest.forward(&search, &mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
-    // Let patches continue their neighbours' matches where those fit better, seams counted.
+    // Let patches continue their neighbours' matches where those fit better, including the cost of seams.
     let seam = (f64::from(params.seam) * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
     for _ in 0..params.settle {
         search.join(&mut matched, seam, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
@@ -91,8 +95,8 @@ pub(super) fn retrieve(
     Ok(passes)
 }
 
-/// Gives target patches to exemplar patches in order of rising error until the budget is spent; returns the knee and the
-/// number given.
+/// Assigns target patches to exemplar patches in order of rising error until the budget is spent; returns the knee and
+/// the number of assignments.
 fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
     let found = reverse.error.iter().enumerate().filter(|(_, e)| **e != u32::MAX);
@@ -102,7 +106,7 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
     let budget = budget(&errors);
     let total = if mode == Mode::Uniform { f64::INFINITY } else { budget.total };
 
-    // Spend the budget; a target that is taken costs nothing.
+    // Spend the budget; targets already taken cost nothing.
     let (mut spent, mut gained) = (0.0, 0);
     for (&o, &error) in order.iter().zip(&errors) {
         let source = (o & 0xffff_ffff) as usize;
@@ -122,7 +126,7 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
     }
     free.compact();
 
-    // What pointed at a target now taken is but a hint.
+    // Demote matches whose target is now taken to hints.
     for (at, error) in reverse.at.iter().zip(&mut reverse.error) {
         if *at != NONE {
             let (x, y) = unpack(*at);

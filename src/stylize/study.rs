@@ -1,46 +1,46 @@
-//! Shading study (§4.2): the artist goes on painting, and what was made from the changed part of the artwork is made
-//! anew, starting from the field of the last result. The cost of matching and of painting is that of the places concerned;
-//! what is left is to quantise the guides and the artwork again.
+//! Shading study (§4.2): while the artist continues painting, the parts of the result made from changed parts of the
+//! artwork are synthesised anew, starting from the field of the last result. Matching and painting cost in proportion
+//! to the affected area; quantising the guides and the artwork is repeated in full.
 
 use super::level::{Level, Problem, encode, encoded};
+use super::multires::{self, Provenance, paint};
 use super::report::sources;
-use super::schedule::{self, Made, paint};
 use super::{Input, Output, Params, Publish};
 use crate::error::{Error, Result};
 use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::patch::{Field, NONE, Sweep, halve, halve_mask, unpack};
 
-/// Rounds of matching and voting after a change.
+/// Iterations of matching and voting after a change.
 const ROUNDS: usize = 2;
-/// Random search goes this far, in pixels; propagation goes farther.
-const REACH: usize = 16;
+/// Radius of the random search in pixels; propagation reaches farther.
+const SEARCH_RADIUS: usize = 16;
 
-/// A stylised target that follows its artwork.
+/// A stylised target that follows changes of its artwork.
 pub struct Study {
     problem: Problem,
     params: Params,
     /// The whole artwork, linear and encoded for display.
     artwork: Image,
     encoded: Image,
-    /// What the target shows outside its mask, linear.
+    /// The target outside its mask, linear.
     known: Option<Image>,
     field: Field,
     /// The last result, encoded for display and linear.
     picture: Image,
     image: Image,
-    /// Pixels of the artwork that have changed since the result was last brought up to date, and pixels of the result that
-    /// this has made old: a cancelled update leaves some.
+    /// Artwork pixels changed since the result was last updated, and result pixels that are out of date as a
+    /// consequence. A cancelled update leaves some of both.
     pending: Vec<bool>,
     old: Vec<bool>,
 }
 
 impl Study {
-    /// Stylises the target once, as [`super::run`] does.
+    /// Stylises the target once, like [`super::run`].
     pub fn new(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<(Self, Output)> {
         params.check()?;
         let problem = Problem::new(input, params, job.part(0.0, 0.03))?;
-        let output = schedule::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
+        let output = multires::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
         let mut display = input.artwork.try_clone()?;
         encode(&mut display, job)?;
         let mut picture = output.image.try_clone()?;
@@ -61,9 +61,9 @@ impl Study {
         Ok((study, output))
     }
 
-    /// Takes over the pixels of `artwork` (linear, of the first one's size) where the one-channel `changed` is above
-    /// 0.5, and returns the new picture, linear. A change that is no number counts as black. After an error (a cancel) the
-    /// next call brings up to date what this one has not.
+    /// Takes over the pixels of `artwork` (linear, same size as the first) where the one-channel `changed` is above
+    /// 0.5, and returns the new picture, linear. Non-finite changes count as black. After an error (a cancellation),
+    /// the next call completes the update.
     pub fn repaint(&mut self, artwork: &Image, changed: &Image, job: Job) -> Result<Image> {
         self.artwork.check_same_size("the first artwork", artwork, "artwork")?;
         self.artwork.check_same_size("artwork", changed, "changed")?;
@@ -91,30 +91,34 @@ impl Study {
         };
         let target = Target { field: &mut self.field, picture: &mut self.picture, old: &mut self.old };
         rematch(&self.problem, target, changed, &self.params, job.part(0.1, 0.9))?;
-        let made =
-            Made { field: &self.field, problem: &self.problem, artwork: &self.artwork, known: self.known.as_ref() };
+        let provenance = Provenance {
+            field: &self.field,
+            problem: &self.problem,
+            artwork: &self.artwork,
+            known: self.known.as_ref(),
+        };
         let old = |i: usize| self.old[i];
-        schedule::finish(&mut self.image, &self.picture, made, job.part(0.9, 1.0), old)?;
+        multires::decode_into(&mut self.image, &self.picture, provenance, job.part(0.9, 1.0), old)?;
         let image = self.image.try_clone()?;
         self.pending.fill(false);
         self.old.fill(false);
         Ok(image)
     }
 
-    /// Where in the artwork each pixel comes from now: see `Report::sources`.
+    /// The current source of each pixel in the artwork: see `Report::sources`.
     pub fn sources(&self, job: Job) -> Result<Image> {
         sources(&self.field, &self.problem, usize::from(!self.problem.is_of(&self.artwork)), job)
     }
 }
 
-/// What an update brings up to date.
+/// The state that an update modifies.
 struct Target<'a> {
     field: &'a mut Field,
     picture: &'a mut Image,
     old: &'a mut [bool],
 }
 
-/// Matches every target patch anew that shows a changed exemplar pixel, and paints what such patches cover.
+/// Rematches every target patch that shows a changed exemplar pixel, and repaints the pixels these patches cover.
 fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params, job: Job) -> Result<()> {
     let Target { field, picture, old } = target;
     let mut level = Level::new(problem, params, 1.0, params.seed, job.part(0.0, 0.05))?;
@@ -130,7 +134,7 @@ fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params,
         }
     }
 
-    // The new paint in the old places, then matching and voting.
+    // Paint the old matches with the new artwork, then iterate matching and voting.
     paint(picture, field, problem, params.vote, job.part(0.0, 0.1), |i| old[i])?;
     for round in 0..ROUNDS {
         let part = |from: f64, to: f64| {
@@ -140,7 +144,7 @@ fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params,
         level.set_picture(picture, part(0.0, 0.05))?;
         let search = level.forward();
         search.rescore(field, part(0.0, 0.2), |i| concerned[i])?;
-        let sweep = Sweep { index: round as u64, reach: REACH, fresh: 4 };
+        let sweep = Sweep { index: round as u64, radius: SEARCH_RADIUS, initial_samples: 4 };
         search.sweep(field, sweep, part(0.2, 0.8), |i| concerned[i])?;
         let how = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
         paint(picture, field, problem, how, part(0.8, 1.0), |i| old[i])?;

@@ -5,7 +5,7 @@ use crate::job::Monitor;
 use crate::rng::Rng;
 use std::sync::Mutex;
 
-/// A lit ball on a ground, as one guide of three channels.
+/// A lit ball in front of a background, as one guide of three channels.
 fn scene(width: usize, height: usize, cx: f32, cy: f32, radius: f32) -> Image {
     Image::from_fn(width, height, |x, y| {
         let (dx, dy) = ((x as f32 - cx) / radius, (y as f32 - cy) / radius);
@@ -58,7 +58,7 @@ fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
         }
         let table = Params { finder: Finder::Table, ..Params::default() };
         assert!(stylise(&input(&art, &[guide(&a, &a)]), &table).unwrap().image == art);
-        // Nothing but the position tells the patches apart.
+        // Only the position distinguishes the patches.
         let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
         let output = stylise(&input(&art, &[guide(&flat, &flat)]), &Params::default()).unwrap();
         assert!(output.image == art);
@@ -86,7 +86,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// The wash-out of §2: under equal guides, smooth patches are near everything and nearest patches overuse them.
+/// The wash-out of §2: under equal guides, smooth patches are near everything, and nearest-patch matching overuses
+/// them.
 #[test]
 fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patches() {
     let a = Image::from_fn(90, 60, |_, y| [0.2 + 0.6 * y as f32 / 60.0]).unwrap();
@@ -113,7 +114,7 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
 }
 
 /// Fig. 7: the target has four times the exemplar's highlight. Uniform usage must fill it with something else; the
-/// budget uses the highlight again.
+/// budget reuses the highlight.
 #[test]
 fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     let half = |share: f32| Image::from_fn(60, 60, |x, _| [if (x as f32) < 60.0 * share { 0.9 } else { 0.1 }]).unwrap();
@@ -132,7 +133,7 @@ fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     assert!(wrong(Mode::Uniform) > 600, "{}", wrong(Mode::Uniform));
 }
 
-/// Light that the exemplar does not have is painted with something else, and the map of guide errors shows where.
+/// Light that the exemplar lacks is painted with something else, and the guide error shows where.
 #[test]
 fn light_that_the_exemplar_lacks_shows_in_the_guide_error() {
     let a = scene(72, 60, 36.0, 30.0, 20.0);
@@ -153,7 +154,7 @@ fn light_that_the_exemplar_lacks_shows_in_the_guide_error() {
     assert!(mean(true) > 20.0 * mean(false) && mean(true) > 0.05, "{} {}", mean(true), mean(false));
 }
 
-/// Kaspar et al. 2015: from plain EM at λ = 0 towards even usage.
+/// Kaspar et al. 2015: from plain EM at λ = 0 towards uniform usage.
 #[test]
 fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
     let (a, b) = (scene(90, 70, 40.0, 30.0, 22.0), scene(120, 100, 70.0, 55.0, 35.0));
@@ -163,15 +164,16 @@ fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
     };
     let (none, plain) = (with(Mode::Occurrence, 0.0), with(Mode::Nearest, 0.1));
     assert!(none.image == plain.image && none.field == plain.field && none.report.levels == plain.report.levels);
-    // Up to 0.1; there nearly all is used, and more moves it about.
+    // Test up to 0.1; there nearly all patches are used, and larger weights only permute them.
     let runs = [0.0, 0.003, 0.01, 0.1].map(|weight| with(Mode::Occurrence, weight));
     let usage = runs.each_ref().map(|run| run.report.usage);
     assert!(usage.windows(2).all(|w| w[1].used > w[0].used && w[1].entropy > w[0].entropy), "{usage:?}");
     assert!(usage[3].used > 0.95, "{usage:?}");
-    // It costs likeness, which is what is reported: the usage is no part of it. (At 0 fewer patches are searched for again.)
+    // The penalty costs similarity, which the energy reports; the penalty itself is not part of it. (At 0, fewer
+    // patches are searched again.)
     let energy = runs.each_ref().map(|run| *run.report.levels.last().unwrap().energy.last().unwrap());
     assert!(energy[1] < energy[2] && energy[2] < energy[3], "{energy:?}");
-    // The most that may weigh, and what may not.
+    // The largest valid weight, and invalid ones.
     assert_eq!(with(Mode::Occurrence, 10.0).image.count_non_finite(), 0);
     for weight in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.1, 10.1] {
         let params = Params { occurrence: weight, ..Params::default() };
@@ -187,7 +189,7 @@ fn energy_per_iteration_falls_for_nearest_patches() {
     let params =
         Params { mode: Mode::Nearest, levels: 1, finest_iterations: 6, vote: Vote::Plain, ..Params::default() };
     let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
-    // Matching lowers Eq. 3 for a picture, and the mean lowers it for a field.
+    // Matching lowers Eq. 3 for a fixed picture, and averaging lowers it for a fixed field.
     let energy = &output.report.levels[0].energy;
     assert!(energy.windows(2).all(|w| w[1] <= w[0] * (1.0 + 1e-3)), "{energy:?}");
 }
@@ -196,7 +198,7 @@ fn energy_per_iteration_falls_for_nearest_patches() {
 fn masks_keep_patches_out_and_pixels_unchanged() {
     let (a, b) = (scene(64, 48, 30.0, 22.0, 15.0), scene(64, 48, 34.0, 25.0, 15.0));
     let mut art = artwork(&a);
-    // Poison the left third of the exemplar, mask it, and make only the right half of the target.
+    // Poison and mask the left third of the exemplar, and synthesise only the right half of the target.
     for y in 0..48 {
         for x in 0..20 {
             art.pixel_mut(x, y).copy_from_slice(&[0.0, 10.0, 0.0]);
@@ -240,18 +242,18 @@ fn extremes_have_an_answer() {
             finite(stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap());
             finite(stylise(&input(&artwork(&b), &[guide(&b, &a)]), &params).unwrap());
         }
-        // One highlight of a million must not outvote the rest.
+        // A single highlight of a million must not dominate.
         let mut hot = a.clone();
         hot.pixel_mut(15, 10)[0] = 1e6;
         let output = finite(stylise(&input(&art, &[guide(&hot, &a)]), &params).unwrap());
         let same = output.image.data.iter().zip(&art.data).filter(|(x, y)| x == y).count();
         assert!(mode == Mode::Uniform || same * 10 > art.data.len() * 8, "{mode:?} {same}");
-        // Guides that are all saturated, each pixel far beyond white.
+        // Saturated guides, with every pixel far beyond white.
         let mut bright = a.clone();
         bright.data.iter_mut().for_each(|v| *v = 1e9 * (1.0 + *v));
         let output = finite(stylise(&input(&art, &[guide(&bright, &bright)]), &params).unwrap());
         assert!(mode == Mode::LitSphere || output.image == art, "{mode:?}");
-        // No weight, and nothing but weight.
+        // Zero weight, and extreme weights.
         let guides = [Guide { weight: 0.0, ..guide(&a, &a) }];
         finite(stylise(&input(&art, &guides), &params).unwrap());
         for (guide_weight, coarse_guides) in [(0.0, 4.0), (1e6, 1000.0), (2.0, 0.0)] {
@@ -259,7 +261,7 @@ fn extremes_have_an_answer() {
             finite(stylise(&input(&art, &[guide(&a, &a)]), &params).unwrap());
         }
     }
-    // Exemplar and target of very different sizes, and guides that say nothing.
+    // Exemplar and target of very different sizes, and constant guides.
     let (small, large) = (scene(9, 12, 4.0, 5.0, 3.0), scene(310, 260, 150.0, 120.0, 90.0));
     let flat = |w, h, v| Image::from_fn(w, h, |_, _| [v]).unwrap();
     let fast = Params::fast();
@@ -294,7 +296,7 @@ fn values_that_are_no_numbers_are_left_out_and_counted() {
     let output = stylise(&input(&art, &[guide(&a, &b)]), &Params::default()).unwrap();
     assert_eq!((output.report.broken_source, output.report.broken_target), (2, 1));
     assert_eq!(output.image.count_non_finite(), 0);
-    // A target that says nothing is painted; an exemplar that says nothing cannot be painted from.
+    // A target without valid guides is painted; an exemplar without valid pixels cannot be painted from.
     let lost = Image::from_fn(40, 30, |_, _| [f32::NAN; 3]).unwrap();
     let output = stylise(&input(&art, &[guide(&a, &lost)]), &Params::default()).unwrap();
     assert_eq!((output.report.broken_target, output.image.count_non_finite()), (40 * 30, 0));
@@ -381,7 +383,7 @@ fn a_cancel_is_answered_soon_wherever_it_comes() {
             assert_eq!(run.join().unwrap().unwrap_err().kind, ErrorKind::Cancelled);
             asked.elapsed()
         });
-        // 100 ms are promised on a machine that has nothing else to do.
+        // The documented limit of 100 ms applies to an otherwise idle machine.
         assert!(waited.as_millis() < 1000, "{waited:?} after {after}");
     }
 }
@@ -433,7 +435,7 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
         assert!(before.image == whole.image);
         let (mut late, _) = Study::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
 
-        // Paint the ball green; the ground stays as it was.
+        // Paint the ball green; the background stays unchanged.
         let changed = Image::from_fn(80, 60, |x, y| [a.pixel(x, y)[2]]).unwrap();
         for (p, _) in art.data.chunks_exact_mut(3).zip(&changed.data).filter(|(_, c)| **c > 0.5) {
             p.copy_from_slice(&[0.0, 1.0, 0.0]);
@@ -445,7 +447,7 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
         assert_eq!(after.pixel(corner.0, corner.1), before.image.pixel(corner.0, corner.1));
         assert!(study.repaint(&b, &before.image, Monitor::default().job()).is_err());
 
-        // What a cancelled update leaves the next one does.
+        // The next update completes a cancelled one.
         let stopped = Monitor::default();
         stopped.cancel();
         assert_eq!(late.repaint(&art, &changed, stopped.job()).unwrap_err().kind, ErrorKind::Cancelled);
@@ -461,7 +463,7 @@ fn paint_moves_along_with_what_it_is_on_as_far_as_it_is_to() {
     let art = artwork(&a);
     let first = stylise(&input(&art, &[guide(&a, &now)]), &Params::default()).unwrap();
     let motion = Image::from_fn(90, 70, |_, _| [-6.0, 3.0]).unwrap();
-    // Share of the ball that is painted as it was.
+    // The share of the ball with unchanged paint.
     let same = |coherence: f32, preview: bool, seed: u64| {
         let params = Params { coherence, preview, seed, ..Params::default() };
         let start = if preview { stylise(&input(&art, &[guide(&a, &now)]), &params).unwrap() } else { first.clone() };
@@ -477,7 +479,7 @@ fn paint_moves_along_with_what_it_is_on_as_far_as_it_is_to() {
     assert!(all > 0.9 && all > boiled + 0.05 && boiled > none + 0.05, "{all} {boiled} {none}");
     assert_eq!(same(1.0, true, 2).1.width, 45);
 
-    // Nothing is known of the frame before: as good as new, without NaN.
+    // Without knowledge of the previous frame, the result is as good as new and free of NaN.
     let hidden = Image::from_fn(90, 70, |_, _| [f32::NAN; 2]).unwrap();
     let guides = [guide(&a, &next)];
     let moved = Input { previous: Some(&first.field), motion: Some(&hidden), ..input(&art, &guides) };

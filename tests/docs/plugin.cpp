@@ -1,5 +1,5 @@
-// The skeleton of a plug-in for Maya, Houdini and the like: what is the same for all of them, against a host of two arrays and
-// a clock. Where a real host is called, a comment names its function.
+// The skeleton of a plug-in for Maya, Houdini and similar hosts, with a simulated host of two arrays and a clock.
+// Comments name the functions of the real hosts.
 #include <luxfer.hpp>
 
 #include <atomic>
@@ -11,16 +11,16 @@
 #include <vector>
 
 // --8<-- [start:host]
-// What the plug-in needs of its host.
+// The interface to the host.
 struct HostMesh {
     std::string name;
     std::vector<float> points;            // Maya: MFnMesh::getRawPoints; Houdini: GU_Detail::getPos3 of each point
-    std::vector<std::uint32_t> triangles; // Maya: MFnMesh::getTriangles; Houdini: its polygons, divided into triangles
+    std::vector<std::uint32_t> triangles; // Maya: MFnMesh::getTriangles; Houdini: its polygons, triangulated
     float colour[3] = {0.8f, 0.8f, 0.8f};
 };
 
 struct Host {
-    double metres_per_unit = 1;               // Maya: 0.01, for its API is in centimetres; Houdini: 1
+    double metres_per_unit = 1;               // Maya: 0.01, as its API uses centimetres; Houdini: 1
     std::vector<HostMesh> meshes;
     std::atomic<bool> is_interrupted{false}; // Maya: MComputation::isInterruptRequested; Houdini: UT_Interrupt::opInterrupt
     void show_progress(double) {}             // Maya: MProgressWindow::setProgress; Houdini: the same opInterrupt
@@ -29,18 +29,19 @@ struct Host {
 // --8<-- [end:host]
 
 // --8<-- [start:plugin]
-// One context for the life of the plug-in: it owns the threads. Nothing of luxfer is global, so another plug-in of the same
-// process may have its own, or another version of the library.
+// One context for the lifetime of the plug-in: it owns the threads. Another plug-in in this process may have its own
+// context, or another version of the library.
 class Plugin {
 public:
-    // Maya: in initializePlugin; Houdini: in newSopOperator, or at the first cook. Leave the host a core for its interface.
+    // Maya: in initializePlugin; Houdini: in newSopOperator, or at the first cook. Leave one core to the host for its
+    // user interface.
     explicit Plugin(std::uint32_t threads) {
         luxfer::ContextParams params;
         params.num_threads = threads;
-        context_ = luxfer::Context::create(params); // throws if the library that was found is not compatible
+        context_ = luxfer::Context::create(params); // throws if the loaded library is not compatible
     }
 
-    // The threads are joined when the last object goes; do it in uninitializePlugin, never in a static destructor.
+    // Releasing the last object joins the threads; do it in uninitializePlugin, never in a static destructor.
     const luxfer::Context &context() const { return context_; }
 
 private:
@@ -59,7 +60,7 @@ luxfer::Scene describe(const luxfer::Context &context, const Host &host) {
         luxfer::MaterialParams material;
         std::copy(mesh.colour, mesh.colour + 3, material.base_color);
         luxfer::MeshParams params(points, mesh.triangles, scene.add_material(material));
-        params.name = mesh.name.c_str(); // surfaces are found by it
+        params.name = mesh.name.c_str(); // surfaces are found by this name
         scene.add_mesh(params);
     }
     return scene;
@@ -67,30 +68,30 @@ luxfer::Scene describe(const luxfer::Context &context, const Host &host) {
 // --8<-- [end:scene]
 
 // --8<-- [start:modal]
-// Work that the user waits for: a command, or a cook. Progress comes on the waiting thread, so the host may be asked in it.
+// A modal job, in a command or a cook. The progress callback runs on the waiting thread, so it may call the host.
 bool transfer_light(Host &host, const luxfer::Transfer &transfer, const luxfer::TransferParams &params) {
     try {
         transfer.start(params).wait([&](double fraction) {
             host.show_progress(fraction);
-            return !host.is_interrupted; // false cancels; what is done by then can be read
+            return !host.is_interrupted; // false cancels; finished results stay readable
         });
         return true;
     } catch (const luxfer::Error &error) {
         if (error.status() != LUXFER_CANCELLED)
-            host.report_error(error.what()); // written for people: names the parameter, its value and what is allowed
+            host.report_error(error.what()); // for people: names the parameter, its value and its allowed range
         return false;
     }
 }
 // --8<-- [end:modal]
 
 // --8<-- [start:background]
-// Work behind the interface: the host's timer (Maya: MTimerMessage; Houdini: hou.ui.addEventLoopCallback) asks from time to
-// time. Results grow while a rendering runs, so each tick may show a better picture.
+// A background job: a timer of the host (Maya: MTimerMessage; Houdini: hou.ui.addEventLoopCallback) polls it. The
+// image improves while a rendering runs, so each tick may show a better picture.
 class Background {
 public:
     Background(luxfer::Render render, const luxfer::RenderParams &params) : render_(render), job_(render.start(params)) {}
 
-    // True as soon as it has ended. Never waits.
+    // Returns true if the job has ended, without waiting.
     bool tick(Host &host) {
         const luxfer::JobState state = job_.poll();
         host.show_progress(state.fraction);
@@ -98,7 +99,7 @@ public:
         return state.is_finished;
     }
 
-    // Deleting the object does the same, and waits for the end, which takes a tenth of a second at most.
+    // Deleting the object cancels too, and waits until the job has ended, at most about a tenth of a second.
     void cancel() { job_.cancel(); }
 
     const std::vector<float> &pixels() const { return pixels_; }
@@ -108,7 +109,7 @@ private:
         try {
             pixels_ = render_.image().samples(); // linear, cd/m2
         } catch (const luxfer::Error &error) {
-            if (error.status() != LUXFER_NOT_READY) // before the first pass there is nothing to show
+            if (error.status() != LUXFER_NOT_READY) // there is no picture before the first pass
                 throw;
         }
     }
@@ -120,7 +121,7 @@ private:
 // --8<-- [end:background]
 
 // --8<-- [start:result]
-// Back into the host: the texture, and what to multiply it with, in cd/m2.
+// The result for the host: the texture, and its factor in cd/m2.
 struct Light {
     luxfer::Image texture;
     double strength[3];
@@ -137,7 +138,7 @@ Light light_of(const luxfer::Transfer &transfer, float white_luminance) {
 
 namespace {
 
-// A room without a front: floor, walls and ceiling, in centimetres as Maya has them.
+// A room without a front wall: floor, walls and ceiling, in centimetres as in Maya.
 HostMesh quad(const char *name, float x, float y, float z, const float (&u)[3], const float (&v)[3]) {
     HostMesh mesh;
     mesh.name = name;
@@ -171,7 +172,7 @@ int main() {
     const luxfer::Context &context = plugin.context();
     const auto room = describe(context, host);
 
-    // The photo and the strokes would be the user's.
+    // In a real plug-in, the user provides the photo and the strokes.
     const auto demo = luxfer::DemoPhoto::create(context);
     luxfer::DemoPhotoParams photo;
     photo.width = 300;
@@ -194,12 +195,12 @@ int main() {
     if (!(light.strength[0] > 0 && light.texture.size().channels == 3))
         return fail("the light");
 
-    // Interrupted: no error is reported, and nothing is lost.
+    // Interrupted: the plug-in reports no error, and finished results remain.
     host.is_interrupted = true;
     if (transfer_light(host, transfer, params))
         return fail("an interrupted transfer is no success");
 
-    // In the background: pictures while it runs, and an early end.
+    // A background job: pictures while it runs, and a cancel.
     const auto render = luxfer::Render::create(context);
     render.set_scene(transfer.scene());
     picture.samples = 1 << 20;

@@ -1,11 +1,11 @@
-// A lighting transfer in C++, as the guide shows it; its input is what the library makes itself.
+// The lighting transfer in C++ that the guide shows, with generated input.
 #include <luxfer.hpp>
 
 #include <cstdio>
 
 namespace {
 
-// A photo of the generated office and the strokes on it, in place of files.
+// A photo of the generated office and the strokes on it, instead of files.
 void take_photo(const luxfer::Context &context, luxfer::Image &photo, luxfer::Image &strokes) {
     const auto demo = luxfer::DemoPhoto::create(context);
     luxfer::DemoPhotoParams params;
@@ -21,7 +21,7 @@ void take_photo(const luxfer::Context &context, luxfer::Image &photo, luxfer::Im
 // --8<-- [start:program]
 int main() try {
     const auto context = luxfer::Context::create();
-    luxfer::Image photo, strokes; // of files: luxfer::Image::load(context, "photo.jpg")
+    luxfer::Image photo, strokes; // from a file: luxfer::Image::load(context, "photo.jpg")
     take_photo(context, photo, strokes);
     const auto room = luxfer::Scene::demo(context, LUXFER_DEMO_TARGET_ROOM); // luxfer::Scene::load(context, "room.glb")
 

@@ -8,7 +8,7 @@ context = luxfer.Context()
 room = luxfer.Scene.demo(context, "exemplar-room")
 luxfer.usd.save(room, "room.usdz")
 
-scene = luxfer.usd.load(context, "room.usdz")  # or luxfer.usd.from_stage(context, stage), of a stage that is open
+scene = luxfer.usd.load(context, "room.usdz")  # or luxfer.usd.from_stage(context, stage), for an open stage
 render = luxfer.Render(context, scene)
 render.run(width=64, height=48, samples=8).image().save("room.png", exposure=0.01)
 # --8<-- [end:usd]

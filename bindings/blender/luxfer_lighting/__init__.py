@@ -3,10 +3,10 @@
     photo ─▶ strokes painted on it ─▶ masks ─▶ transfer ─▶ an emissive material in cd/m² on the chosen object
     ball ─▶ artwork painted over it ─▶ stylise ─▶ an image
 
-One file for each thing: `convert` turns Blender's data into luxfer's and back, `work` runs jobs behind the user
-interface, `lighting` and `painting` are the operators, `live` shows masks while strokes are painted, `passes` has a second
-Blender render (`render_passes`), `panels` is what is seen of them, `settings` what is stored in the .blend.
-One unit of radiance in Blender is taken as one cd/m², so numbers in materials are nits.
+Files: `convert` converts Blender's data to luxfer's and back, `work` runs jobs in the background, `lighting` and
+`painting` have the operators, `live` shows masks while strokes are painted, `passes` renders guides in a second
+Blender (`render_passes`), `panels` draws the panels, `settings` has the data that the .blend stores. One unit of
+radiance in Blender is one cd/m², so the numbers in materials are nits.
 """
 
 from . import lighting, live, painting, panels, settings, work

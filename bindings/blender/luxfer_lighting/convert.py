@@ -1,4 +1,4 @@
-"""Blender's images, scenes and cameras as luxfer's, and images back.
+"""Converts Blender's images, scenes and cameras to luxfer's, and images back.
 
 Blender has Z up and rows from the bottom; luxfer has Y up and rows from the top.
 """
@@ -43,7 +43,7 @@ def image(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
 
 
 def drawing(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
-    """Strokes: pure colours stay pure, however the image is encoded."""
+    """The image of strokes, in which pure colours stay pure for any encoding."""
     return luxfer.Image(context, pixels(source)[..., :3])
 
 
@@ -67,8 +67,8 @@ def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy
 
 
 def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
-    """The scene as it is now, modifiers applied, through glTF in a temporary file; area lights and the world's colour,
-    which glTF does not have, are added. Strengths become cd/m² one to one."""
+    """The current scene with modifiers applied, through a temporary glTF file; adds area lights and the world's
+    colour, which glTF does not have. One unit of strength becomes one cd/m²."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.glb")
         bpy.ops.export_scene.gltf(
@@ -97,8 +97,8 @@ def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
 
 
 def with_specular_levels(glb: bytes) -> bytes:
-    """A GLB file whose specular factors (KHR_materials_specular), which luxfer does not know, have become part of the index
-    of refraction: that with the same reflectance at normal incidence."""
+    """A GLB file in which the specular factors (KHR_materials_specular), which luxfer does not support, are replaced
+    by the index of refraction with equal reflectance at normal incidence."""
     length, _ = struct.unpack_from("<II", glb, 12)
     document = json.loads(glb[20 : 20 + length])
     for material in document.get("materials", ()):
@@ -120,7 +120,8 @@ def with_specular_levels(glb: bytes) -> bytes:
 
 
 def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Object) -> None:
-    """The light that the add-on has given an object, from its image of floats; glTF would round it to 8 bits."""
+    """The emission that the add-on has put on an object, from its floating-point image; glTF would round it to 8
+    bits."""
     for slot in thing.material_slots:
         if slot.material is None or "luxfer_base" not in slot.material:
             continue
@@ -133,7 +134,7 @@ def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Obj
 
 
 def add_area_light(out: luxfer.Scene, thing: bpy.types.Object) -> None:
-    """A mesh that shines with the radiance that Cycles gives an area light: power / (pi area)."""
+    """A mesh with the radiance of an area light in Cycles: power / (pi area)."""
     light = thing.data
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size

@@ -25,7 +25,7 @@ COLOURS = {
 
 @dataclass
 class Result:
-    """What a transfer has found, until it is applied."""
+    """The result of a transfer, until it is applied."""
 
     object: str
     surface: luxfer.types.Surface
@@ -45,7 +45,7 @@ def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
     if settings.strokes is None:
         raise ValueError("paint strokes on the photo first")
     if tuple(settings.strokes.size) != tuple(settings.photo.size):
-        raise ValueError("the strokes are not of the photo's size: start them anew")
+        raise ValueError("the strokes do not have the photo's size: use New Strokes")
     transfer = luxfer.Transfer(work.context(), convert.image(work.context(), settings.photo))
     transfer.add_strokes_image(convert.drawing(work.context(), settings.strokes))
     return transfer
@@ -98,7 +98,7 @@ def write_lamps(fixtures: list[luxfer.types.Fixture]) -> None:
 
 
 class LUXFER_OT_new_strokes(bpy.types.Operator):
-    """Start strokes anew: a pale copy of the photo to paint on"""
+    """Make a pale copy of the photo to paint strokes on; replaces earlier strokes"""
 
     bl_idname = "luxfer.new_strokes"
     bl_label = "New Strokes"
@@ -150,7 +150,7 @@ class LUXFER_OT_paint(bpy.types.Operator):
 
 
 class LUXFER_OT_preview_masks(work.Background, bpy.types.Operator):
-    """Show which pixels of the photo the strokes make plane and lights, as the image "Luxfer masks\""""
+    """Compute the masks of plane and lights from the strokes, as the image "Luxfer masks\""""
 
     bl_idname = "luxfer.preview_masks"
     bl_label = "Preview Masks"
@@ -161,7 +161,7 @@ class LUXFER_OT_preview_masks(work.Background, bpy.types.Operator):
 
 
 class LUXFER_OT_transfer(work.Background, bpy.types.Operator):
-    """Give the surface the light of the photo's lamps, with the strength that gives it the photo's colour"""
+    """Put the lamps of the photo on the surface, with the strength that gives the surface the photo's colour"""
 
     bl_idname = "luxfer.transfer"
     bl_label = "Transfer Light"
@@ -198,7 +198,7 @@ def photo_pixels(scene: bpy.types.Scene) -> np.ndarray:
 
 
 class LUXFER_OT_apply(bpy.types.Operator):
-    """Give the surface the material that the last transfer has found"""
+    """Assign the material of the last transfer to the surface"""
 
     bl_idname = "luxfer.apply"
     bl_label = "Apply Light"

@@ -1,7 +1,8 @@
-"""The masks while strokes are painted: a timer looks whether the strokes have changed, and a job makes new masks of them.
+"""The masks while strokes are painted: a timer checks whether the strokes have changed, and a job then computes new
+masks.
 
-They lie over the photo in the Image Editor where it is painted on, and are the image "Luxfer masks". Large photos are looked
-at in reduced size here; *Preview Masks* and the transfer are exact.
+The Image Editor shows them over the photo, and they are the image "Luxfer masks". Large photos are reduced here;
+*Preview Masks* and the transfer use the full size.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ import numpy as np
 from . import convert, lighting, work
 
 POLL_SECONDS = 0.2
-#: The share of the time that looking at the strokes may take, however large they are.
+#: Largest share of the time that checking the strokes may take.
 SHARE = 0.1
 #: Photos of more pixels are reduced.
 PIXELS = 1_500_000
 
-#: What is missing where a stage cannot make its mask.
+#: The message if strokes for a stage are missing.
 HINTS = {
     "plane": "Paint a stroke on the plane of the lights (green) and one off it (red)",
     "lights": "Paint a stroke on a light (yellow) and one beside the lights (blue)",
@@ -30,7 +31,7 @@ HINTS = {
 
 
 class Preview:
-    """What is known of one photo, and the masks of the strokes seen last."""
+    """The features of one photo, and the masks of the latest strokes."""
 
     def __init__(self, scene: bpy.types.Scene):
         photo = scene.luxfer.photo
@@ -56,7 +57,7 @@ class Preview:
         return np.ascontiguousarray(values[n // 2 : height : n, n // 2 : width : n])
 
     def follow(self, scene: bpy.types.Scene) -> None:
-        """Takes up what the job has found, or starts another if there is new paint."""
+        """Takes the result of the job, or starts another job if there is new paint."""
         if self.job is not None:
             if self.job.finished:
                 job, self.job = self.job, None
@@ -112,7 +113,7 @@ _handler: Any = None
 
 
 def identity(scene: bpy.types.Scene) -> tuple[Any, ...]:
-    """What makes a preview another one."""
+    """The inputs of a preview: a change needs a new one."""
     photo = scene.luxfer.photo
     return scene.name, photo.name, tuple(photo.size)
 

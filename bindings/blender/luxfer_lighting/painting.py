@@ -1,4 +1,4 @@
-"""Operators of the stylisation: the exemplar to paint over, a sample artwork, and the scene painted like it."""
+"""Operators of the stylisation: the exemplar to paint over, a sample artwork, and the stylised scene."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def stylise_steps(
 
 
 class LUXFER_OT_exemplar(work.Background, bpy.types.Operator):
-    """Render the ball on a table that artists paint over, as the image "Luxfer exemplar\""""
+    """Render a ball on a table to paint over, as the image "Luxfer exemplar\""""
 
     bl_idname = "luxfer.exemplar"
     bl_label = "Render Exemplar"
@@ -71,7 +71,7 @@ class LUXFER_OT_exemplar(work.Background, bpy.types.Operator):
 
 
 class LUXFER_OT_sample_artwork(work.Background, bpy.types.Operator):
-    """Have a program paint the exemplar, to try stylisation without an artist"""
+    """Generate an artwork of the exemplar, to try stylisation without an artist"""
 
     bl_idname = "luxfer.sample_artwork"
     bl_label = "Sample Artwork"
@@ -92,7 +92,7 @@ class LUXFER_OT_sample_artwork(work.Background, bpy.types.Operator):
 
 
 class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
-    """Paint the view of the active camera in the manner of the artwork, as the image "Luxfer stylised\""""
+    """Paint the view of the active camera in the style of the artwork, as the image "Luxfer stylised\""""
 
     bl_idname = "luxfer.stylise"
     bl_label = "Stylise"
@@ -102,7 +102,7 @@ class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
         scene, settings = context.scene, context.scene.luxfer
         view = convert.camera(scene)
         if settings.artwork is None:
-            raise ValueError("choose an artwork first: the exemplar, painted over")
+            raise ValueError("choose an artwork first: the exemplar after painting")
         if view is None:
             raise ValueError("the scene has no camera")
         artwork, params = convert.image(work.context(), settings.artwork), {"samples": settings.guide_samples}

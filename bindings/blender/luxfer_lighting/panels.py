@@ -1,4 +1,4 @@
-"""What is seen: three panels in the sidebar of the 3D view and the Image Editor."""
+"""Three panels in the sidebar of the 3D view and the Image Editor."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ICONS = {"PLANE": "COLORSET_03_VEC", "NOT_PLANE": "COLORSET_01_VEC", "LIGHT": "C
 
 
 def show_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """The progress of the running work and a button that cancels, or what the last one had to say."""
+    """The progress of the running work and a button to cancel it, or the message of the last work."""
     running = work.current()
     if running is not None:
         row = layout.row(align=True)
@@ -49,7 +49,7 @@ class Sidebar:
 
 
 class LightingPanel(Sidebar):
-    bl_label = "Light of a Photo"
+    bl_label = "Lighting from a Photo"
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, settings = self.layout, context.scene.luxfer

@@ -1,6 +1,7 @@
-"""Guide passes by Cycles: in a second Blender, on a copy of the .blend, so that nothing here waits or is changed.
+"""Guide passes by Cycles: in a second Blender, on a copy of the .blend, so that this Blender neither waits nor
+changes.
 
-The rendering has the face of a job of the library's, so that `work` runs it, tells its progress and cancels it in the same way.
+The rendering has the methods of a job of the library, so that `work` can run it, show its progress and cancel it.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ class Rendering:
         return self._process.poll() is not None
 
     def poll(self) -> tuple[float, bool]:
-        """The share that is done, and whether it has ended, well or not."""
+        """The finished share, and whether it has ended, with or without success."""
         return self._fraction, self.finished
 
     def cancel(self) -> None:
@@ -73,7 +74,7 @@ class Rendering:
         self._process.kill()
 
     def wait(self) -> Rendering:
-        """Waits for the end; raises what a job would."""
+        """Waits for the end; raises the exceptions of a job."""
         try:
             status = self._process.wait()
         except BaseException:  # Ctrl-C in a script
@@ -105,7 +106,7 @@ class Rendering:
 
 
 def light_of(guides: luxfer.Guides) -> dict[str, np.ndarray]:
-    """The same of guides that the library has rendered."""
+    """The guides that the library has rendered, in that form."""
     return {name: guides.image(which).numpy() for name, which in GUIDES.items()}
 
 

@@ -1,19 +1,19 @@
-"""A program for a Blender of its own: renders a .blend by Cycles, and stores its passes as the guides of a stylisation.
+"""A program for a second Blender: renders a .blend by Cycles, and stores its passes as the guides of a stylisation.
 
     blender --background --python render_passes.py -- SETTINGS     (or a Python that has bpy: render_passes.py -- SETTINGS)
 
-SETTINGS is JSON: "blend", "scene", "layer" (of views), "samples", "out" (an .npz file). Lines "part FIRST LAST" say which
-share of the work the rendering that begins is; Cycles' own lines say how far that is. What the passes are as light path
-expressions, in the notation of luxfer's guides:
+SETTINGS is JSON: "blend", "scene", "layer" (of views), "samples", "out" (an .npz file). A line "part FIRST LAST" gives
+the share of the work of the rendering that begins; Cycles prints its progress. The passes as light path expressions,
+in the notation of luxfer's guides:
 
     full        L.*E       Combined
     direct      LDE        diffuse direct
     specular    LSE        glossy direct
-    indirect    L.*DDE     diffuse indirect: L.+DE. Cycles does not tell matt after matt from caustics, glossy after matt.
+    indirect    L.*DDE     diffuse indirect: L.+DE. It includes caustics.
     two bounces LD{1,2}E   diffuse direct and indirect of a second rendering that ends after two bounces and has no caustics
 
-Translucent surfaces and subsurface scattering are matt in Cycles, and its lamps without shape are seen in glossy things.
-The light is smoothed along surfaces as luxfer smooths its own (src/guides/smooth.rs).
+Translucent surfaces and subsurface scattering are diffuse in Cycles, and its punctual lamps are visible in glossy
+reflections. The light is smoothed along surfaces as luxfer smooths its guides (src/guides/smooth.rs).
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def read_exr(path: Path) -> dict[str, np.ndarray]:
 
 
 def smooth(lights: list[np.ndarray], normals: np.ndarray, material: np.ndarray) -> list[np.ndarray]:
-    """The lights averaged over neighbours of the same material, of like normal and of like brightness: three passes of
+    """Averages the lights over neighbours with equal material, similar normal and similar brightness: three passes of
     edge-avoiding à-trous wavelets (Dammertz et al. 2010). All but the material are (3, height, width)."""
     floors = [0.02 * float(brightness(light).mean()) for light in lights]
     for step in (1, 2, 4):

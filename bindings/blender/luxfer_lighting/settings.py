@@ -23,10 +23,10 @@ class LuxferSettings(bpy.types.PropertyGroup):
     scale: EnumProperty(
         name="Scale",
         items=(
-            ("DISTANCE", "Distance", "The distance of the photo's camera from the plane of the lights sets how large they are"),
-            ("LAMP", "Lamp Length", "Lamps are of this length"),
-            ("SPACING", "Spacing", "Lamps are this far apart"),
-            ("ACROSS", "Lamps Across", "The surface is as many lamps wide as the photo's plane"),
+            ("DISTANCE", "Distance", "Size of the lamps by the distance of the photo's camera from their plane"),
+            ("LAMP", "Lamp Length", "Size of the lamps by the length of a lamp"),
+            ("SPACING", "Spacing", "Size of the lamps by the distance between neighbours"),
+            ("ACROSS", "Lamps Across", "Size of the lamps by the width of the surface: as many lamps across as in the photo"),
         ),
         default="DISTANCE",
     )
@@ -37,10 +37,10 @@ class LuxferSettings(bpy.types.PropertyGroup):
         max=1e4,
         subtype="DISTANCE",
         unit="LENGTH",
-        description="Length of a lamp, or distance from one to the nearest other",
+        description="Length of a lamp, or distance to its nearest neighbour",
     )
     keep_whole: BoolProperty(
-        name="Whole Lamps Only", default=False, description="Leave out lamps that the surface's edge would cut"
+        name="Whole Lamps Only", default=False, description="Leave out lamps that the edge of the surface would cut"
     )
     margin: FloatProperty(
         name="Margin",
@@ -49,7 +49,7 @@ class LuxferSettings(bpy.types.PropertyGroup):
         max=1e4,
         subtype="DISTANCE",
         unit="LENGTH",
-        description="Distance that whole lamps keep from the surface's edge",
+        description="Minimum distance of whole lamps from the edge of the surface",
     )
     distance: FloatProperty(
         name="Distance",
@@ -58,36 +58,38 @@ class LuxferSettings(bpy.types.PropertyGroup):
         max=1e4,
         subtype="DISTANCE",
         unit="LENGTH",
-        description="Distance of the photo's camera from the plane of the lights: the scale of the pattern",
+        description="Distance of the photo's camera from the plane of the lights, which sets the scale of the pattern",
     )
     white: FloatProperty(
-        name="White", default=100.0, min=1e-3, max=1e6, description="Luminance in cd/m² that the photo's white stands for"
+        name="White", default=100.0, min=1e-3, max=1e6, description="Luminance of the photo's white in cd/m²"
     )
     texels: IntProperty(
         name="Texture Size", default=1024, min=16, max=16384, description="Longest side of the emissive texture"
     )
-    apply_when_done: BoolProperty(name="Apply When Done", default=True, description="Give the surface its new material at once")
+    apply_when_done: BoolProperty(
+        name="Apply When Done", default=True, description="Assign the new material to the surface after the transfer"
+    )
 
     artwork: PointerProperty(
-        type=bpy.types.Image, name="Artwork", description="The exemplar ball, painted over; same size as the exemplar"
+        type=bpy.types.Image, name="Artwork", description="The exemplar after painting, of the size of the exemplar"
     )
     preset: EnumProperty(
         name="Quality",
         items=(
-            ("FAST", "Fast", "Nearly as good in half the time"),
+            ("FAST", "Fast", "Nearly full quality in half the time"),
             ("FULL", "Full", "Full quality"),
-            ("PREVIEW", "Preview", "Half resolution, for watching while painting"),
+            ("PREVIEW", "Preview", "Half resolution, for feedback while painting"),
         ),
         default="FAST",
     )
     guides_by: EnumProperty(
         name="Guides",
         items=(
-            ("LUXFER", "Luxfer", "What glTF can say of the scene, rendered by the library: exact light paths"),
-            ("CYCLES", "Cycles", "The scene as Cycles sees it, rendered by a second Blender on a copy of the file"),
+            ("LUXFER", "Luxfer", "Rendered by the library from a glTF export of the scene: exact light paths"),
+            ("CYCLES", "Cycles", "Rendered by Cycles in a second Blender, on a copy of the file: all Blender features"),
         ),
         default="LUXFER",
-        description="Who renders what the light does in the scene",
+        description="Renderer of the guides, which show the light in the scene",
     )
     guide_samples: IntProperty(name="Samples", default=32, min=1, max=65536, description="Paths per pixel of the guides")
     exemplar_width: IntProperty(name="Width", default=480, min=32, max=8192, description="Width of the exemplar in pixels")

@@ -1,7 +1,7 @@
-"""Jobs behind the user interface: a work is a generator that yields jobs of the library and goes on when each has succeeded.
+"""Background jobs: a work is a generator that yields jobs of the library and continues when each has succeeded.
 
-A timer of Blender's polls the running job, so the interface stays free; progress goes to the panels, Esc and the button
-cancel. Nothing of Blender's data is touched but from the main thread, between two jobs.
+A timer of Blender polls the running job, so the user interface stays responsive; the panels show the progress, Esc and
+the button cancel. Blender's data is accessed only on the main thread, between two jobs.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def context() -> luxfer.Context:
 
 
 class Step(Protocol):
-    """A job of the library, or what looks like one."""
+    """A job of the library, or an object with its methods."""
 
     @property
     def finished(self) -> bool: ...
@@ -38,7 +38,7 @@ class Step(Protocol):
 
 
 class Work:
-    """A generator of jobs, how many there will be, and what is said of it."""
+    """A generator of jobs, their number, and a title."""
 
     def __init__(self, title: str, steps: Generator[Step, Any, None], count: int):
         self.title, self.steps, self.count = title, steps, count
@@ -137,8 +137,8 @@ def redraw(pictures: bool = False) -> None:
 
 
 class Background:
-    """For operators that say in make() what is to be done. From the user interface they run behind it, and stay modal for
-    Esc; from scripts they return when it is done."""
+    """The base class of operators with work in make(). From the user interface they run in the background, modal for
+    Esc; from scripts they return when the work is done."""
 
     title: str
 

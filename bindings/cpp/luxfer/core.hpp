@@ -1,4 +1,4 @@
-// The context, images and jobs; and what every handle is.
+// The context, images and jobs, and the base class of all objects.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -15,8 +15,8 @@
 
 namespace luxfer {
 
-/// Whether a library of one version serves a program built with a header of another: before 1.0 those of one minor
-/// version do, from then on all of the same major version that are not older.
+/// Whether a library of one version is compatible with a program built with a header of another: before 1.0 the minor
+/// versions must be equal; from 1.0 on the major versions must be equal and the library must not be older.
 constexpr bool is_compatible(std::uint32_t library, std::uint32_t header) noexcept {
     return header >= 10000 ? library / 10000 == header / 10000 && library >= header : library / 100 == header / 100;
 }
@@ -51,7 +51,7 @@ struct IsVersioned : std::false_type {};
 template <class T>
 struct IsVersioned<T, std::void_t<decltype(T::struct_size)>> : std::true_type {};
 
-/// Calls a C function whose last parameter is a plain value or a versioned struct, and returns that.
+/// Calls a C function whose last parameter is a plain value or a versioned struct, and returns this value.
 template <class T, class... Parameters, class... Arguments>
 Result<T> get_value(luxfer_context *context, luxfer_status (*function)(Parameters...), Arguments... arguments) {
     T value = T();
@@ -77,13 +77,14 @@ Result<std::string> get_text(luxfer_context *context, luxfer_status (*function)(
 
 using ContextParams = Params<luxfer_context_params, luxfer_context_params_init>;
 
-/// The threads that do the work, a memory budget and the error messages: what all else is made in. See luxfer_context.
+/// Owns the worker threads, a memory budget and the error messages; all other objects are created in it. See
+/// luxfer_context.
 class Context {
 public:
-    /// Empty: every call on it, or with it, is LUXFER_INVALID_ARGUMENT.
+    /// An empty context: every call on it, or with it, gives LUXFER_INVALID_ARGUMENT.
     Context() noexcept = default;
 
-    /// LUXFER_UNSUPPORTED if the library that was loaded is not compatible with the header the program was built with.
+    /// LUXFER_UNSUPPORTED if the loaded library is not compatible with the header with which the program was built.
     static Result<Context> create(const luxfer_context_params &params = ContextParams()) {
         if (!is_compatible(luxfer_version(), LUXFER_VERSION))
             return detail::fail<Context>(Error(LUXFER_UNSUPPORTED, mismatch()));
@@ -95,14 +96,14 @@ public:
         return Context(made);
     }
 
-    /// Takes over a reference that the caller has to a context, such as one of another part of the program.
+    /// Takes over a reference that the caller holds to a context, such as one from another part of the program.
     static Context adopt(luxfer_context *context) noexcept { return Context(context); }
 
     /// The C handle, for the C functions; still owned by this object.
     luxfer_context *get() const noexcept { return reference_.get(); }
     explicit operator bool() const noexcept { return get() != nullptr; }
 
-    /// The message of this thread's latest failure, which Error::what() has told already.
+    /// The message of this thread's latest failure; Error::what() contains it too.
     Result<std::string> last_error() const { return detail::get_text(get(), luxfer_context_last_error, get()); }
 
 private:
@@ -118,9 +119,10 @@ private:
     detail::Reference<luxfer_context, luxfer_context_retain, luxfer_context_release> reference_;
 };
 
-/// What images, scenes, jobs and stages have in common: a reference to a C object, and one to its context, whose words the
-/// errors use. Copies share the object; a moved-from or default-made one is empty, which stands for NULL where a function
-/// takes that, and is LUXFER_INVALID_ARGUMENT elsewhere. May be destroyed in any order, also after the context.
+/// The base class of images, scenes, jobs and stages: a reference to a C object, and one to its context, which has the
+/// error messages. Copies share the object. A moved-from or default-constructed object is empty: it means NULL where a
+/// function accepts NULL, and gives LUXFER_INVALID_ARGUMENT elsewhere. Objects may be destroyed in any order, also
+/// after the context.
 template <class C, luxfer_status (*retain)(C *), luxfer_status (*release)(C *)>
 class Handle {
 public:
@@ -129,7 +131,7 @@ public:
 
     Handle() noexcept = default;
 
-    /// Takes over a reference that the caller has to a C object made in a context.
+    /// Takes over a reference that the caller holds to a C object of a context.
     Handle(const Context &context, C *adopted) noexcept
         : context_(adopted != nullptr ? context : Context()), reference_(adopted) {}
 
@@ -137,7 +139,7 @@ public:
     C *get() const noexcept { return reference_.get(); }
     explicit operator bool() const noexcept { return get() != nullptr; }
 
-    /// The context it was made in.
+    /// The context of the object.
     const Context &context() const noexcept { return context_; }
 
 protected:
@@ -155,7 +157,7 @@ protected:
         return detail::finish(context_.get(), status, T(context_, made));
     }
 
-    /// The same for a C function on the context.
+    /// Calls a C function on the context whose last parameter becomes a new object of class T.
     template <class T, class... Parameters, class... Arguments>
     static Result<T> make_in(const Context &context, luxfer_status (*function)(luxfer_context *, Parameters...),
                              Arguments... arguments) {
@@ -181,11 +183,11 @@ private:
     detail::Reference<C, retain, release> reference_;
 };
 
-/// Width and height in pixels, and channels.
+/// Width and height in pixels, and the number of channels.
 struct ImageSize {
     std::uint32_t width = 0, height = 0, channels = 0;
 
-    /// Samples in all.
+    /// Number of samples: width x height x channels.
     std::size_t samples() const noexcept { return std::size_t(width) * height * channels; }
 };
 
@@ -194,17 +196,17 @@ class Image : public Handle<luxfer_image, luxfer_image_retain, luxfer_image_rele
 public:
     using Handle::Handle;
 
-    /// Of a copy of the caller's pixels.
+    /// Creates an image from a copy of the caller's pixels.
     static Result<Image> create(const Context &context, const ConstImageView &view) {
         return make_in<Image>(context, luxfer_image_create, &view);
     }
 
-    /// Of a PNG, JPEG, Radiance HDR or OpenEXR file.
+    /// Loads a PNG, JPEG, Radiance HDR or OpenEXR file.
     static Result<Image> load(const Context &context, Text path, luxfer_colour_space colour_space = LUXFER_COLOUR_SRGB) {
         return make_in<Image>(context, luxfer_image_load, path.get(), colour_space);
     }
 
-    /// Of such a file in memory: any container of bytes.
+    /// Loads such a file from memory: any container of bytes.
     template <class Bytes>
     static Result<Image> load_memory(const Context &context, const Bytes &file,
                                      luxfer_colour_space colour_space = LUXFER_COLOUR_SRGB) {
@@ -213,7 +215,7 @@ public:
         return make_in<Image>(context, luxfer_image_load_memory, data, std::size(file), colour_space);
     }
 
-    /// As .png, multiplied by exposure, or as .exr.
+    /// Saves the image as .png, multiplied by exposure, or as .exr.
     Result<> save(Text path, float exposure = 1.0f) const { return call(luxfer_image_save, path.get(), exposure); }
 
     Result<ImageSize> size() const {
@@ -222,13 +224,13 @@ public:
         return detail::finish(context().get(), status, size);
     }
 
-    /// Writes it into the caller's pixels.
+    /// Writes the image into the caller's pixels.
     Result<> read(const ImageView &view, std::uint32_t first_channel = 0) const {
         return call(luxfer_image_read, first_channel, &view);
     }
 
-    /// All of its samples, packed: rows downwards, pixels from left to right, channels. At most four channels; take more
-    /// apart with read().
+    /// All samples, packed: rows from top to bottom, pixels from left to right, channels. At most four channels; for
+    /// images with more, use read().
     Result<std::vector<float>> samples() const {
         ImageSize size;
         luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
@@ -245,34 +247,35 @@ public:
     }
 };
 
-/// The map that takes four points to four points, row by row; points are x and y of each.
+/// The homography that maps four points to four points, row by row; the arrays hold x and y of each point.
 inline Result<std::array<double, 9>> homography_from_corners(const Context &context, Numbers<8> from, Numbers<8> to) {
     std::array<double, 9> map = {};
     const luxfer_status status = luxfer_homography_from_corners(context.get(), from.data(), to.data(), map.data());
     return detail::finish(context.get(), status, map);
 }
 
-/// Told how far a job is, from 0 to 1, on the thread that waits; returns false to cancel it. May throw: the job is then
-/// cancelled, and the exception leaves wait() (with LUXFER_NO_EXCEPTIONS it must not throw).
+/// Receives the progress of a job, from 0 to 1, on the waiting thread; returns false to cancel the job. It may throw:
+/// this cancels the job, and wait() rethrows the exception (with LUXFER_NO_EXCEPTIONS it must not throw).
 using Progress = std::function<bool(double fraction)>;
 
-/// How far a job is, and whether it has ended, well or not.
+/// The progress of a job, and whether it has ended, with or without success.
 struct JobState {
     double fraction = 0;
     bool is_finished = false;
 };
 
-/// Work in progress. The destructor of the last copy cancels it and waits for its end. See luxfer_job.
+/// Work in progress. The destructor of the last copy cancels the job and waits until it has ended. See luxfer_job.
 class Job : public Handle<luxfer_job, luxfer_job_retain, luxfer_job_release> {
 public:
     using Handle::Handle;
 
-    /// Waits until the job has ended; its failure is the error of this call.
+    /// Waits until the job has ended; if it fails, this call fails with its error.
     Result<> wait(const Progress &progress = {}) const {
         return detail::finish(context().get(), wait_c(get(), -1, progress));
     }
 
-    /// Waits for a time at most. True if the job has ended well, false if it still runs; its failure is an error.
+    /// Waits at most for the given time. Returns true if the job has succeeded, false if it still runs; fails with the
+    /// job's error.
     Result<bool> wait_for(std::chrono::milliseconds time, const Progress &progress = {}) const {
         constexpr std::int64_t longest = std::numeric_limits<std::int32_t>::max();
         const auto limit = std::int32_t(std::min(std::max<std::int64_t>(time.count(), 0), longest));
@@ -282,7 +285,7 @@ public:
         return detail::finish(context().get(), status, true);
     }
 
-    /// Does not wait.
+    /// Gets the progress without waiting.
     Result<JobState> poll() const {
         JobState state;
         std::int32_t finished = 0;
@@ -291,10 +294,10 @@ public:
         return detail::finish(context().get(), status, state);
     }
 
-    /// How it has ended, which is no error of this call; LUXFER_NOT_READY while it runs.
+    /// The status with which the job has ended (this call does not fail with it); LUXFER_NOT_READY while it runs.
     luxfer_status status() const noexcept { return luxfer_job_status(get()); }
 
-    /// Asks it to end early, from any thread; returns at once.
+    /// Asks the job to end early, from any thread; returns at once.
     Result<> cancel() const { return call(luxfer_job_cancel); }
 
 private:

@@ -13,24 +13,24 @@ using FalseColourParams = Params<luxfer_false_colour_params, luxfer_false_colour
 using LuminaireParams = Params<luxfer_luminaire_params, luxfer_luminaire_params_init>;
 using PlacementParams = Params<luxfer_placement_params, luxfer_placement_params_init>;
 
-/// Powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
+/// Solves for the powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
 class Lamps : public Handle<luxfer_lamps, luxfer_lamps_retain, luxfer_lamps_release> {
 public:
     using Handle::Handle;
 
     static Result<Lamps> create(const Context &context) { return make_in<Lamps>(context, luxfer_lamps_create); }
 
-    /// The emitting material whose lamps are solved for; forgets the goals.
+    /// Sets the scene and the emitting material whose lamps are solved for; removes all goals.
     Result<> set_scene(const Scene &scene, std::uint32_t material) const {
         return call(luxfer_lamps_set_scene, scene.get(), material);
     }
 
-    /// The mean radiance that a mesh should have, in cd/m²; quantity is a LUXFER_QUANTITY_ value.
+    /// Adds a goal: the mean radiance that a mesh should have, in cd/m²; quantity is a LUXFER_QUANTITY_ value.
     Result<> add_mesh(std::uint32_t mesh, luxfer_quantity quantity, Rgb target, double weight = 1) const {
         return call(luxfer_lamps_add_mesh, mesh, quantity, target.red, target.green, target.blue, weight);
     }
 
-    /// The mean illuminance that a calculation grid should have, in lux.
+    /// Adds a goal: the mean illuminance that a calculation grid should have, in lux.
     Result<> add_grid(const luxfer_illuminance_grid &grid, float lux, double weight = 1) const {
         return call(luxfer_lamps_add_grid, &grid, lux, weight);
     }
@@ -41,7 +41,7 @@ public:
         return call(luxfer_lamps_set_sense, goal, red, green, blue);
     }
 
-    /// The multipliers that the lamps' drivers can be dimmed to; none for drivers without steps.
+    /// Sets the dimming levels of the lamps' drivers, as factors for the emission; empty for drivers without steps.
     Result<> set_levels(const std::vector<double> &levels) const {
         return call(luxfer_lamps_set_levels, levels.data(), static_cast<std::uint32_t>(levels.size()));
     }
@@ -61,14 +61,14 @@ public:
         return value<luxfer_lamps_response>(luxfer_lamps_get_response, goal, lamp);
     }
 
-    /// Why the goals are not all met; empty if they are.
+    /// The reason why goals are not met; empty if all are met.
     Result<std::string> reason() const { return text(luxfer_lamps_get_reason); }
 
-    /// The emission's texture with every lamp multiplied.
+    /// The emission texture with every lamp multiplied by its scale.
     Result<Image> texture() const { return make<Image>(luxfer_lamps_get_texture); }
 };
 
-/// What each point of an emission's surface means to a target. See luxfer_importance.
+/// A map of the light that each point of an emitting surface would send to a target. See luxfer_importance.
 class Importance : public Handle<luxfer_importance, luxfer_importance_retain, luxfer_importance_release> {
 public:
     using Handle::Handle;
@@ -77,7 +77,7 @@ public:
         return make_in<Importance>(context, luxfer_importance_create);
     }
 
-    /// The material of the surfaces that will emit, and the mesh that is the target.
+    /// Sets the scene, the material of the surfaces that will emit, and the mesh that is the target.
     Result<> set_scene(const Scene &scene, std::uint32_t material, std::uint32_t mesh) const {
         return call(luxfer_importance_set_scene, scene.get(), material, mesh);
     }
@@ -88,17 +88,18 @@ public:
 
     Result<Image> image() const { return make<Image>(luxfer_importance_get_image); }
 
-    /// What a texture in cd/m² means to the target.
+    /// The light that the target receives from a texture in cd/m².
     Result<luxfer_importance_report> respond(const Image &texture) const {
         return value<luxfer_importance_report>(luxfer_importance_respond, texture.get(), nullptr);
     }
 
-    /// The same of one that is placed: from the surface's texture coordinates to its own, row by row.
+    /// The light of a placed texture; placement maps the surface's texture coordinates to those of the texture, row by
+    /// row.
     Result<luxfer_importance_report> respond(const Image &texture, Numbers<9> placement) const {
         return value<luxfer_importance_report>(luxfer_importance_respond, texture.get(), placement.data());
     }
 
-    /// What to multiply a texture with, so that the target has a mean radiance.
+    /// Solves for the factor of a texture that gives the target a mean radiance.
     Result<luxfer_relight_report> solve(const Image &texture, Rgb target) const {
         return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), nullptr, target.red, target.green,
                                             target.blue);
@@ -108,12 +109,12 @@ public:
                                             target.green, target.blue);
     }
 
-    /// Looks for where a texture in cd/m² should lie.
+    /// Starts a job that finds the best placement of a texture in cd/m².
     Result<Job> start_placement(const Image &texture, const luxfer_placement_params &params = PlacementParams()) const {
         return make<Job>(luxfer_importance_start_placement, texture.get(), &params);
     }
 
-    /// What it has found.
+    /// The placement that was found.
     Result<luxfer_placement> placement() const { return value<luxfer_placement>(luxfer_importance_get_placement); }
 };
 
@@ -126,13 +127,13 @@ public:
         return make_in<Distribution>(context, luxfer_distribution_load, path.get());
     }
 
-    /// From a file in memory; format is a LUXFER_DISTRIBUTION_ value.
+    /// Loads a file in memory; format is a LUXFER_DISTRIBUTION_ value.
     static Result<Distribution> load(const Context &context, Text file, luxfer_distribution_format format) {
         const void *data = file.get();
         return make_in<Distribution>(context, luxfer_distribution_load_memory, data, std::strlen(file.get()), format);
     }
 
-    /// To an .ies or .ldt file.
+    /// Saves to an .ies or .ldt file.
     Result<> save(Text path) const { return call(luxfer_distribution_save, path.get()); }
 
     Result<luxfer_distribution_report> report() const {
@@ -140,13 +141,13 @@ public:
     }
     Result<std::string> name() const { return text(luxfer_distribution_get_name); }
 
-    /// Candela in a direction, in degrees.
+    /// Luminous intensity in candela in a direction; angles in degrees.
     Result<double> intensity(double c, double gamma) const {
         return value<double>(luxfer_distribution_get_intensity, c, gamma);
     }
 };
 
-/// Hangs a luminaire in a scene; returns its index among the lights.
+/// Adds a luminaire to a scene; returns its index among the lights.
 inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distribution &distribution,
                                            const luxfer_luminaire_params &params = LuminaireParams()) {
     std::uint32_t index = 0;
@@ -166,7 +167,7 @@ inline Result<ColourTemperature> colour_temperature(const Context &context, doub
     return detail::finish(context.get(), status, found);
 }
 
-/// The linear colour of luminance 1 of a temperature.
+/// The linear colour, with luminance 1, of a colour temperature.
 inline Result<std::array<double, 3>> colour_of_temperature(const Context &context, ColourTemperature temperature) {
     std::array<double, 3> rgb = {};
     const luxfer_status status =
@@ -180,20 +181,20 @@ inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, doubl
                                                   threshold);
 }
 
-/// An image in false colour, with a scale bar.
+/// Shows an image in false colours, with a scale bar.
 inline Result<Image> false_colour(const Image &image, const luxfer_false_colour_params &params = FalseColourParams()) {
     luxfer_image *shown = nullptr;
     const luxfer_status status = luxfer_image_false_colour(image.get(), &params, &shown);
     return detail::finish(image.context().get(), status, Image(image.context(), shown));
 }
 
-/// A light mixed from primaries, and how strongly each is driven.
+/// A colour mixed from primaries, and their drive levels.
 struct Mixture {
     std::vector<double> drives;
     luxfer_mixture light;
 };
 
-/// Mixes a linear colour from the LEDs of a luminaire, none driven by more than most.
+/// Mixes a linear colour from the LEDs of a luminaire, with drive levels of at most `most`.
 inline Result<Mixture> mix_primaries(const Context &context, const std::vector<std::array<double, 3>> &primaries,
                                      std::array<double, 3> colour, double most = 1) {
     std::vector<double> flat;
@@ -226,7 +227,7 @@ inline Result<std::uint32_t> preset_count(const Context &context) {
     return detail::finish(context.get(), status, count);
 }
 
-/// What EN 12464-1 asks of a place.
+/// The requirements of EN 12464-1 for a kind of room.
 inline Result<luxfer_preset> preset(const Context &context, std::uint32_t index) {
     return detail::get_value<luxfer_preset>(context.get(), luxfer_preset_get, context.get(), index);
 }

@@ -1,7 +1,7 @@
 // From a photo to an emissive texture: rectification, features, segmentation, emission, each a stage of its own.
 //
-// Stages have one face: create, set the inputs, start a job, read images and a report. An input that the C header allows to
-// be NULL is left out by an empty Image (or Rectify).
+// All stages work alike: create, set the inputs, start a job, read images and a report. For an input that may be NULL
+// in C, pass an empty Image (or Rectify).
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -15,7 +15,7 @@ using FeaturesParams = Params<luxfer_features_params, luxfer_features_params_ini
 using SegmentParams = Params<luxfer_segment_params, luxfer_segment_params_init>;
 using EmissionParams = Params<luxfer_emission_params, luxfer_emission_params_init>;
 
-/// Lines, vanishing points, the camera; and a plane seen straight on. See luxfer_rectify.
+/// Finds lines, vanishing points and the camera, and unwarps a plane to a frontal view. See luxfer_rectify.
 class Rectify : public Handle<luxfer_rectify, luxfer_rectify_retain, luxfer_rectify_release> {
 public:
     using Handle::Handle;
@@ -24,7 +24,7 @@ public:
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_rectify_set_photo, photo.get()); }
 
-    /// Of the plane to unwarp; may be empty: only lines are found.
+    /// Sets the mask of the plane to unwarp; may be empty: then only lines and camera are found.
     Result<> set_mask(const Image &mask) const { return call(luxfer_rectify_set_mask, mask.get()); }
 
     Result<Job> start(const luxfer_rectify_params &params = RectifyParams()) const {
@@ -34,13 +34,13 @@ public:
     /// A LUXFER_RECTIFY_ value.
     Result<Image> image(luxfer_rectify_image which) const { return make<Image>(luxfer_rectify_get_image, which); }
 
-    /// Another image of the photo's size, unwarped as the plane was.
+    /// Unwarps another image of the photo's size by the homography of the plane.
     Result<Image> warp(const Image &source) const { return make<Image>(luxfer_rectify_warp, source.get()); }
 
     Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
 };
 
-/// What segmentation knows of each pixel of a photo. See luxfer_features.
+/// The features of each pixel of a photo, for segmentation. See luxfer_features.
 class Features : public Handle<luxfer_features, luxfer_features_retain, luxfer_features_release> {
 public:
     using Handle::Handle;
@@ -49,21 +49,22 @@ public:
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_features_set_photo, photo.get()); }
 
-    /// May be empty: none.
+    /// Sets the depth map; may be empty: no depth map.
     Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
         return call(luxfer_features_set_depth, depth.get(), kind);
     }
 
-    /// An ONNX file that estimates depth where there is no depth map.
+    /// Sets an ONNX file that estimates depth if there is no depth map.
     Result<> set_network(Text path, luxfer_normalisation normalisation = LUXFER_NORMALISATION_BY_SIZE) const {
         return call(luxfer_features_set_network, path.get(), normalisation);
     }
     Result<> clear_network() const { return call(luxfer_features_set_network, nullptr, LUXFER_NORMALISATION_BY_SIZE); }
 
-    /// Lines and camera as they are now; may be empty: none.
+    /// Takes the current lines and camera of a Rectify; may be empty: no lines.
     Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
 
-    /// On one plane of the room, or elsewhere, for its layout; points are x and y of each, in pixels.
+    /// Adds a stroke on one plane of the room (positive) or off it, to fit the room; points holds x and y of each, in
+    /// pixels.
     Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
         const std::int32_t positive = is_positive;
         return call(luxfer_features_add_stroke, points.data(), points.size() / 2, radius, positive);
@@ -82,7 +83,7 @@ public:
     Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
 };
 
-/// From strokes to a mask. See luxfer_segment.
+/// Computes a mask from strokes. See luxfer_segment.
 class Segment : public Handle<luxfer_segment, luxfer_segment_retain, luxfer_segment_release> {
 public:
     using Handle::Handle;
@@ -91,10 +92,10 @@ public:
 
     Result<> set_features(const Image &features) const { return call(luxfer_segment_set_features, features.get()); }
 
-    /// Where to look; may be empty: everywhere.
+    /// Restricts the segmentation to a mask; may be empty: everywhere.
     Result<> set_within(const Image &within) const { return call(luxfer_segment_set_within, within.get()); }
 
-    /// Along a polyline: points are x and y of each, in pixels.
+    /// Adds a stroke along a polyline: points holds x and y of each, in pixels.
     Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
         const std::int32_t positive = is_positive;
         return call(luxfer_segment_add_stroke, points.data(), points.size() / 2, radius, positive);
@@ -117,7 +118,7 @@ public:
     Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
 };
 
-/// From unwarped lights to an emissive texture of any size. See luxfer_emission.
+/// Synthesises an emissive texture of any size from unwarped lights. See luxfer_emission.
 class Emission : public Handle<luxfer_emission, luxfer_emission_retain, luxfer_emission_release> {
 public:
     using Handle::Handle;
@@ -128,18 +129,20 @@ public:
         return call(luxfer_emission_set_exemplar, unwarped.get(), light.get(), valid.get());
     }
 
-    /// Where full detail is recovered from, and the map from unwarped to photo pixels (luxfer_rectify_report.to_photo).
+    /// Sets the photo from which full detail is recovered, and the map from unwarped to photo pixels
+    /// (luxfer_rectify_report.to_photo).
     Result<> set_photo(const Image &photo, Numbers<9> to_photo) const {
         return call(luxfer_emission_set_photo, photo.get(), to_photo.data());
     }
     Result<> clear_photo() const { return call(luxfer_emission_set_photo, nullptr, nullptr); }
 
-    /// A further exemplar, of scale unwarped pixels per texel, whose lights take the place of the first's as weights say.
+    /// Adds an exemplar with scale unwarped pixels per texel, whose lights replace those of the first according to
+    /// weights.
     Result<> add_style(const Image &unwarped, const Image &light, const Image &valid, double scale, const Image &weights) const {
         return call(luxfer_emission_add_style, unwarped.get(), light.get(), valid.get(), nullptr, nullptr, scale,
                     weights.get());
     }
-    /// The same with a photo, as of set_photo.
+    /// Adds an exemplar with a photo, as for set_photo.
     Result<> add_style(const Image &unwarped, const Image &light, const Image &valid, const Image &photo,
                        Numbers<9> to_photo, double scale, const Image &weights) const {
         return call(luxfer_emission_add_style, unwarped.get(), light.get(), valid.get(), photo.get(), to_photo.data(),
@@ -147,11 +150,11 @@ public:
     }
     Result<> clear_styles() const { return call(luxfer_emission_clear_styles); }
 
-    /// Plans a texture of which render_tile makes any part.
+    /// Starts a job that plans a texture; render_tile then renders any part of it.
     Result<Job> start_plan(const luxfer_emission_params &params = EmissionParams()) const {
         return make<Job>(luxfer_emission_start_plan, &params);
     }
-    /// RGB, and 1 on lamps.
+    /// Renders a part of the planned texture: RGB, and a mask that is 1 on lamps.
     Result<Image> render_tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const {
         return make<Image>(luxfer_emission_render_tile, x, y, width, height);
     }

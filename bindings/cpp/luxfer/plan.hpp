@@ -1,4 +1,4 @@
-// Settings for an error or a time, before anything is rendered.
+// Chooses settings for a given error or time before anything is rendered.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -9,10 +9,10 @@
 
 namespace luxfer {
 
-/// Set one of its fields.
+/// The goal of a plan: set exactly one of its fields.
 using PlanParams = Params<luxfer_plan_params, luxfer_plan_params_init>;
 
-/// Which settings come to an error or a time, and what to expect. See luxfer_plan.
+/// Chooses settings for a given error or time, and predicts both. See luxfer_plan.
 class Plan : public Handle<luxfer_plan, luxfer_plan_retain, luxfer_plan_release> {
 public:
     using Handle::Handle;
@@ -24,13 +24,13 @@ public:
         return make<Job>(luxfer_plan_start_render, render.get(), &settings, &params);
     }
 
-    /// What follows the stage EMISSION, which must have run.
+    /// Plans the stages after EMISSION, which must have run.
     Result<Job> start(const Transfer &transfer, const luxfer_plan_params &params,
                       const luxfer_transfer_params &settings = TransferParams()) const {
         return make<Job>(luxfer_plan_start_transfer, transfer.get(), &settings, &params);
     }
 
-    /// All of the target, with what the stylisation has been given.
+    /// Plans a stylisation of the whole target with its current inputs.
     Result<Job> start(const Stylize &stylize, const luxfer_plan_params &params,
                       const luxfer_stylize_params &settings = StylizeParams()) const {
         return make<Job>(luxfer_plan_start_stylize, stylize.get(), &settings, &params);
@@ -38,7 +38,7 @@ public:
 
     Result<luxfer_plan_report> report() const { return value<luxfer_plan_report>(luxfer_plan_get_report); }
 
-    /// To render, to relight and to stylise with.
+    /// The settings to render, to relight and to stylise with.
     Result<luxfer_render_params> render_params() const {
         return value<luxfer_render_params>(luxfer_plan_get_render_params);
     }

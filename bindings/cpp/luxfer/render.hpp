@@ -1,4 +1,4 @@
-// Light in a scene: pictures with their layers, illuminance, and the solution for an emission.
+// Light in a scene: pictures with layers, illuminance, and relighting.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -13,7 +13,7 @@ using IlluminanceParams = Params<luxfer_illuminance_params, luxfer_illuminance_p
 using IlluminanceGrid = Params<luxfer_illuminance_grid, luxfer_illuminance_grid_init>;
 using RelightParams = Params<luxfer_relight_params, luxfer_relight_params_init>;
 
-/// A path tracer; what it has so far can be read while its job runs. See luxfer_render.
+/// A path tracer; its current image can be read while its job runs. See luxfer_render.
 class Render : public Handle<luxfer_render, luxfer_render_retain, luxfer_render_release> {
 public:
     using Handle::Handle;
@@ -22,13 +22,13 @@ public:
 
     Result<> set_scene(const Scene &scene) const { return call(luxfer_render_set_scene, scene.get()); }
 
-    /// A camera of the scene, or one of its own.
+    /// Sets the camera: one of the scene, or the given one.
     Result<> set_camera(std::uint32_t index) const { return call(luxfer_render_set_camera_index, index); }
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_render_set_camera, &camera); }
 
-    // What is made beside the picture, of the same paths.
+    // Additional layers from the paths of the picture.
 
-    /// A layer of the light that came by certain ways, such as "C<RD>L".
+    /// Adds a layer of the light that a light path expression selects, such as "C<RD>L".
     Result<> add_expression(Text name, Text expression) const {
         return call(luxfer_render_add_expression, name.get(), expression.get());
     }
@@ -44,7 +44,7 @@ public:
         return make<Job>(luxfer_render_start, &params);
     }
 
-    // In parts, on many machines.
+    // Rendering in parts, on many machines.
 
     /// Part number index of columns x rows rectangles and ranges of paths.
     Result<luxfer_render_part> split(std::uint32_t columns, std::uint32_t rows, std::uint32_t ranges, std::uint32_t index,
@@ -52,13 +52,13 @@ public:
         return value<luxfer_render_part>(luxfer_render_split, &params, columns, rows, ranges, index);
     }
 
-    /// Renders a part into a file.
+    /// Starts a job that renders a part into a file.
     Result<Job> start_part(Text path, const luxfer_render_part &part = RenderPart(),
                            const luxfer_render_params &params = RenderParams()) const {
         return make<Job>(luxfer_render_start_part, &params, &part, path.get());
     }
 
-    /// The files that start_merge adds up.
+    /// Adds a file to merge by start_merge.
     Result<> add_part(Text path) const { return call(luxfer_render_add_part, path.get()); }
     Result<> clear_parts() const { return call(luxfer_render_clear_parts); }
 
@@ -80,11 +80,11 @@ public:
     }
     Result<Image> layer(std::uint32_t index) const { return make<Image>(luxfer_render_get_layer, index); }
 
-    /// The picture and all layers in one file.
+    /// Writes the picture and all layers into one file.
     Result<> write_exr(Text path) const { return call(luxfer_render_write_exr, path.get()); }
 };
 
-/// Illuminance in lux, on a grid or over a mesh. See luxfer_illuminance.
+/// Illuminance in lux, on a grid or a mesh. See luxfer_illuminance.
 class Illuminance : public Handle<luxfer_illuminance, luxfer_illuminance_retain, luxfer_illuminance_release> {
 public:
     using Handle::Handle;
@@ -100,7 +100,7 @@ public:
         return make<Job>(luxfer_illuminance_start_grid, &grid, &params);
     }
 
-    /// On the side that the triangles' winding faces, or the other, the back.
+    /// Starts a job for a mesh, on its front side by the triangles' winding, or on its back side.
     Result<Job> start_mesh(std::uint32_t mesh, bool back = false,
                            const luxfer_illuminance_params &params = IlluminanceParams()) const {
         const std::uint32_t side = back;
@@ -124,12 +124,12 @@ public:
 
     static Result<Relight> create(const Context &context) { return make_in<Relight>(context, luxfer_relight_create); }
 
-    /// The emission to solve for, as Scene::place_emission has told it; its mesh is the surface to match.
+    /// Sets the scene, and the emission to solve for, from Scene::place_emission; its mesh is the surface to match.
     Result<> set_scene(const Scene &scene, PlacedEmission emission) const {
         return call(luxfer_relight_set_scene, scene.get(), emission.material, emission.mesh);
     }
 
-    /// The mean radiance that the surface should have, in cd/m².
+    /// Sets the mean radiance that the surface should have, in cd/m².
     Result<> set_target(Rgb target) const {
         return call(luxfer_relight_set_target, target.red, target.green, target.blue);
     }

@@ -1,8 +1,8 @@
-// How a call ends: with its result, or with an Error.
+// The result of a call: a value or an Error.
 //
 // By default errors are thrown, and Result<T> is T itself. With LUXFER_NO_EXCEPTIONS defined (for every file of a program
-// alike) nothing is thrown: Result<T> holds a T or an Error, as std::expected of C++23 does. All of the wrapper's functions
-// are written against Result, so that both ways of working have the same functions.
+// alike) nothing is thrown: Result<T> holds a T or an Error, as std::expected of C++23 does. All functions of the
+// wrapper return a Result, so both modes have one set of functions.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -20,7 +20,7 @@
 
 namespace luxfer {
 
-/// Why a call failed: what() is the library's message, which names the parameter, its value and what is allowed.
+/// The error of a call: what() is the library's message, which names the parameter, its value and its allowed range.
 class Error : public std::runtime_error {
 public:
     Error(luxfer_status status, const std::string &message) : std::runtime_error(message), status_(status) {}
@@ -37,13 +37,14 @@ private:
 
 #ifndef LUXFER_NO_EXCEPTIONS
 
-/// What a function returns: a T. Errors are thrown.
+/// The return type of a function: T itself. Errors are thrown.
 template <class T = void>
 using Result = T;
 
 #else
 
-/// What a function returns: a T, or an Error. `if (result)` tells which; then *result, result->..., or result.error().
+/// The return type of a function: a T or an Error. `if (result)` tests for a value; then use *result, result->..., or
+/// result.error().
 template <class T = void>
 class [[nodiscard]] Result {
 public:
@@ -85,7 +86,7 @@ public:
 
 namespace detail {
 
-/// The message of this thread's latest failure. Without a context there is none: the status has to do.
+/// The message of this thread's latest failure. Without a context there is only the status.
 inline Error error_of(luxfer_context *context, luxfer_status status) {
     if (context == nullptr)
         return Error(status, std::string(luxfer_status_name(status)) + ": the object, or the context, is empty");
@@ -104,7 +105,7 @@ template <class T>
     throw error;
 }
 
-/// The end of every call: throws unless status is LUXFER_OK.
+/// Checks the status of a call: throws unless it is LUXFER_OK.
 inline void finish(luxfer_context *context, luxfer_status status) {
     if (status != LUXFER_OK)
         throw error_of(context, status);
@@ -116,10 +117,10 @@ T finish(luxfer_context *context, luxfer_status status, T value) {
     return value;
 }
 
-/// Runs a function of the caller's inside a callback from C, which no exception may cross: it waits here.
+/// Runs a function of the caller inside a callback from C. No exception may cross C, so it is kept here.
 class Caught {
 public:
-    /// What the C callback returns: 0 to go on if the function says true.
+    /// The result for the C callback: 0 (continue) if the function returns true.
     template <class Function>
     std::int32_t run(const Function &function) noexcept {
         try {
@@ -130,7 +131,7 @@ public:
         }
     }
 
-    /// To be called when C has returned.
+    /// Rethrows the exception; call it after C has returned.
     void rethrow() {
         if (exception_)
             std::rethrow_exception(std::exchange(exception_, nullptr));
@@ -147,7 +148,7 @@ Result<T> fail(Error error) {
     return error;
 }
 
-/// The end of every call: an error unless status is LUXFER_OK.
+/// Checks the status of a call: an error unless it is LUXFER_OK.
 inline Result<> finish(luxfer_context *context, luxfer_status status) {
     return status == LUXFER_OK ? Result<>() : Result<>(error_of(context, status));
 }
@@ -157,7 +158,7 @@ Result<T> finish(luxfer_context *context, luxfer_status status, T value) {
     return status == LUXFER_OK ? Result<T>(std::move(value)) : Result<T>(error_of(context, status));
 }
 
-/// Runs a function of the caller's inside a callback from C. It must not throw: that would end the program.
+/// Runs a function of the caller inside a callback from C. It must not throw, which would end the program.
 class Caught {
 public:
     template <class Function>

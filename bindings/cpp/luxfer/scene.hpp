@@ -1,4 +1,4 @@
-// Scenes: made, loaded, described by arrays, asked, read back.
+// Scenes: creating, loading, building from arrays, queries, reading back.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -15,7 +15,7 @@ using LightParams = Params<luxfer_light_params, luxfer_light_params_init>;
 struct MeshParams : Params<luxfer_mesh_params, luxfer_mesh_params_init> {
     MeshParams() noexcept = default;
 
-    /// Three numbers for each vertex, three indices for each triangle.
+    /// Three numbers per vertex, three indices per triangle.
     MeshParams(Span<const float> positions_, Span<const std::uint32_t> indices_, std::uint32_t material_ = 0) noexcept {
         positions = positions_.data();
         vertex_count = positions_.size() / 3;
@@ -25,28 +25,29 @@ struct MeshParams : Params<luxfer_mesh_params, luxfer_mesh_params_init> {
     }
 };
 
-/// The mesh and the material that a light texture became.
+/// The mesh and the material that place_emission has created.
 struct PlacedEmission {
     std::uint32_t mesh = 0, material = 0;
 };
 
-/// Takes the next bytes of a file; returns false to give up. May throw: the exception leaves the function that writes.
+/// Receives the next bytes of a file; returns false to stop. It may throw: the function that writes rethrows the
+/// exception.
 using Writer = std::function<bool(const void *data, std::size_t size)>;
 
-/// What the host describes: meshes, materials, textures, lights, cameras. See luxfer_scene.
+/// Meshes, materials, textures, lights and cameras. See luxfer_scene.
 class Scene : public Handle<luxfer_scene, luxfer_scene_retain, luxfer_scene_release> {
 public:
     using Handle::Handle;
 
-    /// An empty one.
+    /// Creates an empty scene.
     static Result<Scene> create(const Context &context) { return make_in<Scene>(context, luxfer_scene_create); }
 
-    /// Of a .glb, or a .gltf with the files it names.
+    /// Loads a .glb file, or a .gltf file with the files it names.
     static Result<Scene> load(const Context &context, Text path) {
         return make_in<Scene>(context, luxfer_scene_load, path.get());
     }
 
-    /// Of such a file in memory: any container of bytes. Other files that it names are looked up in base_path.
+    /// Loads such a file from memory: any container of bytes. Other files that it names are read from base_path.
     template <class Bytes>
     static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path = nullptr) {
         static_assert(sizeof *std::data(file) == 1, "a file consists of bytes");
@@ -59,10 +60,10 @@ public:
         return make_in<Scene>(context, luxfer_demo_scene, which);
     }
 
-    /// As a .glb with all of its textures inside.
+    /// Saves a .glb file that contains all textures.
     Result<> save(Text path) const { return call(luxfer_scene_export, path.get()); }
 
-    /// The same through a function of the caller's.
+    /// Writes a .glb through a function of the caller.
     Result<> write(const Writer &writer) const {
         Sink sink = {writer, {}};
         const luxfer_status status = luxfer_scene_export_memory(get(), take, &sink);
@@ -70,11 +71,11 @@ public:
         return detail::finish(context().get(), status);
     }
 
-    // Its parts.
+    // Parts of a scene.
 
     Result<luxfer_scene_counts> counts() const { return value<luxfer_scene_counts>(luxfer_scene_get_counts); }
 
-    /// These return the index of what was added.
+    /// These functions return the index of the new object.
     Result<std::uint32_t> add_material(const luxfer_material_params &params = MaterialParams()) const {
         return value<std::uint32_t>(luxfer_scene_add_material, &params);
     }
@@ -88,24 +89,25 @@ public:
         return value<std::uint32_t>(luxfer_scene_add_light, &params);
     }
 
-    /// Replaces the numbers of a material; its textures stay. Change what material() has read.
+    /// Replaces the values of a material; it keeps its textures. To change single values, start from material().
     Result<> set_material(std::uint32_t index, const luxfer_material_params &params) const {
         return call(luxfer_scene_set_material, index, &params);
     }
 
-    /// A copy of an image, for set_material_texture; the wraps are LUXFER_WRAP_ values. Returns its index.
+    /// Adds a copy of an image as texture, for set_material_texture; the wraps are LUXFER_WRAP_ values. Returns its
+    /// index.
     Result<std::uint32_t> add_texture(const Image &image, luxfer_wrap wrap_u = LUXFER_WRAP_REPEAT,
                                       luxfer_wrap wrap_v = LUXFER_WRAP_REPEAT) const {
         return value<std::uint32_t>(luxfer_scene_add_texture, image.get(), wrap_u, wrap_v);
     }
 
-    /// Makes a material use a texture for a purpose, a LUXFER_TEXTURE_ value; LUXFER_NONE takes it away.
+    /// Sets the texture of a material for a purpose, a LUXFER_TEXTURE_ value; LUXFER_NONE removes it.
     Result<> set_material_texture(std::uint32_t material, luxfer_texture_role role, std::uint32_t texture,
                                   std::uint32_t uv_set = 0) const {
         return call(luxfer_scene_set_material_texture, material, role, texture, uv_set, nullptr);
     }
 
-    /// The same with a transform, two rows of three, applied to (u, v, 1) before the look-up.
+    /// Sets a texture with a transform, two rows of three, applied to (u, v, 1) before the look-up.
     Result<> set_material_texture(std::uint32_t material, luxfer_texture_role role, std::uint32_t texture,
                                   std::uint32_t uv_set, Numbers<6, float> transform) const {
         return call(luxfer_scene_set_material_texture, material, role, texture, uv_set, transform.data());
@@ -115,29 +117,29 @@ public:
         return call(luxfer_scene_set_camera, index, &params);
     }
 
-    /// Light of one colour from all directions, in cd/m².
+    /// Sets an environment of one radiance, in cd/m².
     Result<> set_environment(Rgb light) const {
         return call(luxfer_scene_set_environment, light.red, light.green, light.blue);
     }
 
-    /// An equirectangular image of it, times scale.
+    /// Sets an environment from an equirectangular image, multiplied by scale.
     Result<> set_environment(const Image &image, Rgb scale) const {
         return call(luxfer_scene_set_environment_image, image.get(), scale.red, scale.green, scale.blue);
     }
 
-    /// What a material emits, in cd/m².
+    /// Sets the emission of a material, in cd/m².
     Result<> set_emission(std::uint32_t material, Rgb emission) const {
         return call(luxfer_scene_set_emission, material, emission.red, emission.green, emission.blue);
     }
 
     // Surfaces.
 
-    /// The planar surface of that object or material that faces the room.
+    /// Finds the planar surface of an object or material that faces the room.
     Result<luxfer_surface> find_surface(Text name) const {
         return value<luxfer_surface>(luxfer_scene_find_surface, name.get());
     }
 
-    /// Lays an emissive texture over it, which emits texture * scale in cd/m².
+    /// Maps an emissive texture onto it, which emits texture * scale in cd/m².
     Result<PlacedEmission> place_emission(Text name, const Image &texture, Rgb scale) const {
         PlacedEmission placed;
         const luxfer_status status =
@@ -146,24 +148,24 @@ public:
         return detail::finish(context().get(), status, placed);
     }
 
-    // What the library itself sees in it.
+    // Queries.
 
-    /// The nearest hit of each ray, into as many hits.
+    /// Finds the nearest hit of each ray; hits has the length of rays.
     Result<> intersect(Span<const luxfer_ray> rays, Span<luxfer_hit> hits) const {
         if (rays.size() != hits.size())
             return detail::fail<void>(Error(LUXFER_INVALID_ARGUMENT, "there must be as many hits as rays"));
         return call(luxfer_scene_intersect, rays.data(), rays.size(), hits.data());
     }
 
-    /// What the renderer has to do for it; error is the share of light that bounces may leave out.
+    /// The features that the scene requires of the renderer; error is the share of light for the field bounces.
     Result<luxfer_requirements> requirements(float error = 0.01f) const {
         return value<luxfer_requirements>(luxfer_scene_requirements, error);
     }
 
-    /// What rendering it leaves out, a sentence per line.
+    /// Describes what the renderer skips, one sentence per line.
     Result<std::string> requirements_text() const { return text(luxfer_scene_requirements_text); }
 
-    // Read back, by index.
+    // Reading back, by index.
 
     Result<luxfer_camera_params> camera(std::uint32_t index) const {
         return value<luxfer_camera_params>(luxfer_scene_get_camera, index);
@@ -173,8 +175,8 @@ public:
     }
     Result<std::string> mesh_name(std::uint32_t index) const { return text(luxfer_scene_get_mesh_name, index); }
 
-    /// Into packed arrays: positions and normals, three for each vertex, and indices, three for each triangle. What is not
-    /// wanted is left empty.
+    /// Copies into packed arrays: positions and normals, three numbers per vertex, and indices, three per triangle.
+    /// Leave arrays empty that you do not need.
     Result<> read_mesh(std::uint32_t index, Span<float> positions, Span<float> normals, Span<std::uint32_t> indices) const {
         std::size_t vertices = std::max(positions.size(), normals.size()) / 3;
         if (!positions.empty() && !normals.empty())
@@ -183,7 +185,7 @@ public:
                     indices.data());
     }
 
-    /// One of its sets of texture coordinates, two for each vertex.
+    /// Copies a set of texture coordinates, two numbers per vertex.
     Result<> read_mesh_uvs(std::uint32_t index, std::uint32_t uv_set, Span<float> uvs) const {
         return call(luxfer_scene_read_mesh_uvs, index, uv_set, uvs.size() / 2, uvs.data());
     }
@@ -192,7 +194,7 @@ public:
         return value<luxfer_material_params>(luxfer_scene_get_material, index);
     }
 
-    /// Which texture a material uses for a purpose, a LUXFER_TEXTURE_ value, and how.
+    /// The texture that a material uses for a purpose, a LUXFER_TEXTURE_ value.
     Result<luxfer_texture_use> material_texture(std::uint32_t material, luxfer_texture_role role) const {
         return value<luxfer_texture_use>(luxfer_scene_get_material_texture, material, role);
     }

@@ -14,14 +14,14 @@ using SheetParams = Params<luxfer_sheet_params, luxfer_sheet_params_init>;
 struct StylizeParams : Params<luxfer_stylize_params, luxfer_stylize_params_init> {
     StylizeParams() noexcept = default;
 
-    /// No other number than a preset is one: it is refused as the settings are used.
+    /// Any other value than a preset is refused when the settings are used.
     explicit StylizeParams(luxfer_stylize_preset preset) noexcept {
         if (luxfer_stylize_params_preset(this, preset) != LUXFER_OK)
             struct_size = 0;
     }
 };
 
-/// What the light does in a scene, as images for a stylisation. See luxfer_guides.
+/// Renders the guide images of a scene for a stylisation. See luxfer_guides.
 class Guides : public Handle<luxfer_guides, luxfer_guides_retain, luxfer_guides_release> {
 public:
     using Handle::Handle;
@@ -37,62 +37,62 @@ public:
     /// A LUXFER_GUIDES_ value.
     Result<Image> image(luxfer_guides_image which) const { return make<Image>(luxfer_guides_get_image, which); }
 
-    /// Where each pixel was in the frame before.
+    /// The motion of each pixel from the previous frame.
     Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_motion, before.get()); }
 
-    /// An artwork of the scene in place of an artist's: a LUXFER_ARTWORK_ value.
+    /// Draws an artwork of the scene in place of an artist: a LUXFER_ARTWORK_ value.
     Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_artwork, style); }
 };
 
-/// Paints a target scene as an artist has painted an exemplar scene. See luxfer_stylize.
+/// Paints a target scene in the style in which an artist has painted an exemplar scene. See luxfer_stylize.
 class Stylize : public Handle<luxfer_stylize, luxfer_stylize_retain, luxfer_stylize_release> {
 public:
     using Handle::Handle;
 
-    /// LUXFER_UNSUPPORTED if it was left out of the library.
+    /// LUXFER_UNSUPPORTED if this build of the library has no stylisation.
     static Result<Stylize> create(const Context &context) { return make_in<Stylize>(context, luxfer_stylize_create); }
 
-    // Its inputs.
+    // Inputs.
 
     Result<> set_artwork(const Image &artwork) const { return call(luxfer_stylize_set_artwork, artwork.get()); }
 
-    /// A pair of images; an empty target is the same as source.
+    /// Adds a guide, a pair of images; an empty target means source.
     Result<> add_guide(Text name, const Image &source, const Image &target, float weight = 1.0f,
                        luxfer_guide_range range = LUXFER_GUIDE_LIGHT) const {
         return call(luxfer_stylize_add_guide, name.get(), source.get(), target.get(), weight, range);
     }
 
-    /// Those of two scenes; extras are LUXFER_GUIDES_WITH_ flags.
+    /// Adds the guides of two scenes; extras are LUXFER_GUIDES_WITH_ flags.
     Result<> add_guides(const Guides &source, const Guides &target, std::uint32_t extras = 0,
                         float extra_weight = 1.0f) const {
         return call(luxfer_stylize_add_guides, source.get(), target.get(), extras, extra_weight);
     }
     Result<> clear_guides() const { return call(luxfer_stylize_clear_guides); }
 
-    /// Where the artwork may be copied from; may be empty: everywhere.
+    /// Sets the pixels of the artwork that may be copied; may be empty: all.
     Result<> set_source_mask(const Image &mask) const { return call(luxfer_stylize_set_source_mask, mask.get()); }
 
-    /// What to paint, and what is known of the rest; both may be empty.
+    /// Sets the pixels to paint, and the known picture elsewhere; both may be empty.
     Result<> set_target_mask(const Image &mask, const Image &known = Image()) const {
         return call(luxfer_stylize_set_target_mask, mask.get(), known.get());
     }
 
-    /// For a sequence; may be empty: each start begins anew.
+    /// Sets the motion between frames of an animation; may be empty: each job starts from nothing.
     Result<> set_motion(const Image &motion) const { return call(luxfer_stylize_set_motion, motion.get()); }
 
-    /// Has the rest of a half-painted picture painted.
+    /// Lets the library paint the rest of a half-painted picture.
     Result<> set_painted(const Image &painted) const { return call(luxfer_stylize_set_painted, painted.get()); }
 
     Result<Job> start(const luxfer_stylize_params &params = StylizeParams()) const {
         return make<Job>(luxfer_stylize_start, &params);
     }
 
-    /// Follows a change of the artwork.
+    /// Starts a job that updates the picture after a change of the artwork.
     Result<Job> update(const Image &artwork, const Image &changed) const {
         return make<Job>(luxfer_stylize_update, artwork.get(), changed.get());
     }
 
-    // Its results.
+    // Results.
 
     /// A LUXFER_STYLIZE_IMAGE_ value.
     Result<Image> image(luxfer_stylize_image which = LUXFER_STYLIZE_IMAGE_PICTURE) const {
@@ -101,12 +101,12 @@ public:
 
     Result<luxfer_stylize_report> report() const { return value<luxfer_stylize_report>(luxfer_stylize_get_report); }
 
-    /// The size of a level, and the number of its rounds.
+    /// Size of a level and number of its rounds.
     struct Level {
         std::uint32_t width = 0, height = 0, rounds = 0;
     };
 
-    /// The coarsest is level 0.
+    /// Level 0 is the coarsest.
     Result<Level> level(std::uint32_t index) const {
         Level level;
         const luxfer_status status = luxfer_stylize_get_level(get(), index, &level.width, &level.height, &level.rounds);
@@ -120,23 +120,23 @@ public:
     }
 };
 
-/// A picture to paint over on paper, between marks that a photo of it is aligned by. See luxfer_sheet_params.
+/// A print sheet to paint over on paper, with marks to align a photo of it. See luxfer_sheet_params.
 class Sheet {
 public:
-    /// What to print.
+    /// Draws the sheet to print.
     static Result<Image> print(const Image &picture, const luxfer_sheet_params &params = SheetParams()) {
         luxfer_image *sheet = nullptr;
         const luxfer_status status = luxfer_sheet_print(picture.get(), &params, &sheet);
         return detail::finish(picture.context().get(), status, Image(picture.context(), sheet));
     }
 
-    /// The artwork in a photo of the painted sheet, and how well it was aligned.
+    /// The artwork from a photo of the painted sheet, and the quality of the alignment.
     struct Aligned {
         Image artwork;
         luxfer_sheet_report report;
     };
 
-    /// The picture that was printed had width x height pixels.
+    /// Aligns a photo; the printed picture had width x height pixels.
     static Result<Aligned> align(const Image &photo, std::uint32_t width, std::uint32_t height,
                                  const luxfer_sheet_params &params = SheetParams()) {
         luxfer_image *artwork = nullptr;

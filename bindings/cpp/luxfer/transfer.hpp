@@ -13,35 +13,36 @@ using TransferParams = Params<luxfer_transfer_params, luxfer_transfer_params_ini
 using PatternParams = Params<luxfer_pattern_params, luxfer_pattern_params_init>;
 using DemoPhotoParams = Params<luxfer_demo_photo_params, luxfer_demo_photo_params_init>;
 
-/// From a photo, a few strokes and a scene to that scene lit as in the photo. See luxfer_transfer.
+/// Lights a scene as in a photo, from the photo and a few strokes. See luxfer_transfer.
 class Transfer : public Handle<luxfer_transfer, luxfer_transfer_retain, luxfer_transfer_release> {
 public:
     using Handle::Handle;
 
     static Result<Transfer> create(const Context &context) { return make_in<Transfer>(context, luxfer_transfer_create); }
 
-    // Its inputs.
+    // Inputs.
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_transfer_set_photo, photo.get()); }
 
-    /// May be empty: none.
+    /// Sets the depth map; may be empty: no depth map.
     Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
         return call(luxfer_transfer_set_depth, depth.get(), kind);
     }
 
-    /// The scene to light, and the object or material that receives the lights.
+    /// Sets the scene to light, and the object or material that receives the lights.
     Result<> set_scene(const Scene &scene, Text surface) const {
         return call(luxfer_transfer_set_scene, scene.get(), surface.get());
     }
 
-    /// In place of one made from the photo; may be empty: one is made.
+    /// Sets an emissive texture to use instead of one made from the photo; may be empty: make one.
     Result<> set_texture(const Image &texture) const { return call(luxfer_transfer_set_texture, texture.get()); }
 
-    /// Of the picture; without one it is the scene's first, or chosen.
+    /// Sets the camera of the picture; the default is the first camera of the scene, or one in a corner of the room.
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_transfer_set_camera, &camera); }
     Result<> clear_camera() const { return call(luxfer_transfer_set_camera, nullptr); }
 
-    /// Along a polyline: points are x and y of each, in pixels of the photo; phase is a LUXFER_PHASE_ value.
+    /// Adds a stroke along a polyline: points holds x and y of each, in pixels of the photo; phase is a LUXFER_PHASE_
+    /// value.
     Result<> add_stroke(luxfer_phase phase, Span<const float> points, float radius, bool is_positive) const {
         const std::int32_t positive = is_positive;
         return call(luxfer_transfer_add_stroke, phase, points.data(), points.size() / 2, radius, positive);
@@ -50,17 +51,19 @@ public:
     Result<> add_strokes(Text description) const { return call(luxfer_transfer_add_strokes_text, description.get()); }
     Result<> clear_strokes() const { return call(luxfer_transfer_clear_strokes); }
 
-    /// Rectangles of the surface without lamps: u0, v0, u1 and v1 of each, in metres; they replace those set before.
+    /// Sets the rectangles of the surface without lamps: u0, v0, u1 and v1 of each, in metres; they replace earlier
+    /// ones.
     Result<> set_zones(Span<const double> zones) const {
         return call(luxfer_transfer_set_zones, zones.data(), zones.size() / 4);
     }
 
-    /// Mesh and triangle of each that receives the lights, instead of those of a name; none: the name counts again.
+    /// Sets the triangles that receive the lights, mesh and triangle index of each, instead of the named surface;
+    /// empty: use the name again.
     Result<> set_triangles(Span<const std::uint32_t> triangles) const {
         return call(luxfer_transfer_set_triangles, triangles.data(), triangles.size() / 2);
     }
 
-    // Results of the caller's in the place of its own.
+    // Results of the caller instead of its own.
 
     Result<> use(const Rectify &rectify) const { return call(luxfer_transfer_use_rectify, rectify.get()); }
     Result<> use(const Features &features) const { return call(luxfer_transfer_use_features, features.get()); }
@@ -79,7 +82,7 @@ public:
         return start(LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, params);
     }
 
-    // Its results, as soon as their stage has ended.
+    // Results, available as soon as their stage has ended.
 
     /// A LUXFER_TRANSFER_ value.
     Result<Image> image(luxfer_transfer_image which) const { return make<Image>(luxfer_transfer_get_image, which); }
@@ -102,7 +105,7 @@ public:
     Result<> save_fixtures(Text path) const { return call(luxfer_transfer_save_fixtures, path.get()); }
 };
 
-/// A photo of a generated office, and the strokes a user would paint on it. See luxfer_demo_photo.
+/// A photo of a generated office, and strokes as a user would paint them. See luxfer_demo_photo.
 class DemoPhoto : public Handle<luxfer_demo_photo, luxfer_demo_photo_retain, luxfer_demo_photo_release> {
 public:
     using Handle::Handle;

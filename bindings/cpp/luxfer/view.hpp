@@ -1,4 +1,4 @@
-// Views of the caller's memory: strings, arrays and pixels as the C functions take them. Views own nothing and copy nothing.
+// Views of the caller's memory: strings, arrays and pixels for the C functions. Views neither own nor copy memory.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace luxfer {
 
-/// A string in UTF-8 that ends with a zero: a literal, or a std::string. nullptr is none, where a function allows it.
+/// A zero-terminated string in UTF-8: a literal or a std::string. nullptr means no string, where a function allows it.
 class Text {
 public:
     Text(const char *text) noexcept : text_(text) {}
@@ -26,8 +26,8 @@ private:
     const char *text_;
 };
 
-/// Any number of elements in a row, as std::span of C++20: made of an array, a std::vector or std::array, or of a pointer
-/// and a count.
+/// A view of contiguous elements, as std::span of C++20: from an array, a std::vector or std::array, or a pointer and
+/// a count.
 template <class T>
 class Span {
 public:
@@ -50,7 +50,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Exactly N numbers, of an array or a std::array: 9 for a matrix row by row, 8 for four points.
+/// Exactly N numbers, from an array or a std::array: 9 for a matrix row by row, 8 for four points.
 template <std::size_t N, class T = double>
 class Numbers {
 public:
@@ -67,8 +67,9 @@ struct Rgb {
     float red, green, blue;
 };
 
-/// A versioned struct of the C header that starts with the library's defaults. It is the C struct: set its fields, which
-/// the C header documents. (Should its initialisation fail, its size stays 0, which the call that gets it refuses.)
+/// A versioned struct of the C header that starts with the library's defaults. It is the C struct: set its fields,
+/// which the C header documents. (If its initialisation fails, its size stays 0, and the call that receives it refuses
+/// it.)
 template <class C, luxfer_status (*init)(C *, std::size_t)>
 struct Params : C {
     Params() noexcept : C() { init(this, sizeof(C)); }
@@ -90,8 +91,8 @@ constexpr luxfer_sample sample_of() {
 
 } // namespace detail
 
-/// Pixels to read from: `ConstImageView(pixels, width, height, channels)` for any container of packed samples. Strides,
-/// flags, colour space and half floats are set in the fields that it has from luxfer_image_view.
+/// Pixels to read from: `ConstImageView(pixels, width, height, channels)` for any container of packed samples. Set
+/// strides, flags, colour space and half floats in the fields of its base, luxfer_image_view.
 struct ConstImageView : Params<luxfer_image_view, luxfer_image_view_init> {
     ConstImageView() noexcept = default;
 
@@ -103,11 +104,11 @@ struct ConstImageView : Params<luxfer_image_view, luxfer_image_view_init> {
         height = height_;
         channels = channels_;
         byte_size = std::size(pixels) * sizeof(Sample);
-        data = const_cast<Sample *>(std::data(pixels)); // The library only reads it.
+        data = const_cast<Sample *>(std::data(pixels)); // The library only reads the pixels.
     }
 };
 
-/// Pixels to write to, otherwise the same.
+/// Pixels to write to, otherwise as ConstImageView.
 struct ImageView : ConstImageView {
     ImageView() noexcept = default;
 

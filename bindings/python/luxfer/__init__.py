@@ -1,10 +1,10 @@
 """Lighting from one photo onto a 3D scene, and illumination-guided stylisation.
 
-Create a Context; make objects in it; start a stage, or run it and wait. Images go in and come out as numpy arrays. Units:
+Create a Context, create objects in it, and start a stage, or run it and wait. Images are numpy arrays. Units:
 metres, radians, right-handed, Y up; scene-linear Rec.709, luminance in cd/m², illuminance in lux, flux in lumens.
 
-Settings are keyword arguments, enumerations may be given by name ("srgb", "plane-mask"), and what the library refuses is an
-exception of errors.Error with its message. Everything of the C interface is in `abi`, callable through `library`.
+Settings are keyword arguments, and enumerations may be given by name ("srgb", "plane-mask"). Errors of the library are
+exceptions of errors.Error with its message. `abi` has the whole C interface, callable through `library`.
 """
 
 from . import _abi as abi

@@ -243,7 +243,7 @@ class luxfer_segment(Structure):
 
 
 class luxfer_emission(Structure):
-    """An emissive texture in the making. See luxfer_emission_create."""
+    """A synthesis of an emissive texture. See luxfer_emission_create."""
 
 
 class luxfer_render(Structure):
@@ -259,7 +259,7 @@ class luxfer_relight(Structure):
 
 
 class luxfer_lamps(Structure):
-    """A calculation of lamps. See luxfer_lamps_create."""
+    """A solver for the powers of lamps. See luxfer_lamps_create."""
 
 
 class luxfer_importance(Structure):
@@ -283,7 +283,7 @@ class luxfer_stylize(Structure):
 
 
 class luxfer_demo_photo(Structure):
-    """A photo in the making. See luxfer_demo_photo_create."""
+    """A generator of the demonstration photo. See luxfer_demo_photo_create."""
 
 
 luxfer_progress_fn = CFUNCTYPE(c_int32, c_void_p, c_double)
@@ -292,7 +292,7 @@ luxfer_write_fn = CFUNCTYPE(c_int32, c_void_p, c_void_p, c_size_t)
 
 
 class luxfer_context_params(Structure):
-    """How a context is set up."""
+    """Settings of a context."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -322,7 +322,7 @@ class luxfer_image_view(Structure):
 
 
 class luxfer_scene_counts(Structure):
-    """How much there is in a scene."""
+    """Numbers of the objects in a scene."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -375,7 +375,7 @@ class luxfer_material_params(Structure):
 
 
 class luxfer_texture_use(Structure):
-    """A texture as a material uses it."""
+    """The texture that a material uses for one purpose."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -423,7 +423,7 @@ class luxfer_camera_params(Structure):
 
 
 class luxfer_distribution_report(Structure):
-    """A distribution on the whole."""
+    """Summary of a distribution."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -439,7 +439,7 @@ class luxfer_distribution_report(Structure):
 
 
 class luxfer_light_params(Structure):
-    """A light without a surface."""
+    """A punctual light."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -455,7 +455,7 @@ class luxfer_light_params(Structure):
 
 
 class luxfer_luminaire_params(Structure):
-    """How a luminaire hangs."""
+    """Flux, position, orientation and colour of a luminaire."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -469,7 +469,7 @@ class luxfer_luminaire_params(Structure):
 
 
 class luxfer_ray(Structure):
-    """A half-line. An element of arrays, so it will never change."""
+    """A ray. An element of arrays, so this struct never changes."""
 
     _fields_ = [
         ("origin", c_float * 3),
@@ -480,7 +480,7 @@ class luxfer_ray(Structure):
 
 
 class luxfer_hit(Structure):
-    """Where a ray meets a scene. An element of arrays, so it will never change."""
+    """The nearest hit of a ray. An element of arrays, so this struct never changes."""
 
     _fields_ = [
         ("t", c_float),
@@ -493,7 +493,7 @@ class luxfer_hit(Structure):
 
 
 class luxfer_requirements(Structure):
-    """What a scene requires of the renderer."""
+    """Features that a scene requires of the renderer."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -544,7 +544,7 @@ class luxfer_rectify_params(Structure):
 
 
 class luxfer_rectify_report(Structure):
-    """What the lines of a photo say about its camera, and how the plane was unwarped."""
+    """The camera found from the lines of a photo, and the unwarping of the plane."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -584,7 +584,7 @@ class luxfer_features_params(Structure):
 
 
 class luxfer_features_report(Structure):
-    """How good the features are."""
+    """Quality of the features."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -611,7 +611,7 @@ class luxfer_segment_params(Structure):
 
 
 class luxfer_segment_report(Structure):
-    """How good a segmentation is."""
+    """Quality of a segmentation."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -649,7 +649,7 @@ class luxfer_emission_params(Structure):
 
 
 class luxfer_emission_report(Structure):
-    """How good the texture is."""
+    """Quality of the texture."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -663,7 +663,7 @@ class luxfer_emission_report(Structure):
 
 
 class luxfer_luminaire(Structure):
-    """One lamp of the texture."""
+    """A lamp of the texture."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -698,7 +698,7 @@ class luxfer_render_params(Structure):
 
 
 class luxfer_render_report(Structure):
-    """How good a rendering is."""
+    """Quality of a rendering."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -751,7 +751,7 @@ class luxfer_illuminance_grid(Structure):
 
 
 class luxfer_illuminance_report(Structure):
-    """The illuminance on the whole, in lux."""
+    """Summary of the illuminance, in lux."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -780,7 +780,7 @@ class luxfer_relight_params(Structure):
 
 
 class luxfer_relight_report(Structure):
-    """The solution and how sure it is."""
+    """The solution and its confidence."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -819,7 +819,7 @@ class luxfer_lamps_params(Structure):
 
 
 class luxfer_lamps_report(Structure):
-    """The result on the whole."""
+    """Summary of the result."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -846,7 +846,7 @@ class luxfer_lamp(Structure):
 
 
 class luxfer_lamps_goal(Structure):
-    """What a goal gets."""
+    """The light that a goal receives."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -861,7 +861,7 @@ class luxfer_lamps_goal(Structure):
 
 
 class luxfer_lamps_response(Structure):
-    """What one lamp means to one goal."""
+    """The light that one goal receives from one lamp."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -890,7 +890,7 @@ class luxfer_importance_params(Structure):
 
 
 class luxfer_importance_report(Structure):
-    """What a texture means to the target."""
+    """The light that the target receives from a texture."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -903,8 +903,8 @@ class luxfer_importance_report(Structure):
 
 
 class luxfer_placement_params(Structure):
-    """What may be, and what is best. A texture is scaled and then turned about the centre of the surface's
-    texture coordinates, and shifted."""
+    """Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated
+    about their centre (0.5, 0.5), and then shifted."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -923,7 +923,7 @@ class luxfer_placement_params(Structure):
 
 
 class luxfer_placement(Structure):
-    """The best placement, and what it means to the target."""
+    """The best placement, and the light that the target then receives."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -968,7 +968,7 @@ class luxfer_false_colour_params(Structure):
 
 
 class luxfer_mixture(Structure):
-    """A light mixed from primaries."""
+    """A colour mixed from primaries."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -980,7 +980,7 @@ class luxfer_mixture(Structure):
 
 
 class luxfer_temperature_fit(Structure):
-    """The blackbody light that suits a target."""
+    """The blackbody light that fits a target best."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -994,7 +994,8 @@ class luxfer_temperature_fit(Structure):
 
 
 class luxfer_preset(Structure):
-    """What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts."""
+    """Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the
+    standard itself is binding."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1010,7 +1011,8 @@ class luxfer_preset(Structure):
 
 
 class luxfer_pattern_params(Structure):
-    """How the pattern lies on the surface, whose axes u and v and corner are those of Surface."""
+    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
+    Surface."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1025,7 +1027,7 @@ class luxfer_pattern_params(Structure):
 
 
 class luxfer_transfer_params(Structure):
-    """Settings of a transfer. The structs pointed to are read during the call."""
+    """Settings of a transfer. The structs behind the pointers are read during the call."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1046,7 +1048,7 @@ class luxfer_transfer_params(Structure):
 
 
 class luxfer_transfer_report(Structure):
-    """What each stage took and how good its result is. Errors of stages without a result are NaN."""
+    """Time and error of each stage. The error of a stage without a result is NaN."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1087,7 +1089,7 @@ class luxfer_fixture(Structure):
 
 
 class luxfer_plan_params(Structure):
-    """What a plan is made for: one of its fields must be set."""
+    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1098,7 +1100,7 @@ class luxfer_plan_params(Structure):
 
 
 class luxfer_plan_report(Structure):
-    """What a plan expects."""
+    """Times and errors that a plan predicts."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1128,8 +1130,7 @@ class luxfer_guides_params(Structure):
 
 
 class luxfer_stylize_params(Structure):
-    """Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the
-    defaults given here are those of StylizePreset.FULL."""
+    """Settings of a stylisation. The defaults stated here are those of StylizePreset.FULL."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1162,7 +1163,7 @@ class luxfer_stylize_params(Structure):
 
 
 class luxfer_stylize_report(Structure):
-    """How good a stylisation is."""
+    """Quality of a stylisation."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1193,7 +1194,7 @@ class luxfer_stylize_round(Structure):
 
 
 class luxfer_stylize_pass(Structure):
-    """One pass of matching under the budget."""
+    """One matching pass under the error budget."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1220,7 +1221,7 @@ class luxfer_sheet_params(Structure):
 
 
 class luxfer_sheet_report(Structure):
-    """How well a photo was aligned."""
+    """Quality of the alignment of a photo."""
 
     _fields_ = [
         ("struct_size", c_uint32),

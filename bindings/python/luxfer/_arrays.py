@@ -1,4 +1,4 @@
-"""numpy arrays as the library's image views, without a copy wherever the layout can be told by two strides."""
+"""numpy arrays as the library's image views, without a copy if two strides can describe the layout."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SAMPLES = {np.dtype("u1"): Sample.U8, np.dtype("=u2"): Sample.U16, np.dtype("=f2
 
 
 def is_direct(array: np.ndarray[Any, Any]) -> bool:
-    """Whether the library can work on an array (rows, columns, channels) where it lies."""
+    """Whether the library can use an array (rows, columns, channels) in place."""
     if array.dtype not in SAMPLES:
         return False
     rows, columns, channels = array.shape
@@ -28,8 +28,8 @@ def is_direct(array: np.ndarray[Any, Any]) -> bool:
 
 
 def view(array: np.ndarray[Any, Any], colour_space: ColourSpace | str | int) -> tuple[Any, np.ndarray[Any, Any]]:
-    """A luxfer_image_view of an array, and the array whose memory it describes: the same one, or a copy of what cannot be
-    described. Rows that run backwards, as in array[::-1], are described too."""
+    """A luxfer_image_view of an array, and the array whose memory it describes: the given array, or a copy if a view
+    cannot describe it. A view can describe rows in reverse order, as in array[::-1]."""
     if array.ndim == 2:
         array = array[:, :, None]
     if array.ndim != 3:

@@ -1,4 +1,5 @@
-"""What all objects of the library have in common: they are released once, by close(), `with`, or the garbage collector."""
+"""The base class of all objects of the library: they are released once, by close(), `with`, or the garbage
+collector."""
 
 from __future__ import annotations
 
@@ -33,14 +34,14 @@ class Handle:
     _context: Context
 
     def close(self) -> None:
-        """Releases the object. A job that runs on it goes on; one that nobody holds any more is cancelled."""
+        """Releases the object. A job that runs on it continues; a job without references is cancelled."""
         pointer, self._pointer = self._pointer, None
         if pointer:
             getattr(library, f"luxfer_{self.kind}_release")(pointer)
 
     @property
     def context(self) -> Context:
-        """The context it was made in."""
+        """The context of the object."""
         return self._context
 
     @property

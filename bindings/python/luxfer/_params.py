@@ -1,5 +1,5 @@
-"""Keyword arguments to the library's structs, and its structs to dataclasses. A name that is none is an error that names
-the nearest."""
+"""Keyword arguments to the library's structs, and its structs to dataclasses. An unknown name is an error that
+suggests the nearest one."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Context(Handle):
-    """Owns the threads that do the work; everything else is made in one, and keeps it alive.
+    """Owns the worker threads. All other objects are created in a context and keep it alive.
 
     >>> with Context(num_threads=2) as context:
     ...     Image(context, [[0.25, 1.0]]).size
@@ -35,5 +35,5 @@ class Context(Handle):
         self._pointer = pointer
 
     def last_error(self) -> str:
-        """The message of this thread's latest failure in this context; exceptions carry it already."""
+        """The message of this thread's latest failure in this context; exceptions contain it too."""
         return self._get_text("last_error") if self._pointer else ""

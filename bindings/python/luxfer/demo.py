@@ -1,4 +1,4 @@
-"""Input that the library makes itself: a photo of a generated office, and the strokes a user would paint on it."""
+"""Generated input: a photo of a generated office, and strokes as a user would paint them."""
 
 from __future__ import annotations
 

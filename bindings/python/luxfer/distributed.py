@@ -1,10 +1,10 @@
-"""Work for many machines, on a Dask cluster: renderings by part, stylised sequences by shot, solutions by target.
+"""Work for many machines, on a Dask cluster: renderings by part, stylised animations by shot, relighting by target.
 
-Needs `distributed` from PyPI (pip install luxfer[distributed]), here and on the workers. A worker that is lost costs the time
-of what it was doing: Dask gives its tasks to others, and each gives the same bits again.
+Needs `distributed` from PyPI (pip install luxfer[distributed]), here and on the workers. If a worker dies, Dask runs
+its tasks again on other workers; the results are equal to the bit.
 
-Scenes do not travel, but how to make them does: `prepare` is a function of a module that the workers have too, or a
-functools.partial of one. It takes a Context and describes the work in it, and is called once on each worker. `params` are
+Scenes are not sent to the workers; each worker creates them: `prepare` is a function of a module that the workers have
+too, or a functools.partial of one. It receives a Context and sets up the work in it, once on each worker. `params` are
 the settings of the work, as keyword arguments.
 
     client = distributed.Client("scheduler:8786")
@@ -50,9 +50,9 @@ def render(
     progress: Progress | None = None,
     **params: Unpack[RenderParams],
 ) -> Render:
-    """Renders columns x rows rectangles of a view, in ranges of their paths, on the workers, and merges them here: the same
-    as one part for all of it. Make a few times as many parts as there are workers. prepare returns a Render with its scene,
-    camera and layers; False from progress gives up, which is errors.Cancelled."""
+    """Renders columns x rows rectangles of a view, in ranges of their paths, on the workers, and merges them here into
+    the image of a single part. Use a few times more parts than workers. prepare returns a Render with its scene,
+    camera and layers; if progress returns False, the work ends with errors.Cancelled."""
     here = prepare(context)
     parts = [here.split(columns, rows, ranges, index, **params) for index in range(columns * rows * ranges)]
     with tempfile.TemporaryDirectory() as folder:
@@ -70,8 +70,9 @@ def render(
 
 
 def stylise(client: Client, paint: Callable[[Context, Item], Result], shots: Iterable[Item]) -> list[Result]:
-    """Paints shots on the workers, each from its first frame to its last on one of them, as frames go on from each other.
-    paint(context, shot) does it, and returns what is wanted of it: arrays, or the names of files it has written."""
+    """Paints shots on the workers. One worker paints all frames of a shot, as each frame continues the previous one.
+    paint(context, shot) paints a shot and returns its result: arrays, or the names of the files that it has
+    written."""
     return _all(client, _Shot(paint), list(shots))
 
 
@@ -87,7 +88,7 @@ def relight(
 
 
 class _Task:
-    """What a worker is to do with an item, as it travels: the same task wherever it arrives."""
+    """A task for a worker, as it is sent: its work does not depend on the worker that receives it."""
 
     def __init__(self, work: Callable[..., Any], params: Any = None) -> None:
         self.work, self.params, self.key = work, params, uuid.uuid4().hex
@@ -123,7 +124,7 @@ class _Target(_Task):
 
 @lru_cache(maxsize=1)
 def _context() -> Context:
-    """The context of a worker: one for all its tasks, with as many threads as it has."""
+    """The context of a worker: one for all its tasks, with the number of threads of the worker."""
     from distributed import get_worker
 
     return Context(num_threads=get_worker().state.nthreads)
@@ -131,12 +132,12 @@ def _context() -> Context:
 
 @lru_cache(maxsize=2)
 def _prepared(task: _Task) -> tuple[Any, threading.Lock]:
-    """What a task works on, made once on this worker, not for every item. One item at a time: it has all threads."""
+    """The objects of a task, prepared once per worker. The worker processes one item at a time, with all threads."""
     return task.work(_context()), threading.Lock()
 
 
 def _as_completed(client: Client, task: _Task, items: Sequence[Any]) -> Iterable[tuple[int, Any]]:
-    """Results as they come, with their places. What has not begun when the caller gives up is not begun."""
+    """Results as they arrive, with their indices. If the caller stops, tasks that have not started are cancelled."""
     from distributed import as_completed
 
     futures = {client.submit(task, item, pure=False): index for index, item in enumerate(items)}

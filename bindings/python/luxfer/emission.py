@@ -1,4 +1,4 @@
-"""From the unwarped lights of a photo to an emissive texture of any size, and the list of its lamps."""
+"""Synthesises an emissive texture of any size from the unwarped lights of a photo, with a list of its lamps."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Emission(StageBase):
-    """Carries the pattern of the exemplar's lights on over a texture.
+    """Continues the pattern of the exemplar's lights over a texture of any size.
 
     >>> lamps = np.zeros((64, 64, 3), np.float32)
     >>> lamps[8::16, 8::16] = lamps[9::16, 8::16] = lamps[8::16, 9::16] = lamps[9::16, 9::16] = 1
@@ -49,12 +49,14 @@ class Emission(StageBase):
             raise TypeError("an exemplar is three images: unwarped, light and valid")
 
     def set_exemplar(self, unwarped: ImageLike, light: ImageLike, valid: ImageLike) -> None:
-        """Three images of one size: the unwarped photo, the unwarped confidence of the lights, where both are valid."""
+        """Sets three images of one size: the unwarped photo, the unwarped confidence of the lights, and the mask where
+        both are valid."""
         images = [image_of(self._context, image) for image in (unwarped, light, valid)]
         self._call("set_exemplar", *images)
 
     def set_photo(self, photo: ImageLike | None, to_photo: ArrayLike | None = None) -> None:
-        """The photo from which full detail is recovered, and the 3 x 3 map to it (RectifyReport.to_photo); None: none."""
+        """Sets the photo from which full detail is recovered, and the 3 x 3 map to it (RectifyReport.to_photo); None:
+        no photo."""
         if photo is None:
             return self._call("set_photo", None, None)
         if to_photo is None:
@@ -73,8 +75,8 @@ class Emission(StageBase):
         photo: ImageLike | None = None,
         to_photo: ArrayLike | None = None,
     ) -> None:
-        """A further exemplar, of scale unwarped pixels per texel: every lamp is taken from it with the probability that weights,
-        stretched over the texture, has there."""
+        """Adds an exemplar with scale unwarped pixels per texel. Each lamp comes from it with the probability that
+        weights, stretched over the texture, has there."""
         images = [image_of(self._context, image) for image in (unwarped, light, valid)]
         if (photo is None) != (to_photo is None):
             raise TypeError("a photo needs to_photo, the map from unwarped to photo pixels")
@@ -83,15 +85,15 @@ class Emission(StageBase):
         self._call("add_style", *images, source, matrix, scale, image_of(self._context, weights))
 
     def clear_styles(self) -> None:
-        """Takes all exemplars that were added away."""
+        """Removes all added exemplars."""
         self._call("clear_styles")
 
     def start_plan(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
-        """Starts to plan a texture, of which tile() then renders any part."""
+        """Starts a job that plans a texture; tile() then renders any part of it."""
         return self._job("start_plan", _params.fill(_abi.luxfer_emission_params, params, []))
 
     def tile(self, x: int, y: int, width: int, height: int) -> Image:
-        """A part of the planned texture: RGB, and 1 on lamps."""
+        """Renders a part of the planned texture: RGB, and a mask that is 1 on lamps."""
         return self._get_image("render_tile", x, y, width, height)
 
     def start(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
@@ -108,7 +110,7 @@ class Emission(StageBase):
 
     @property
     def report(self) -> EmissionReport:
-        """How good the texture is."""
+        """Quality of the texture."""
         return cast(EmissionReport, self._read("get_report", _abi.luxfer_emission_report))
 
     @property

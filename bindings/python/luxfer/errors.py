@@ -6,7 +6,7 @@ from .types import Status
 
 
 class Error(Exception):
-    """A call of the library has failed; the message names the parameter, its value and what is allowed."""
+    """A call of the library has failed; the message names the parameter, its value and its allowed range."""
 
     status: Status = Status.UNKNOWN
     """What the library returned."""
@@ -31,7 +31,7 @@ class OutOfMemory(Error, MemoryError):
 
 
 class Unsupported(Error):
-    """The file or the request is valid, but uses something this library does not do."""
+    """The file or the request is valid, but uses a feature that this library does not support."""
 
     status = Status.UNSUPPORTED
 
@@ -55,13 +55,13 @@ class FormatError(Error, ValueError):
 
 
 class NotReady(Error):
-    """A result was asked for before the job that makes it has succeeded, or a wait timed out."""
+    """A result was requested before its job has succeeded, or a wait timed out."""
 
     status = Status.NOT_READY
 
 
 class InternalError(Error):
-    """A defect in the library: please report it."""
+    """A bug in the library: please report it."""
 
     status = Status.INTERNAL
 

@@ -1,4 +1,4 @@
-"""What segmentation knows of each pixel of a photo: colour, depth, position and normal."""
+"""The features of each pixel of a photo, for segmentation: colour, depth, position and normal."""
 
 from __future__ import annotations
 
@@ -36,30 +36,31 @@ class Features(StageBase):
             self.set_photo(photo)
 
     def set_photo(self, photo: ImageLike) -> None:
-        """Linear RGB, 1 = display white."""
+        """Sets the photo: linear RGB, 1 = display white."""
         self._call("set_photo", image_of(self._context, photo))
 
     def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
-        """A depth map of the photo's size in any unit, "along-z" or "along-ray"; None: none."""
+        """Sets a depth map of the photo's size in any unit, "along-z" or "along-ray"; None: no depth map."""
         image = None if depth is None else image_of(self._context, depth)
         self._call("set_depth", image, _params.member(DepthKind, kind))
 
     def set_network(
         self, path: str | os.PathLike[str] | None, normalisation: Normalisation | str = Normalisation.BY_SIZE
     ) -> None:
-        """An ONNX file, such as those of MiDaS and DPT, that estimates depth where there is no depth map; None: none.
+        """Sets an ONNX file, such as MiDaS or DPT, that estimates depth if there is no depth map; None: no network.
 
-        normalisation is what its colours were normalised by: "by-size", "imagenet", "half" or "none".
+        normalisation is the normalisation of its input colours: "by-size", "imagenet", "half" or "none".
         """
         name = None if path is None else _params.text(os.fspath(path), "path")
         self._call("set_network", name, _params.member(Normalisation, normalisation))
 
     def set_view(self, rectify: Rectify | None) -> None:
-        """The lines and the camera found in the same photo; None: none."""
+        """Takes the lines and the camera that a Rectify has found in this photo; None: no lines."""
         self._call("set_view", None if rectify is None else rectify)
 
     def add_stroke(self, points: ArrayLike, radius: float, positive: bool) -> None:
-        """Adds a stroke along points (n, 2) in pixels, for the layout of the room: positive on one of its planes, else elsewhere."""
+        """Adds a stroke along points (n, 2) in pixels, to fit the room: positive on one of its planes, else off this
+        plane."""
         self._call("add_stroke", *stroke_arguments(points, radius, positive))
 
     def add_strokes_image(self, drawing: ImageLike) -> None:
@@ -89,5 +90,5 @@ class Features(StageBase):
 
     @property
     def report(self) -> FeaturesReport:
-        """How good the features are."""
+        """Quality of the features."""
         return cast(FeaturesReport, self._read("get_report", _abi.luxfer_features_report))

@@ -1,4 +1,4 @@
-"""What the light does in a scene, as images for a stylisation."""
+"""The guide images of a scene for a stylisation."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Guides(StageBase):
             self.set_scene(scene)
 
     def set_scene(self, scene: Scene) -> None:
-        """Each start renders the scene as it is then."""
+        """Sets the scene; each job renders the scene as it is when the job starts."""
         self._call("set_scene", scene)
 
     def start(self, **params: Unpack[GuidesParams]) -> Job[Guides]:
@@ -48,7 +48,7 @@ class Guides(StageBase):
         return self._get_image("get_image", _params.member(GuidesImage, which))
 
     def motion(self, before: Guides) -> Image:
-        """Where each pixel was in the frame before, for Stylize.set_motion."""
+        """The motion of each pixel from the previous frame, for Stylize.set_motion."""
         return self._get_image("motion", before)
 
     def demo_artwork(self, style: Artwork | str) -> Image:

@@ -1,4 +1,4 @@
-"""Illuminance in lux on a calculation grid, or over a mesh."""
+"""Illuminance in lux on a calculation grid or a mesh."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Illuminance(StageBase):
             self.set_scene(scene)
 
     def set_scene(self, scene: Scene) -> None:
-        """Each start calculates with the scene as it is then."""
+        """Sets the scene; each job uses the scene as it is when the job starts."""
         self._call("set_scene", scene)
 
     def start_grid(
@@ -57,7 +57,7 @@ class Illuminance(StageBase):
         return self.start_grid(grid, **params).wait(progress)
 
     def start_mesh(self, mesh: int, back: bool = False, **params: Unpack[IlluminanceParams]) -> Job[Illuminance]:
-        """Starts a map of a mesh by its texture coordinates; back for the side that its winding does not face."""
+        """Starts a job for a mesh by its texture coordinates; back=True for the back side by its winding."""
         return self._job("start_mesh", mesh, int(back), _params.fill(_abi.luxfer_illuminance_params, params, []))
 
     def run_mesh(
@@ -72,5 +72,5 @@ class Illuminance(StageBase):
 
     @property
     def report(self) -> IlluminanceReport:
-        """The illuminance on the whole, in lux."""
+        """Summary of the illuminance, in lux."""
         return cast(IlluminanceReport, self._read("get_report", _abi.luxfer_illuminance_report))

@@ -1,4 +1,4 @@
-"""Images: in from files and arrays, out to files and arrays."""
+"""Images, from and to files and arrays."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ class Image(Handle):
     """Pixels, as 32-bit floats: scene-linear Rec.709 colour, or data. It never changes.
 
     `pixels` is an array of the shape (height, width) or (height, width, channels), of uint8, uint16, float16 or float32,
-    read once, from where it lies; integers stand for [0, 1]. `colour_space` says what they mean: "linear" or "srgb".
+    copied directly from its memory; integers represent [0, 1]. `colour_space` is the encoding of the values: "linear"
+    or "srgb".
 
     >>> image = Image(context, np.full((4, 6, 3), 128, np.uint8), "srgb")
     >>> image.size
@@ -44,7 +45,8 @@ class Image(Handle):
 
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str], colour_space: ColourSpace | str = ColourSpace.SRGB) -> Image:
-        """Loads a PNG, JPEG, Radiance HDR or OpenEXR file. Pictures are "srgb"; give "linear" for data such as masks."""
+        """Loads a PNG, JPEG, Radiance HDR or OpenEXR file. Use "srgb" for pictures, "linear" for data such as
+        masks."""
         space = _params.member(ColourSpace, colour_space)
         return made(context, "luxfer_image_load", context, _params.text(os.fspath(path), "path"), space)
 
@@ -55,7 +57,7 @@ class Image(Handle):
         return made(context, "luxfer_image_load_memory", context, data, len(data), space)
 
     def save(self, path: str | os.PathLike[str], exposure: float = 1.0) -> None:
-        """Saves as .png, multiplied by exposure and encoded as sRGB, or as .exr, as it is."""
+        """Saves the image as .png, multiplied by exposure and encoded as sRGB, or unchanged as .exr."""
         self._call("save", _params.text(os.fspath(path), "path"), exposure)
 
     @property
@@ -96,8 +98,8 @@ class Image(Handle):
         return out
 
     def numpy(self, dtype: DTypeLike = np.float32, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> NDArray[Any]:
-        """A new array of the shape (height, width, channels); for a display take uint8 and "srgb". More than 4 channels are
-        float32."""
+        """A new array of the shape (height, width, channels); for a display use uint8 and "srgb". Images with more
+        than 4 channels are float32."""
         height, width, channels = self.shape
         out = np.empty((height, width, channels), dtype)
         for first in range(0, channels, 4):  # a view has four at most: each goes into its place
@@ -123,7 +125,7 @@ class Image(Handle):
 
 
 def homography(context: Context, source: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
-    """The 3 x 3 matrix that takes four points, x and y of each, to four points.
+    """The 3 x 3 matrix that maps four points, x and y of each, to four points.
 
     >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
     >>> m = homography(context, square, np.multiply(square, 10))

@@ -1,4 +1,4 @@
-"""What each point of an emission's surface means to a target."""
+"""A map of the light that each point of an emitting surface would send to a target."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Importance(StageBase):
-    """Traced once; then the light of any texture there, however it is placed, is told at once.
+    """Traced once; then it gives the light of any texture on the surface, at any placement, within milliseconds.
 
     >>> room = Scene.demo(context, "target-room")
     >>> mesh, material = room.place_emission("Ceiling", np.zeros((1, 1, 3)), (1, 1, 1))
@@ -38,7 +38,7 @@ class Importance(StageBase):
     kind = "importance"
 
     def set_scene(self, scene: Scene, material: int, mesh: int) -> None:
-        """The scene, the material of the surfaces that will emit, and the mesh that is the target."""
+        """Sets the scene, the material of the surfaces that will emit, and the mesh that is the target."""
         self._call("set_scene", scene, material, mesh)
 
     def start(self, **params: Unpack[ImportanceParams]) -> Job[Importance]:
@@ -51,12 +51,12 @@ class Importance(StageBase):
 
     @property
     def image(self) -> Image:
-        """The target's mean radiance if a cell emitted 1 cd/m² and nothing else did."""
+        """For each cell, the target's mean radiance if only this cell emitted, with 1 cd/m²."""
         return self._get_image("get_image")
 
     def respond(self, texture: ImageLike, placement: Sequence[float] | None = None) -> ImportanceReport:
-        """What a texture in cd/m² means to the target. placement, nine numbers row by row, leads from the surface's texture
-        coordinates to those of the texture."""
+        """The light that the target receives from a texture in cd/m². placement, nine numbers row by row, maps the
+        surface's texture coordinates to those of the texture."""
         image = image_of(self._context, texture)
         out = self._read("respond", _abi.luxfer_importance_report, image, _nine(placement))
         return cast(ImportanceReport, out)

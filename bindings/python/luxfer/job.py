@@ -28,7 +28,8 @@ NO_PROGRESS = _abi.luxfer_progress_fn()
 
 
 class Job(Handle, Generic[T]):
-    """Work in progress. wait() returns the object it is done for; closing the last reference to a job cancels it.
+    """Work in progress. wait() returns the object that the job works for; closing the last reference to a job cancels
+    it.
 
     >>> seen = []
     >>> stage = DemoPhoto(context).start(width=48, height=32, samples=2).wait(seen.append)
@@ -46,8 +47,9 @@ class Job(Handle, Generic[T]):
         return out
 
     def wait(self, progress: Progress | None = None, timeout: float | None = None) -> T:
-        """Waits until the job has ended; other Python threads run meanwhile. `timeout` in seconds: NotReady, and the job goes
-        on. An exception while waiting, be it from progress or Ctrl-C, cancels the job, waits for it to end, and goes on."""
+        """Waits until the job has ended; other Python threads run meanwhile. After `timeout` seconds it raises
+        NotReady, and the job continues. An exception during the wait, from progress or by Ctrl-C, cancels the job,
+        waits until it has ended, and is raised again."""
         end = None if timeout is None else time.monotonic() + timeout
         told = -1.0
         try:
@@ -84,7 +86,7 @@ class Job(Handle, Generic[T]):
             time.sleep(0.002)
 
     def poll(self) -> tuple[float, bool]:
-        """The share that is done, and whether the job has ended, well or not."""
+        """The finished share, and whether the job has ended, with or without success."""
         fraction, finished = ctypes.c_double(), ctypes.c_int32()
         self._call("poll", fraction, finished)
         return fraction.value, bool(finished.value)
@@ -96,11 +98,11 @@ class Job(Handle, Generic[T]):
 
     @property
     def status(self) -> Status:
-        """How it has ended: Status.OK, or why not; Status.NOT_READY while it runs."""
+        """The status with which the job has ended; Status.NOT_READY while it runs."""
         return Status(library.luxfer_job_status(self.handle))
 
     def cancel(self) -> None:
-        """Asks it to end early, which takes about 100 ms at most; any thread."""
+        """Asks the job to end early, which takes at most about 100 ms; any thread."""
         self._call("cancel")
 
     def __exit__(self, *_: Any) -> None:
@@ -109,7 +111,7 @@ class Job(Handle, Generic[T]):
 
 
 class StageBase(Handle):
-    """What the stages have in common: they are started, and work on in a job."""
+    """The base class of the stages: start() starts a job, run() also waits for it."""
 
     def __init__(self, context: Context) -> None:
         self._create(context)

@@ -1,4 +1,4 @@
-"""Powers of the lamps of an emission that come nearest to several goals."""
+"""Solves for the powers of the lamps of an emission that come nearest to several goals."""
 
 from __future__ import annotations
 
@@ -34,32 +34,34 @@ class Lamps(StageBase):
     kind = "lamps"
 
     def set_scene(self, scene: Scene, material: int | None) -> None:
-        """The scene and the emitting material whose lamps are solved for, or None for its lights without a surface, such as
-        luminaires; forgets the goals."""
+        """Sets the scene and the emitting material whose lamps are solved for, or None for its punctual lights, such
+        as luminaires; removes all goals."""
         self._call("set_scene", scene, _abi.LUXFER_NONE if material is None else material)
 
     def add_mesh(
         self, mesh: int, radiance: Sequence[float], quantity: Quantity | str = Quantity.OUTGOING, weight: float = 1
     ) -> None:
-        """The mean radiance a mesh should have, in cd/m² per channel."""
+        """Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel."""
         red, green, blue = (float(v) for v in radiance)
         self._call("add_mesh", mesh, _params.member(Quantity, quantity), red, green, blue, weight)
 
     def add_grid(self, grid: IlluminanceGrid | Mapping[str, Any], lux: float, weight: float = 1) -> None:
-        """The mean illuminance a calculation grid should have: origin, across, down and normal, in metres."""
+        """Adds a goal: the mean illuminance that a calculation grid should have; origin, across, down and normal in
+        metres."""
         self._call("add_grid", _params.fill(_abi.luxfer_illuminance_grid, grid, [], "grid."), lux, weight)
 
     def set_sense(self, goal: int, sense: Sense | str | Sequence[Sense | str]) -> None:
-        """Makes a goal a limit, "at-least" or "at-most", in all channels or in each for itself."""
+        """Makes a goal a limit, "at-least" or "at-most", in all channels or separately in each."""
         self._call("set_sense", goal, *_params.per_channel(Sense, sense))
 
     def set_levels(self, levels: Sequence[float]) -> None:
-        """The multipliers that the lamps' drivers can be dimmed to; none for drivers without steps."""
+        """Sets the dimming levels of the lamps' drivers, as factors for the emission; empty for drivers without
+        steps."""
         numbers = (ctypes.c_double * len(levels))(*(float(v) for v in levels))
         self._call("set_levels", numbers if len(levels) else None, len(levels))
 
     def clear_goals(self) -> None:
-        """Forgets the goals."""
+        """Removes all goals."""
         self._call("clear_goals")
 
     def start(self, **params: Unpack[LampsParams]) -> Job[Lamps]:
@@ -72,17 +74,17 @@ class Lamps(StageBase):
 
     @property
     def report(self) -> LampsReport:
-        """The result on the whole."""
+        """Summary of the result."""
         return cast(LampsReport, self._read("get_report", _abi.luxfer_lamps_report))
 
     @property
     def reason(self) -> str:
-        """Why the goals are not all met; empty if they are."""
+        """The reason why goals are not met; empty if all are met."""
         return self._get_text("get_reason")
 
     @property
     def texture(self) -> Image:
-        """The emission's texture with every lamp multiplied."""
+        """The emission texture with every lamp multiplied by its scale."""
         return self._get_image("get_texture")
 
     def lamp(self, index: int) -> Lamp:
@@ -90,9 +92,9 @@ class Lamps(StageBase):
         return cast(Lamp, self._read("get_lamp", _abi.luxfer_lamp, index))
 
     def goal(self, index: int) -> LampsGoal:
-        """What a goal gets."""
+        """The light that a goal receives."""
         return cast(LampsGoal, self._read("get_goal", _abi.luxfer_lamps_goal, index))
 
     def response(self, goal: int, lamp: int) -> LampsResponse:
-        """What a lamp means to a goal."""
+        """The light that a goal receives from a lamp."""
         return cast(LampsResponse, self._read("get_response", _abi.luxfer_lamps_response, goal, lamp))

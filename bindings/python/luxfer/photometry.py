@@ -1,5 +1,4 @@
-"""What lighting design calls a light, and what luminaires make of it: luminaire files, colour temperature, glare, primaries, false
-colour, presets."""
+"""Lighting design: luminaire files, colour temperature, glare, LED primaries, false colours, presets of standards."""
 
 from __future__ import annotations
 
@@ -34,26 +33,26 @@ class Distribution(Handle):
 
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str]) -> Distribution:
-        """From an .ies or .ldt file."""
+        """Loads an .ies or .ldt file."""
         pointer = ctypes.POINTER(_abi.luxfer_distribution)()
         call(context, "luxfer_distribution_load", context, os.fspath(path).encode(), pointer)
         return cls._adopt(context, pointer)
 
     @classmethod
     def load_memory(cls, context: Context, data: bytes, format: DistributionFormat | str) -> Distribution:
-        """From the bytes of a file, "ies" or "ldt"."""
+        """Loads the bytes of a file, "ies" or "ldt"."""
         pointer = ctypes.POINTER(_abi.luxfer_distribution)()
         kind = _params.member(DistributionFormat, format)
         call(context, "luxfer_distribution_load_memory", context, data, len(data), kind, pointer)
         return cls._adopt(context, pointer)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """To an .ies or .ldt file."""
+        """Saves to an .ies or .ldt file."""
         self._call("save", os.fspath(path).encode())
 
     @property
     def report(self) -> DistributionReport:
-        """The distribution on the whole."""
+        """Summary of the distribution."""
         return cast(DistributionReport, self._read("get_report", _abi.luxfer_distribution_report))
 
     @property
@@ -62,7 +61,8 @@ class Distribution(Handle):
         return self._get_text("get_name")
 
     def intensity(self, c: float, gamma: float) -> float:
-        """Candela in a direction, in degrees: c around the axis, gamma from straight down."""
+        """The luminous intensity in candela in a direction; angles in degrees: c around the axis, gamma from straight
+        down."""
         out = ctypes.c_double()
         self._call("get_intensity", c, gamma, out)
         return out.value
@@ -81,7 +81,7 @@ def colour_temperature(context: Context, colour: Sequence[float]) -> tuple[float
 
 
 def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tuple[float, float, float]:
-    """The linear colour of luminance 1 of a temperature."""
+    """The linear colour, with luminance 1, of a colour temperature."""
     rgb = (ctypes.c_double * 3)()
     call(context, "luxfer_colour_of_temperature", context, kelvin, duv, rgb)
     return rgb[0], rgb[1], rgb[2]
@@ -95,7 +95,7 @@ def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0
 
 
 def false_colour(context: Context, image: ImageLike, **params: Unpack[FalseColourParams]) -> Image:
-    """An image of luminance or illuminance as colours whose order the eye sees, with a scale bar."""
+    """Shows an image of luminance or illuminance in false colours of rising brightness, with a scale bar."""
     settings = _params.fill(_abi.luxfer_false_colour_params, params, [])
     return made(context, "luxfer_image_false_colour", image_of(context, image), settings)
 
@@ -103,7 +103,7 @@ def false_colour(context: Context, image: ImageLike, **params: Unpack[FalseColou
 def mix_primaries(
     context: Context, primaries: Sequence[Sequence[float]], colour: Sequence[float], most: float = 1
 ) -> tuple[list[float], Mixture]:
-    """How strongly to drive each of the LEDs of a luminaire for a linear colour, and what that gives.
+    """The drive levels of a luminaire's LEDs for a linear colour, and the mixture that they give.
 
     >>> drives, light = mix_primaries(context, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], (0.5, 0.25, 0.75))
     >>> [round(drive, 3) for drive in drives], light.reached
@@ -120,7 +120,8 @@ def mix_primaries(
 def fit_temperature(
     context: Context, response: Sequence[float], target: Sequence[float], background: Sequence[float] = (0, 0, 0)
 ) -> TemperatureFit:
-    """The blackbody light that brings a target nearest to a mean radiance; response is that to 1 cd/m² of white."""
+    """The blackbody light that brings a target nearest to a mean radiance; response is the response to white light of
+    1 cd/m²."""
     report = _params.sized(_abi.luxfer_temperature_fit)
     vectors = (_three(v) for v in (response, background, target))
     call(context, "luxfer_fit_temperature", context, *vectors, report)
@@ -135,7 +136,7 @@ def power_density(context: Context, flux: float, efficacy: float, area: float) -
 
 
 def presets(context: Context) -> dict[str, Preset]:
-    """What EN 12464-1 asks of places, by their names."""
+    """The requirements of EN 12464-1 for kinds of rooms, by name."""
     count = ctypes.c_uint32()
     call(context, "luxfer_preset_count", context, count)
     found = {}

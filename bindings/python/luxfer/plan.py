@@ -1,5 +1,5 @@
-"""Settings for an error or a time, before anything is rendered: which they are, how long relighting and rendering, or a
-stylisation, should take, and what error should be left."""
+"""Chooses settings for a given error or time before anything is rendered, and predicts the time and the error of
+relighting and rendering, or of a stylisation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Plan(StageBase):
-    """Either target_error, the noise of the picture relative to its mean, or time_budget_ms is what a plan is made for.
+    """A plan has one goal: either target_error, the noise of the picture relative to its mean, or time_budget_ms.
 
     >>> render = Render(context, lit_room)
     >>> plan = Plan(context).run_render(render, target_error=0.5, settings={"width": 32, "height": 24})
@@ -60,7 +60,7 @@ class Plan(StageBase):
     def start_stylize(
         self, stylize: Stylize, *, target_error: float = 0.0, time_budget_ms: int = 0, settings: StylizeParams | None = None
     ) -> Job[Plan]:
-        """Starts to plan a stylisation; target_error is the root of the energy that its report tells."""
+        """Starts to plan a stylisation; target_error is the square root of the energy of its report."""
         goal = {"target_error": target_error, "time_budget_ms": time_budget_ms}
         params = _params.fill(_abi.luxfer_stylize_params, settings or {}, [])
         return self._job("start_stylize", stylize, params, _params.fill(_abi.luxfer_plan_params, goal, []))
@@ -71,7 +71,7 @@ class Plan(StageBase):
 
     @property
     def report(self) -> PlanReport:
-        """What the plan expects."""
+        """The predictions of the plan."""
         return cast(PlanReport, self._read("get_report", _abi.luxfer_plan_report))
 
     @property

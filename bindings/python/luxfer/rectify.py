@@ -1,4 +1,4 @@
-"""From the straight lines of a photo to vanishing points and the camera, and a plane of it seen straight on."""
+"""Finds vanishing points and the camera from the straight lines of a photo, and unwarps a plane to a frontal view."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ class Rectify(StageBase):
         self._call("set_photo", image_of(self._context, photo))
 
     def set_mask(self, mask: ImageLike | None) -> None:
-        """1 on the plane to unwarp, 0 elsewhere, of the photo's size; None: only lines and vanishing points are found."""
+        """Sets the mask of the plane to unwarp: 1 on it, 0 elsewhere, of the photo's size; None: only lines and
+        vanishing points are found."""
         self._call("set_mask", None if mask is None else image_of(self._context, mask))
 
     def start(self, **params: Unpack[RectifyParams]) -> Job[Rectify]:
@@ -56,10 +57,10 @@ class Rectify(StageBase):
         return self._get_image("get_image", _params.member(RectifyImage, which))
 
     def warp(self, source: ImageLike) -> Image:
-        """Unwarps another image of the photo's size as the plane was."""
+        """Unwarps another image of the photo's size by the homography of the plane."""
         return self._get_image("warp", image_of(self._context, source))
 
     @property
     def report(self) -> RectifyReport:
-        """What was found, and how sure it is."""
+        """The results and their errors."""
         return cast(RectifyReport, self._read("get_report", _abi.luxfer_rectify_report))

@@ -1,4 +1,4 @@
-"""Solves for the colour and intensity of an emission, so that a surface gets the colour it is to have."""
+"""Solves for the colour and intensity of an emission so that a surface gets a given colour."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Relight(StageBase):
-    """What to multiply an emission with, per channel, with a 95 % interval.
+    """Finds the factor for an emission, per channel, with a 95 % confidence interval.
 
     >>> room = Scene.demo(context, "target-room")
     >>> mesh, material = room.place_emission("Ceiling", np.eye(8).repeat(3).reshape(8, 8, 3), (100, 100, 100))
@@ -31,17 +31,17 @@ class Relight(StageBase):
     kind = "relight"
 
     def set_scene(self, scene: Scene, material: int, mesh: int) -> None:
-        """The scene, the emitting material to solve for, and the mesh whose mean colour is to match, as
+        """Sets the scene, the emitting material to solve for, and the mesh whose mean colour should match, as
         Scene.place_emission returns them."""
         self._call("set_scene", scene, material, mesh)
 
     def set_target(self, radiance: Sequence[float]) -> None:
-        """The mean radiance the mesh should have, in cd/m² per channel."""
+        """Sets the mean radiance that the mesh should have, in cd/m² per channel."""
         red, green, blue = (float(v) for v in radiance)
         self._call("set_target", red, green, blue)
 
     def set_sense(self, sense: Sense | str | Sequence[Sense | str]) -> None:
-        """Makes the target a limit, "at-least" or "at-most", in all channels or in each for itself."""
+        """Makes the target a limit, "at-least" or "at-most", in all channels or separately in each."""
         self._call("set_sense", *_params.per_channel(Sense, sense))
 
     def start(self, **params: Unpack[RelightParams]) -> Job[Relight]:
@@ -54,5 +54,5 @@ class Relight(StageBase):
 
     @property
     def report(self) -> RelightReport:
-        """The solution, and how sure it is."""
+        """The solution and its confidence."""
         return cast(RelightReport, self._read("get_report", _abi.luxfer_relight_report))

@@ -49,7 +49,7 @@ class Render(StageBase):
             self.set_aovs(aovs)
 
     def set_scene(self, scene: Scene) -> None:
-        """Each start renders the scene as it is then."""
+        """Sets the scene; each job renders the scene as it is when the job starts."""
         self._call("set_scene", scene)
 
     def set_camera_index(self, camera: int) -> None:
@@ -57,23 +57,23 @@ class Render(StageBase):
         self._call("set_camera_index", camera)
 
     def set_camera(self, **params: Unpack[CameraParams]) -> None:
-        """Renders from a camera of its own."""
+        """Renders from the given camera."""
         self._call("set_camera", _params.fill(_abi.luxfer_camera_params, params, []))
 
     def add_expression(self, name: str, expression: str) -> None:
-        """Adds a layer of the light that a light path expression describes, as "LDE" or "C<RD>L"."""
+        """Adds a layer of the light that a light path expression selects, such as "LDE" or "C<RD>L"."""
         self._call("add_expression", _params.text(name, "name"), _params.text(expression, "expression"))
 
     def clear_expressions(self) -> None:
-        """Forgets all expressions."""
+        """Removes all expressions."""
         self._call("clear_expressions")
 
     def set_emitter_as(self, emitter_as: EmitterAs | str) -> None:
-        """Which letters emissive surfaces and the environment answer to: "both", "light" or "object"."""
+        """Sets the letters that match emissive surfaces and the environment: "both", "light" or "object"."""
         self._call("set_emitter_as", _params.member(EmitterAs, emitter_as))
 
     def set_aovs(self, flags: Aov | str | int) -> None:
-        """Which layers of surfaces are made, as "depth|normal|albedo"."""
+        """Sets the AOVs, such as "depth|normal|albedo"."""
         self._call("set_aovs", _params.member(Aov, flags))
 
     def start(self, **params: Unpack[RenderParams]) -> Job[Render]:
@@ -87,8 +87,8 @@ class Render(StageBase):
     # -- in parts, on many machines
 
     def split(self, columns: int, rows: int, ranges: int, index: int, **params: Unpack[RenderParams]) -> RenderPart:
-        """Part number index, of columns * rows * ranges, if a rendering with these settings is split into so many rectangles
-        and ranges of its paths.
+        """Part number index, below columns * rows * ranges, of a rendering that is split into columns x rows
+        rectangles and ranges of paths.
 
         >>> Render(context).split(2, 1, 4, 3, width=64, height=32, samples=16)["x"]
         32
@@ -99,26 +99,26 @@ class Render(StageBase):
         return cast("RenderPart", _params.settings(part))
 
     def start_part(self, path: str | os.PathLike[str], part: RenderPart, **params: Unpack[RenderParams]) -> Job[Render]:
-        """Starts to render a part into a file; then the images are those of the part."""
+        """Starts a job that renders a part into a file; afterwards the images are those of the part."""
         settings = _params.fill(_abi.luxfer_render_params, params, [])
         which = _params.fill(_abi.luxfer_render_part, part, [])
         return self._job("start_part", settings, which, _params.text(os.fspath(path), "path"))
 
     def start_merge(self, paths: Iterable[str | os.PathLike[str]], **params: Unpack[RenderParams]) -> Job[Render]:
-        """Starts to add up the files of all parts, in any order, to the rendering of the whole. Scene, camera, layers and
-        settings are those the parts were made with."""
+        """Starts a job that merges the files of all parts, in any order, into the whole rendering. Scene, camera,
+        layers and settings must be those of the parts."""
         self._call("clear_parts")
         for path in paths:
             self._call("add_part", _params.text(os.fspath(path), "path"))
         return self._job("start_merge", _params.fill(_abi.luxfer_render_params, params, []))
 
     def image(self, which: RenderImage | str = RenderImage.BEAUTY) -> Image:
-        """ "beauty", "variance", "paths", "interval" or, if asked for, "preview", as far as it is."""
+        """ The current "beauty", "variance", "paths", "interval" or, if its setting is not 0, "preview"."""
         return self._get_image("get_image", _params.member(RenderImage, which))
 
     @property
     def layers(self) -> dict[str, Image]:
-        """The layers by name, those of the expressions first, as far as they are."""
+        """The current layers by name, first those of the expressions."""
         count = ctypes.c_uint32()
         self._call("get_layer_count", count)
         names = [self._get_text("get_layer_name", i) for i in range(count.value)]
@@ -136,5 +136,5 @@ class Render(StageBase):
 
     @property
     def report(self) -> RenderReport:
-        """How good the rendering is so far."""
+        """Current quality of the rendering."""
         return cast(RenderReport, self._read("get_report", _abi.luxfer_render_report))

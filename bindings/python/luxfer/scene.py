@@ -63,7 +63,7 @@ class Scene(Handle):
 
     @classmethod
     def from_bytes(cls, context: Context, data: bytes, base_path: str | os.PathLike[str] | None = None) -> Scene:
-        """Loads a glTF file in memory; files that it names are looked up in base_path."""
+        """Loads a glTF file in memory; files that it names are read from base_path."""
         base = None if base_path is None else _params.text(os.fspath(base_path), "base_path")
         return cls._made(context, "luxfer_scene_load_memory", data, len(data), base)
 
@@ -74,7 +74,7 @@ class Scene(Handle):
         return cls._adopt(context, handle)
 
     def export(self, path: str | os.PathLike[str]) -> None:
-        """Saves as a GLB file with its textures inside."""
+        """Saves a GLB file that contains the textures."""
         self._call("export", _params.text(os.fspath(path), "path"))
 
     def to_bytes(self) -> bytes:
@@ -105,7 +105,7 @@ class Scene(Handle):
         name: str | None = None,
     ) -> int:
         """Adds a mesh; returns its index. positions (n, 3), indices (m, 3) and, if given, normals (n, 3) and uvs (n, 2) are
-        read from where they lie if they are float32 and uint32, with any distance from row to row."""
+        read directly from their memory if they are float32 and uint32, with any stride between rows."""
         params = _params.fill(_abi.luxfer_mesh_params, {"material": material, "name": name}, [])
         arrays = []  # kept until the call is done
         for field, stride, values, width, dtype in (
@@ -133,15 +133,15 @@ class Scene(Handle):
         return self._add("add_camera", _params.fill(_abi.luxfer_camera_params, params, []))
 
     def set_camera(self, index: int, **params: Unpack[CameraParams]) -> None:
-        """Replaces a camera; what is not given gets its default."""
+        """Replaces a camera; missing settings get their defaults."""
         self._call("set_camera", index, _params.fill(_abi.luxfer_camera_params, params, []))
 
     def add_light(self, **params: Unpack[LightParams]) -> int:
-        """Adds a light without a surface: kind "point", "spot" or "directional"; returns its index."""
+        """Adds a punctual light: kind "point", "spot" or "directional"; returns its index."""
         return self._add("add_light", _params.fill(_abi.luxfer_light_params, params, []))
 
     def add_luminaire(self, distribution: Distribution, **params: Unpack[LuminaireParams]) -> int:
-        """Hangs a luminaire whose intensities were measured; returns its index among the lights.
+        """Adds a luminaire with a measured intensity distribution; returns its index among the lights.
 
         >>> panel = "IESNA:LM-63-2002\\nTILT=NONE\\n1 -1 1 2 1 1 2 0 0 0\\n1 1 30\\n0 180\\n0\\n100 100\\n"
         >>> hall = Scene(context)
@@ -156,12 +156,12 @@ class Scene(Handle):
         return index.value
 
     def set_material(self, index: int, **params: Unpack[MaterialParams]) -> None:
-        """Changes numbers of a material; what is not given stays, and so do its textures and name."""
+        """Changes values of a material; it keeps missing settings, its textures and its name."""
         values = {**self.material(index), **params}
         self._call("set_material", index, _params.fill(_abi.luxfer_material_params, values, []))
 
     def add_texture(self, image: ImageLike, wrap: Wrap | str = Wrap.REPEAT, wrap_v: Wrap | str | None = None) -> int:
-        """Adds a texture, linear, of 1, 3 or 4 channels; returns its index."""
+        """Adds a texture in linear values, 1, 3 or 4 channels; returns its index."""
         wraps = [_params.member(Wrap, w) for w in (wrap, wrap if wrap_v is None else wrap_v)]
         index = ctypes.c_uint32()
         self._call("add_texture", image_of(self._context, image), *wraps, index)
@@ -175,8 +175,8 @@ class Scene(Handle):
         uv_set: int = 0,
         transform: ArrayLike | None = None,
     ) -> None:
-        """Makes a material use a texture, or none, as "base-color", "metallic-roughness", "normal" or "emission"; transform
-        is 2 x 3, applied to (u, v, 1)."""
+        """Sets the texture of a material for "base-color", "metallic-roughness", "normal" or "emission"; None removes
+        it. transform is 2 x 3, applied to (u, v, 1)."""
         matrix = None if transform is None else np.ascontiguousarray(transform, np.float32)
         if matrix is not None and matrix.size != 6:
             raise ValueError(f"transform is 6 numbers, not {matrix.size}")
@@ -187,22 +187,22 @@ class Scene(Handle):
     # -- light
 
     def set_environment(self, colour: Sequence[float], image: ImageLike | None = None) -> None:
-        """Surrounds the scene with light of one colour, in cd/m², or with that of an equirectangular image times it."""
+        """Sets an environment of one radiance, in cd/m², or an equirectangular image multiplied by it."""
         if image is None:
             self._call("set_environment", *_colour(colour))
         else:
             self._call("set_environment_image", image_of(self._context, image), *_colour(colour))
 
     def set_emission(self, material: int, colour: Sequence[float]) -> None:
-        """Sets what a material emits, in cd/m²; multiplies its emission texture."""
+        """Sets the emission of a material, in cd/m²; it multiplies the emission texture."""
         self._call("set_emission", material, *_colour(colour))
 
     def find_surface(self, name: str) -> Surface:
-        """The planar surface, of the object or material of that name, that faces the room."""
+        """Finds the planar surface of an object or material that faces the room."""
         return cast(Surface, self._read("find_surface", _abi.luxfer_surface, _params.text(name, "name")))
 
     def place_emission(self, name: str, texture: ImageLike, scale: Sequence[float] = (1, 1, 1)) -> tuple[int, int]:
-        """Lays an emissive texture over a surface, which becomes a mesh of its own that emits texture * scale in cd/m²;
+        """Maps an emissive texture onto a surface, which becomes a separate mesh that emits texture * scale in cd/m²;
         returns the indices of the mesh and of its material."""
         mesh, material = ctypes.c_uint32(), ctypes.c_uint32()
         image = image_of(self._context, texture)
@@ -213,23 +213,23 @@ class Scene(Handle):
 
     @property
     def counts(self) -> SceneCounts:
-        """How many meshes, materials, textures, lights, cameras and triangles there are."""
+        """Numbers of meshes, materials, textures, lights, cameras and triangles."""
         return cast(SceneCounts, self._read("get_counts", _abi.luxfer_scene_counts))
 
     def camera(self, index: int = 0) -> CameraParams:
-        """A camera, as the settings that would add it."""
+        """The settings of a camera, as for add_camera."""
         params = _params.sized(_abi.luxfer_camera_params)
         self._call("get_camera", index, params)
         return cast(CameraParams, _params.settings(params))
 
     def material(self, index: int) -> MaterialParams:
-        """A material, as the settings that would add it, without its name."""
+        """The settings of a material, as for add_material, without its name."""
         params = _params.sized(_abi.luxfer_material_params)
         self._call("get_material", index, params)
         return cast(MaterialParams, _params.settings(params))
 
     def material_texture(self, index: int, role: TextureRole | str) -> TextureUse:
-        """Which texture a material uses for a purpose, and how."""
+        """The texture that a material uses for a purpose."""
         use = self._read("get_material_texture", _abi.luxfer_texture_use, index, _params.member(TextureRole, role))
         return cast(TextureUse, use)
 
@@ -238,7 +238,7 @@ class Scene(Handle):
         return self._get_image("get_texture", index)
 
     def mesh(self, index: int) -> MeshInfo:
-        """What a mesh has."""
+        """Sizes and attributes of a mesh."""
         return cast(MeshInfo, self._read("get_mesh", _abi.luxfer_mesh_info, index))
 
     def mesh_name(self, index: int) -> str:
@@ -246,7 +246,7 @@ class Scene(Handle):
         return self._get_text("get_mesh_name", index)
 
     def mesh_arrays(self, index: int) -> dict[str, NDArray[Any]]:
-        """Copies of a mesh's "positions", "indices", and, where it has them, "normals", "uvs" and "uvs1"."""
+        """Copies of a mesh's "positions", "indices" and, if it has them, "normals", "uvs" and "uvs1"."""
         info = self.mesh(index)
         out: dict[str, NDArray[Any]] = {"positions": np.empty((info.vertex_count, 3), np.float32)}
         if info.has_normals:
@@ -270,7 +270,8 @@ class Scene(Handle):
     # -- questions
 
     def intersect(self, origins: ArrayLike, directions: ArrayLike, t_max: ArrayLike = np.inf) -> NDArray[Any]:
-        """The nearest hits of rays, (n, 3) and (n, 3): a structured array with the fields t, mesh, triangle, u, v.
+        """The nearest hits of rays with origins (n, 3) and directions (n, 3): a structured array with the fields t,
+        mesh, triangle, u, v.
 
         >>> Scene.demo(context, "target-room").intersect([[0, 1.5, 0]], [[0, 1, 0]])["t"].round(2).item() > 0
         True
@@ -284,25 +285,25 @@ class Scene(Handle):
         return hits
 
     def requirements(self, error: float = 0.01) -> Requirements:
-        """What the scene requires of the renderer; error is the share of light for bounces."""
+        """The features that the scene requires of the renderer; error is the share of light for the field bounces."""
         out = _params.sized(_abi.luxfer_requirements)
         self._call("requirements", error, out)
         return cast(Requirements, _params.report(out))
 
     def requirements_text(self) -> str:
-        """In words, what rendering the scene leaves out: one sentence per line."""
+        """Describes what the renderer skips, one sentence per line."""
         return self._get_text("requirements_text")
 
     @classmethod
     def demo(cls, context: Context, which: Any) -> Scene:
-        """A scene that the library makes itself: "target-room", "exemplar-room", "sphere-on-table" or "still-life"."""
+        """A generated scene: "target-room", "exemplar-room", "sphere-on-table" or "still-life"."""
         from .types import Demo
 
         return cls._made(context, "luxfer_demo_scene", _params.member(Demo, which))
 
 
 def _rows(values: ArrayLike, width: int, dtype: Any, name: str) -> NDArray[Any]:
-    """An array (n, width) whose rows are packed; the values' own memory if it is already."""
+    """An array (n, width) with packed rows; a copy only if the values are not packed yet."""
     raw = np.asarray(values)
     if dtype == np.uint32 and raw.size and (raw.dtype.kind not in "iu" or raw.min() < 0):
         raise ValueError(f"{name} are whole numbers from 0 on")

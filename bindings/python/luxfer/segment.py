@@ -1,4 +1,4 @@
-"""From a few strokes on a photo to a mask with a confidence for each pixel."""
+"""Computes a mask, with a confidence for each pixel, from a few strokes on a photo."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def stroke_arguments(points: ArrayLike, radius: float, positive: bool) -> tuple[
 
 
 class Segment(StageBase):
-    """Strokes to a mask; strokes may be added after a result, and the stage run again.
+    """Segmentation by strokes; add strokes after a result and run again.
 
     >>> segment = Segment(context, Features(context, photo).run().image())
     >>> segment.add_strokes_image(strokes, "plane")
@@ -48,15 +48,15 @@ class Segment(StageBase):
             self.set_features(features)
 
     def set_features(self, features: ImageLike) -> None:
-        """The channels of Features, or any image of 1 to 16 channels."""
+        """Sets the channels of Features, or any image of 1 to 16 channels."""
         self._call("set_features", image_of(self._context, features))
 
     def set_within(self, within: ImageLike | None) -> None:
-        """Where to look, 1, and where not, 0; None: everywhere."""
+        """Restricts the segmentation to pixels where the mask is 1; None: everywhere."""
         self._call("set_within", None if within is None else image_of(self._context, within))
 
     def add_stroke(self, points: ArrayLike, radius: float, positive: bool) -> None:
-        """Adds a stroke along points (n, 2) in pixels; positive for what is sought."""
+        """Adds a stroke along points (n, 2) in pixels; positive on the class that is sought."""
         self._call("add_stroke", *stroke_arguments(points, radius, positive))
 
     def add_strokes_image(self, drawing: ImageLike, phase: Phase | str) -> None:
@@ -87,5 +87,5 @@ class Segment(StageBase):
 
     @property
     def report(self) -> SegmentReport:
-        """How good the segmentation is."""
+        """Quality of the segmentation."""
         return cast(SegmentReport, self._read("get_report", _abi.luxfer_segment_report))

@@ -1,4 +1,4 @@
-"""Print sheets: the exemplar printed pale between marks, and a photo of the painted sheet brought back onto it."""
+"""Print sheets: prints the exemplar in pale colours between marks, and aligns a photo of the painted sheet with it."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def print_sheet(context: Context, picture: ImageLike, **params: Unpack[SheetPara
 def align_sheet(
     context: Context, photo: ImageLike, width: int, height: int, **params: Unpack[SheetParams]
 ) -> tuple[Image, SheetReport]:
-    """Finds the marks in a photo of a sheet, printed with the same settings for a picture of width x height, and resamples
-    it onto that picture: the artwork, and how well it was aligned."""
+    """Finds the marks in a photo of a sheet, printed with equal settings for a picture of width x height, and
+    resamples it to that picture: returns the artwork and the quality of the alignment."""
     pointer = ctypes.POINTER(_abi.luxfer_image)()
     settings = _params.fill(_abi.luxfer_sheet_params, params, [])
     report = _params.sized(_abi.luxfer_sheet_report)

@@ -1,4 +1,4 @@
-"""Paints a target scene as an artist has painted an exemplar scene (StyLit)."""
+"""Paints a target scene in the style in which an artist has painted an exemplar scene (StyLit)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Level:
-    """A resolution level of a stylisation, and what was done on it."""
+    """A resolution level of a stylisation, with its rounds."""
 
     width: int
     height: int
@@ -31,7 +31,7 @@ class Level:
 
 
 class Stylize(StageBase):
-    """Artwork and guides in, a picture out.
+    """Paints a picture from an artwork and guides.
 
     >>> exemplar = Guides(context, ball).run(width=48, height=36, samples=4)
     >>> target = Guides(context, still_life).run(width=48, height=36, samples=4)
@@ -51,7 +51,8 @@ class Stylize(StageBase):
     # -- inputs
 
     def set_artwork(self, artwork: ImageLike) -> None:
-        """The exemplar scene as painted: linear, 1, 3 or 4 channels, aligned with the sources of the guides."""
+        """Sets the artwork: the painted exemplar scene, linear, 1, 3 or 4 channels, aligned with the sources of the
+        guides."""
         self._call("set_artwork", image_of(self._context, artwork))
 
     def add_guide(
@@ -62,14 +63,15 @@ class Stylize(StageBase):
         weight: float = 1.0,
         range: GuideRange | str = GuideRange.LIGHT,
     ) -> None:
-        """Adds a guide: source shows the exemplar, target what is to be painted; "light" or "data". None as target: the same
-        image, for a half-painted picture."""
+        """Adds a guide: source shows the exemplar, target the scene to paint; "light" or "data". None as target: use
+        source for both, for a half-painted picture."""
         first = image_of(self._context, source)
         second = None if target is None else image_of(self._context, target)
         self._call("add_guide", _params.text(name, "name"), first, second, weight, _params.member(GuideRange, range))
 
     def add_guides(self, source: Guides, target: Guides, extras: GuidesWith | str | int = 0, extra_weight: float = 1.0) -> None:
-        """Adds the guides of two scenes: the five of light, and the extras, as "normals|edges|materials|caustics"."""
+        """Adds the guides of two scenes: the five light guides, and extras such as
+        "normals|edges|materials|caustics"."""
         self._call("add_guides", source, target, _params.member(GuidesWith, extras), extra_weight)
 
     def clear_guides(self) -> None:
@@ -77,20 +79,22 @@ class Stylize(StageBase):
         self._call("clear_guides")
 
     def set_source_mask(self, mask: ImageLike | None) -> None:
-        """Where the artwork may be copied from, above 0.5; None: everywhere."""
+        """Sets the pixels of the artwork that may be copied, those above 0.5; None: all."""
         self._call("set_source_mask", None if mask is None else image_of(self._context, mask))
 
     def set_target_mask(self, mask: ImageLike | None, known: ImageLike | None = None) -> None:
-        """Which pixels to paint, above 0.5; the others are those of known, or black. None: everything."""
+        """Sets the pixels to paint, those above 0.5; the others come from known, or are black. None: paint all
+        pixels."""
         images = [None if image is None else image_of(self._context, image) for image in (mask, known)]
         self._call("set_target_mask", *images)
 
     def set_motion(self, motion: ImageLike | None) -> None:
-        """Makes each start go on from the result before; see Guides.motion. None: each start begins anew."""
+        """Makes each job start from the previous result; see Guides.motion. None: each job starts from nothing."""
         self._call("set_motion", None if motion is None else image_of(self._context, motion))
 
     def set_painted(self, painted: ImageLike) -> None:
-        """Has the rest of a half-painted picture painted, which is the artwork; painted is above 0.5 where it is done."""
+        """Lets the library paint the rest of a half-painted picture, which is the artwork; painted is above 0.5 where
+        it is finished."""
         self._call("set_painted", image_of(self._context, painted))
 
     # -- work
@@ -111,7 +115,8 @@ class Stylize(StageBase):
         return self.start(preset, **params).wait(progress)
 
     def update(self, artwork: ImageLike, changed: ImageLike) -> Job[Stylize]:
-        """Starts a job that follows new paint in the artwork, where changed is above 0.5; needs keep_for_update=1."""
+        """Starts a job that updates the picture after new paint in the artwork, where changed is above 0.5; needs
+        keep_for_update=1."""
         images = [image_of(self._context, image) for image in (artwork, changed)]
         return self._job("update", *images)
 
@@ -123,12 +128,12 @@ class Stylize(StageBase):
 
     @property
     def report(self) -> StylizeReport:
-        """How good the result is so far."""
+        """Current quality of the result."""
         return cast(StylizeReport, self._read("get_report", _abi.luxfer_stylize_report))
 
     @property
     def levels(self) -> list[Level]:
-        """What was done, from the coarsest level on."""
+        """The levels with their rounds, the coarsest first."""
         out = []
         for level in range(self.report.levels):
             numbers = [ctypes.c_uint32() for _ in range(3)]
@@ -139,7 +144,7 @@ class Stylize(StageBase):
         return out
 
     def passes(self, level: int, round: int) -> list[StylizePass]:
-        """The passes of matching under the budget in a round."""
+        """The matching passes under the error budget in a round."""
         count = self.levels[level].rounds[round].passes
         return [cast(StylizePass, self._read("get_pass", _abi.luxfer_stylize_pass, level, round, i)) for i in range(count)]
 

@@ -1,4 +1,4 @@
-"""The lighting transfer from end to end: a photo, a few strokes and a scene in, that scene lit as in the photo out."""
+"""The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 
 class Transfer(StageBase):
-    """Runs the stages in order. Every result can be read as soon as its stage has ended, replaced, and the run taken up
-    again from any stage. Settings of the stages are dicts: run(render={"width": 640}, rectify={"max_side": 1024}).
+    """Runs the stages in order. You can read every result as soon as its stage has ended, replace it by your own, and
+    continue from any stage. Settings of the stages are dicts: run(render={"width": 640}, rectify={"max_side": 1024}).
 
     >>> transfer = Transfer(context, photo, room, "Ceiling")
     >>> transfer.add_strokes_image(strokes)
@@ -53,29 +53,31 @@ class Transfer(StageBase):
     # -- inputs
 
     def set_photo(self, photo: ImageLike) -> None:
-        """Linear RGB, 1 = display white."""
+        """Sets the photo: linear RGB, 1 = display white."""
         self._call("set_photo", image_of(self._context, photo))
 
     def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
-        """A depth map of the photo, "along-z" or "along-ray"; None: none."""
+        """Sets a depth map of the photo, "along-z" or "along-ray"; None: no depth map."""
         image = None if depth is None else image_of(self._context, depth)
         self._call("set_depth", image, _params.member(DepthKind, kind))
 
     def set_scene(self, scene: Scene, surface: str) -> None:
-        """The scene to light, never changed, and the object or material of its surface that receives the lights."""
+        """Sets the scene to light, which is never changed, and the object or material of the surface that receives the
+        lights."""
         self._call("set_scene", scene, _params.text(surface, "surface"))
 
     def set_texture(self, texture: ImageLike | None) -> None:
-        """An emissive texture to use instead of making one from the photo; None: one is made."""
+        """Sets an emissive texture to use instead of one made from the photo; None: make one."""
         self._call("set_texture", None if texture is None else image_of(self._context, texture))
 
     def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
-        """The camera of the picture; without arguments the scene's first, or one chosen in a corner of the room."""
+        """Sets the camera of the picture; without arguments it is the first camera of the scene, or one in a corner of
+        the room."""
         values = {**(camera or {}), **params}
         self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
 
     def add_stroke(self, phase: Phase | str, points: ArrayLike, radius: float, positive: bool) -> None:
-        """Adds a stroke along points (n, 2) of the photo, about the "plane" or the "lights"; positive for what is sought."""
+        """Adds a stroke along points (n, 2) of the photo, for the "plane" or the "lights"; positive on them."""
         self._call("add_stroke", _params.member(Phase, phase), *stroke_arguments(points, radius, positive))
 
     def add_strokes_image(self, drawing: ImageLike) -> None:
@@ -92,33 +94,33 @@ class Transfer(StageBase):
         self._call("clear_strokes")
 
     def set_zones(self, zones: ArrayLike) -> None:
-        """Rectangles (n, 4) of the surface that lamps keep away from: u0, v0, u1, v1 in metres from its corner along its axes.
-        They replace those set before."""
+        """Sets rectangles (n, 4) of the surface without lamps: u0, v0, u1, v1 in metres from its corner along its
+        axes. They replace earlier ones."""
         values = np.ascontiguousarray(zones, np.float64).reshape(-1, 4)
         self._call("set_zones", values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), len(values))
 
     def set_triangles(self, triangles: ArrayLike) -> None:
-        """Mesh and triangle (n, 2) of those that receive the lights, instead of those of a name; none: the name counts
-        again."""
+        """Sets the triangles that receive the lights, (n, 2) with mesh and triangle index, instead of the named
+        surface; empty: use the name again."""
         values = np.ascontiguousarray(triangles, np.uint32).reshape(-1, 2)
         self._call("set_triangles", values.ctypes.data_as(ctypes.POINTER(ctypes.c_uint32)), len(values))
 
     # -- results of the caller's own
 
     def use_rectify(self, rectify: Rectify) -> None:
-        """In the place of the results of the stages VIEW and UNWARP."""
+        """Replaces the results of the stages VIEW and UNWARP."""
         self._call("use_rectify", rectify)
 
     def use_features(self, features: Features) -> None:
-        """In the place of the result of the stage FEATURES."""
+        """Replaces the result of the stage FEATURES."""
         self._call("use_features", features)
 
     def use_segment(self, phase: Phase | str, segment: Segment) -> None:
-        """In the place of the result of the stage PLANE or LIGHTS."""
+        """Replaces the result of the stage PLANE or LIGHTS."""
         self._call("use_segment", _params.member(Phase, phase), segment)
 
     def use_mask(self, phase: Phase | str, mask: ImageLike) -> None:
-        """A mask of the photo's size in the place of the result of the stage PLANE or LIGHTS."""
+        """Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size."""
         self._call("use_mask", _params.member(Phase, phase), image_of(self._context, mask))
 
     # -- work
@@ -150,24 +152,24 @@ class Transfer(StageBase):
         return self._get_image("get_image", _params.member(TransferImage, which))
 
     def scene(self, which: TransferScene | str = TransferScene.LIT) -> Scene:
-        """ "lit", the result; "unsolved", before its strength is solved for; "white", its colour taken away."""
+        """ "lit", the result; "unsolved", before relighting; "white", with white light of equal luminance."""
         pointer = ctypes.POINTER(_abi.luxfer_scene)()
         self._call("get_scene", _params.member(TransferScene, which), pointer)
         return Scene._adopt(self._context, pointer)
 
     @property
     def report(self) -> TransferReport:
-        """What each stage took, and how good its result is."""
+        """Time and error of each stage."""
         return cast(TransferReport, self._read("get_report", _abi.luxfer_transfer_report))
 
     @property
     def view(self) -> RectifyReport:
-        """What the lines of the photo say about its camera, and how the plane is unwarped."""
+        """The camera found from the lines of the photo, and the unwarping of the plane."""
         return cast(RectifyReport, self._read("get_view", _abi.luxfer_rectify_report))
 
     @property
     def solution(self) -> RelightReport:
-        """The solved colour and intensity, and how sure they are."""
+        """The solved colour and intensity, and their confidence."""
         return cast(RelightReport, self._read("get_solution", _abi.luxfer_relight_report))
 
     @property
@@ -177,5 +179,6 @@ class Transfer(StageBase):
         return [cast(Fixture, self._read("get_fixture", _abi.luxfer_fixture, i)) for i in range(count)]
 
     def save_fixtures(self, path: str | os.PathLike[str]) -> None:
-        """Writes the lamps to a .csv or a .json file, units in the names of the columns; .json also has their outlines."""
+        """Writes the lamps to a .csv or .json file; the names of the columns contain the units; .json also has their
+        outlines."""
         self._call("save_fixtures", _params.text(os.fspath(path), "path"))

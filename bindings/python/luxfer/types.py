@@ -10,12 +10,12 @@ from typing import TypedDict
 
 
 class Status(IntEnum):
-    """The result of a call: Status.OK, or why it failed."""
+    """The result of a call: Status.OK, or the reason for the failure."""
 
     OK = 0
     """Success."""
     UNKNOWN = 1
-    """A cause that has no status of its own."""
+    """An error that has no status value of its own."""
     INVALID_ARGUMENT = 2
     """A parameter is None, out of range, of the wrong kind or from another context, or contradicts another."""
     INVALID_OPERATION = 3
@@ -24,27 +24,28 @@ class Status(IntEnum):
     OUT_OF_MEMORY = 4
     """The memory budget of the context, or the machine, is used up."""
     UNSUPPORTED = 5
-    """The file or the request is valid, but uses something this library does not do."""
+    """The file or the request is valid, but uses a feature that this library does not support."""
     CANCELLED = 6
     """The job was cancelled by the caller."""
     IO = 7
-    """The operating system could not read or write a file, or the caller's writer refused."""
+    """The operating system could not read or write a file, or the caller's write function returned an error."""
     FORMAT = 8
     """A file is truncated, corrupt, or not what it claims to be."""
     NOT_READY = 9
-    """A result was asked for before the job that makes it has succeeded, or a wait timed out."""
+    """A result was requested before its job has succeeded, or a wait timed out."""
     INTERNAL = 10
-    """A defect in this library: please report it."""
+    """A bug in this library: please report it."""
     DEGENERATE = 11
     """The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only."""
     NOT_FOUND = 12
     """No surface, image or entry has the given name or index."""
     UNREACHABLE = 13
-    """No light can reach the target: no path, a channel fully absorbed, or negative light would be needed."""
+    """No light can reach the target: there is no light path, a channel is fully absorbed, or negative light
+    would be needed."""
 
 
 class Sample(IntEnum):
-    """How a sample is stored."""
+    """Storage type of a sample, in the machine's byte order."""
 
     U8 = 0
     """8-bit unsigned integer that stands for [0, 1]."""
@@ -57,44 +58,43 @@ class Sample(IntEnum):
 
 
 class ColourSpace(IntEnum):
-    """What the numbers mean."""
+    """Encoding of the values."""
 
     LINEAR = 0
-    """Scene-linear Rec.709, or data that is no colour."""
+    """Scene-linear Rec.709, or data that is not colour."""
     SRGB = 1
-    """Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is
-    linear."""
+    """Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear."""
 
 
 class AlphaMode(IntEnum):
-    """What the alpha of a surface means."""
+    """Meaning of a surface's alpha."""
 
     OPAQUE = 0
-    """Nothing: it is there everywhere."""
+    """The alpha is ignored: the surface is opaque."""
     MASK = 1
-    """It is there where alpha is at least alpha_cutoff."""
+    """The surface is opaque where alpha is at least alpha_cutoff, and absent elsewhere."""
     BLEND = 2
-    """That share of light meets it, the rest finds nothing in its way."""
+    """The surface stops the share alpha of the light; the rest passes straight through."""
 
 
 class Wrap(IntEnum):
-    """How a texture continues beyond its edges."""
+    """Continuation of a texture beyond its edges."""
 
     REPEAT = 0
-    """It repeats."""
+    """The texture repeats."""
     CLAMP = 1
-    """Its border goes on."""
+    """The texels at the edge continue."""
     MIRROR = 2
-    """It repeats, every other one mirrored."""
+    """The texture repeats, mirrored every second time."""
 
 
 class TextureRole(IntEnum):
-    """What a material uses a texture for."""
+    """Purpose of a material's texture."""
 
     BASE_COLOR = 0
     """Multiplies the base colour; its alpha multiplies the material's."""
     METALLIC_ROUGHNESS = 1
-    """Green multiplies the roughness, blue the metallic share."""
+    """The green channel multiplies the roughness, the blue channel the metallic value."""
     NORMAL = 2
     """Normals in tangent space."""
     EMISSION = 3
@@ -114,45 +114,46 @@ class LightKind(IntEnum):
     """A kind of light."""
 
     POINT = 0
-    """Shines the same in every direction."""
+    """A point light: equal intensity in every direction."""
     SPOT = 1
-    """Shines in a cone."""
+    """A spot light: shines into a cone."""
     DIRECTIONAL = 2
-    """Shines from infinitely far away."""
+    """A directional light: shines from infinitely far away."""
 
 
 class Lines(IntEnum):
-    """How lines are found."""
+    """Detector of lines."""
 
     REGIONS = 0
-    """Regions of like gradient direction, with sub-pixel end points."""
+    """Segments from regions of similar gradient direction, with sub-pixel end points."""
     HOUGH = 1
-    """The paper's: gradient-restricted Hough transform of Canny edges."""
+    """The paper's method: gradient-restricted Hough transform of Canny edges."""
 
 
 class Search(IntEnum):
-    """How vanishing points are found."""
+    """Search for vanishing points."""
 
     MANHATTAN = 0
-    """Three orthogonal directions and the focal length at once, then each refined freely."""
+    """Searches three orthogonal directions and the focal length together, then refines each direction
+    freely."""
     SUCCESSIVE = 1
-    """The paper's: one group of lines after the other."""
+    """The paper's method: one group of lines after the other."""
 
 
 class Metric(IntEnum):
-    """How far a vanishing point is from a line, in Search.SUCCESSIVE."""
+    """Distance of a vanishing point from a line, for Search.SUCCESSIVE."""
 
     SEGMENT = 0
-    """The paper's measure on the segment that was detected, finite for vanishing points at infinity."""
+    """The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity."""
     VISIBLE_LINE = 1
-    """As printed in the paper (Eq. 2), on the whole visible line."""
+    """The measure as printed in the paper (Eq. 2), evaluated on the whole visible line."""
 
 
 class RectifyImage(IntEnum):
     """An image of a rectification."""
 
     UNWARPED = 0
-    """The plane seen straight on, linear RGB."""
+    """The plane in frontal view, linear RGB."""
     VALID = 1
     """1 where the photo shows the plane, else 0; 1 channel."""
 
@@ -161,15 +162,15 @@ class FocalSource(IntEnum):
     """Where a focal length came from."""
 
     GIVEN = 0
-    """The caller gave it."""
+    """Set by the caller."""
     FROM_VANISHING_POINTS = 1
-    """From vanishing points of orthogonal directions."""
+    """Estimated from vanishing points of orthogonal directions."""
     ASSUMED = 2
-    """A guess, 0.85 of the image's width."""
+    """Assumed: 0.85 times the width of the photo."""
 
 
 class DepthKind(IntEnum):
-    """What a depth map measures."""
+    """Quantity that a depth map measures."""
 
     ALONG_Z = 0
     """Distance along the viewing axis."""
@@ -178,51 +179,52 @@ class DepthKind(IntEnum):
 
 
 class Normalisation(IntEnum):
-    """What the colours of a photo become before a network sees them."""
+    """Normalisation of the photo's colours for a network, which its file does not state."""
 
     BY_SIZE = 0
-    """By the size of the network's input: Normalisation.IMAGENET for 256 x 256, else Normalisation.HALF."""
+    """Chosen by the size of the network's input: Normalisation.IMAGENET for 256 x 256, else
+    Normalisation.HALF."""
     IMAGENET = 1
-    """sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small."""
+    """(sRGB - (0.485, 0.456, 0.406)) / (0.229, 0.224, 0.225), for MiDaS 2.1, large and small."""
     HALF = 2
-    """sRGB less 0.5, over 0.5: DPT."""
+    """(sRGB - 0.5) / 0.5, for DPT."""
     NONE = 3
-    """sRGB in [0, 1]."""
+    """No normalisation: sRGB in [0, 1]."""
 
 
 class FeaturesImage(IntEnum):
     """An image of the features."""
 
     CHANNELS = 0
-    """The ten channels; luxfer_image_read takes them apart."""
+    """The ten channels; luxfer_image_read reads some of them."""
     DEPTH_CONFIDENCE = 1
-    """Trust in the depth of each pixel, in [0, 1]; 1 channel."""
+    """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
     NETWORK_DEPTH = 2
-    """The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as
-    the depth map of a further run, or of luxfer_transfer, without running the network again."""
+    """The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the
+    depth map of later jobs, or of a luxfer_transfer, to avoid running the network again."""
 
 
 class DepthSource(IntEnum):
-    """Where the depth came from."""
+    """Source of the depth."""
 
     CALLER = 0
     """The caller's depth map."""
     LAYOUT = 1
-    """A room laid out from the lines of the photo, and strokes."""
+    """A box-shaped room fitted to the lines of the photo and to strokes."""
     NOTHING = 2
-    """A guess that knows nothing of the photo."""
+    """A neutral guess that does not depend on the photo."""
     NETWORK = 3
     """The caller's network."""
 
 
 class Phase(IntEnum):
-    """What strokes are about."""
+    """The mask that strokes are for."""
 
     PLANE = 0
-    """The plane that carries the lights; its positive strokes lie on the plane, those of lights count as
-    well."""
+    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
+    too."""
     LIGHTS = 1
-    """The lights in the plane; its positive strokes lie on lights, the others on the plane beside them."""
+    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
 
 
 class SegmentImage(IntEnum):
@@ -233,22 +235,22 @@ class SegmentImage(IntEnum):
     CONFIDENCE = 1
     """Probability that a pixel is of the positive class, in [0, 1]; 1 channel."""
     UNSEEN = 2
-    """How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke
-    helps; 1 channel."""
+    """Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1
+    channel."""
 
 
 class EmissionImage(IntEnum):
     """An image of the emission."""
 
     TEXTURE = 0
-    """The texture: linear RGB relative to the photo's white, 0 where there is no lamp."""
+    """The texture: linear RGB relative to the photo's white; 0 outside lamps."""
     MASK = 1
     """1 on lamps, else 0; 1 channel."""
     EXEMPLAR_METADATA = 2
-    """What synthesis started from, at working size: confidence, signed x and y distance to the nearest light; 3
+    """Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3
     channels."""
     METADATA = 3
-    """The same of its result."""
+    """Metadata of the result, with these channels."""
 
 
 class RenderImage(IntEnum):
@@ -257,122 +259,124 @@ class RenderImage(IntEnum):
     BEAUTY = 0
     """Mean radiance of each pixel, linear RGB in cd/m²."""
     VARIANCE = 1
-    """Variance of that mean; 3 channels. Pixels in blocks of eight share what their paths find, so that the
-    error of a mean over pixels is up to the root of eight times what their variances add up to."""
+    """Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their
+    errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances."""
     PATHS = 2
     """Number of paths of each pixel; 1 channel."""
     INTERVAL = 3
-    """Half the width of the interval around each pixel of the beauty that holds the true radiance with a
-    probability of 95 %, in cd/m²; 3 channels; infinite where a pixel has less than two paths."""
+    """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
+    where a pixel has fewer than two paths."""
     PREVIEW = 4
-    """The beauty with its noise filtered out, guided by surfaces: what it does not see, such as soft shadows,
-    it blurs. How far, the report tells as preview_bias. Only if RenderParams.preview is not 0."""
+    """The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces
+    do not show, such as soft shadows; preview_bias of the report estimates the error. Only if
+    RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
-    """How emissive surfaces and the environment answer to the lights of camera-first expressions."""
+    """Letters that match emissive surfaces and the environment in camera-first expressions."""
 
     BOTH = 0
-    """Surfaces are both L and O, the environment is both L and B: C<RD>L is all direct light. The default."""
+    """Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default."""
     LIGHT = 1
-    """Every light is L only."""
+    """Every light matches L only."""
     OBJECT = 2
-    """As in Open Shading Language: surfaces are O, the environment is B."""
+    """As in Open Shading Language: surfaces match O, the environment matches B."""
 
 
 class IlluminanceImage(IntEnum):
     """An image of the calculation."""
 
     LUX = 0
-    """Illuminance in lux; 1 channel, NaN where a mesh has no point."""
+    """Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover."""
     ERROR = 1
     """Standard error of each value, in lux; 1 channel."""
 
 
 class Quantity(IntEnum):
-    """What should match the photo."""
+    """Quantity that should match the photo."""
 
     OUTGOING = 0
-    """The light the target surface sends back, its albedo included: what a photo shows of it."""
+    """Light that the target surface reflects, its albedo included: the radiance that a photo shows."""
     INCIDENT = 1
-    """The light that arrives at it, as if it were white."""
+    """Light that arrives at the target surface, as if the surface were white."""
 
 
 class Fit(IntEnum):
-    """What of the target counts."""
+    """How the target surface is compared."""
 
     MEAN = 0
-    """Its mean."""
+    """The mean over the target surface."""
     LEAST_SQUARES = 1
-    """Every point of it, by least squares: what gradient descent on texels comes to. Bright points count more,
-    so the answer is dimmer than that of the mean, by 1 / (1 + CV²) without other light, where CV is the spread
-    of the response over the target relative to its mean."""
+    """Every point of the target surface, by least squares, as gradient descent on texels does. Bright points
+    count more, so the emission is dimmer than with Fit.MEAN: by the factor 1 / (1 + CV²) without other light,
+    where CV is the coefficient of variation of the response over the target."""
 
 
 class Sense(IntEnum):
-    """On which side of its value light should be."""
+    """Whether light should equal its target value, or stay above or below it."""
 
     EXACTLY = 0
-    """At it."""
+    """The light should equal the value."""
     AT_LEAST = 1
-    """At it or above: what a standard asks of a desk, or what a clipped channel of a photo says."""
+    """The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a
+    photo shows."""
     AT_MOST = 2
-    """At it or below: a limit against glare."""
+    """The light should be at most the value, as a limit against glare."""
 
 
 class Reach(IntEnum):
-    """How far the answer goes to meet the target in one colour channel."""
+    """Whether the target is met in a colour channel, and if not, the reason."""
 
     MET = 0
     """The target is met."""
     TOO_BRIGHT = 1
-    """Other lights alone exceed the target: the emission is off in this channel."""
+    """The other lights alone exceed the target: the emission is 0 in this channel."""
     DARK = 2
-    """No light of this channel reaches the target: the emission keeps the mean scale of the other channels."""
+    """No light of this channel reaches the target: the emission uses the mean scale of the other channels."""
     TOO_DIM = 3
-    """All lamps at their largest power do not suffice, or one goal asks for what another forbids."""
+    """All lamps at their largest power are too weak, or two goals contradict each other."""
 
 
 class Group(IntEnum):
-    """Which lamps share their power."""
+    """Which lamps share one power."""
 
     ALL = 0
-    """All lamps."""
+    """All lamps form one group."""
     EACH = 1
-    """Every lamp for itself."""
+    """Each lamp is a group of its own."""
     FIRST = 2
-    """Those whose centres agree in their first coordinate: u of a texture, x of meshes."""
+    """Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes."""
     SECOND = 3
-    """Those whose centres agree in their second coordinate: v of a texture, y of meshes."""
+    """Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes."""
     THIRD = 4
-    """Those whose centres agree in their third coordinate: z of meshes."""
+    """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
     TYPE = 5
-    """Those of a type: of about the same area; of lights without a surface points, spots, and luminaires by
-    their distribution."""
+    """Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and
+    all luminaires of one distribution."""
 
 
 class Aim(IntEnum):
-    """What a placement should do."""
+    """Objective of a placement."""
 
     MOST = 0
-    """As much luminance for the target as possible."""
+    """The largest luminance of the target."""
     LEAST = 1
-    """As little."""
+    """The smallest luminance of the target."""
     RADIANCE = 2
-    """The mean radiance of the target that is given, all other light included."""
+    """The mean radiance of the target that is nearest to PlacementParams.radiance, all other light included."""
 
 
 class Scale(IntEnum):
-    """How values are spread over the colours."""
+    """The scale from values to colours."""
 
     LINEAR = 0
-    """Evenly."""
+    """Linear: equal differences of the value have equal width."""
     LOGARITHMIC = 1
-    """Decades are equally wide."""
+    """Logarithmic: decades have equal width."""
 
 
 class Unit(IntEnum):
-    """What the values of an image are."""
+    """The quantity of an image's values."""
 
     LUMINANCE = 0
     """Luminance in cd/m²."""
@@ -381,24 +385,24 @@ class Unit(IntEnum):
 
 
 class PatternScale(IntEnum):
-    """What sets the size of the pattern on the surface."""
+    """The length that sets the size of the pattern on the surface."""
 
     DISTANCE = 0
-    """The distance of the photo's camera from the lit plane: plane_distance of TransferParams."""
+    """The distance of the photo's camera from the plane with the lights: plane_distance of TransferParams."""
     LAMP = 1
-    """The length of a lamp: the longer side of the photo's, of which the median counts."""
+    """The length of a lamp: the median of the longer sides of the photo's lamps."""
     SPACING = 2
-    """The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to the
-    nearest other."""
+    """The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to its
+    nearest neighbour."""
     ACROSS = 3
-    """The width of the surface: it becomes as many lamps wide as the photo's plane."""
+    """The width of the surface: it shows as many lamps across as the plane in the photo."""
 
 
 class Target(IntEnum):
-    """What part of the photo gives the colour to match."""
+    """The part of the photo that gives the colour to match."""
 
     SURFACE = 0
-    """The plane that carries the lights, without them and their halo."""
+    """The plane that carries the lights, without the lights and their halo."""
     WHOLE_IMAGE = 1
     """The whole photo."""
 
@@ -407,21 +411,21 @@ class Stage(IntEnum):
     """A stage of the transfer."""
 
     VIEW = 0
-    """Lines, vanishing points and the photo's camera."""
+    """Finds lines, vanishing points and the photo's camera."""
     FEATURES = 1
-    """Ten channels for each pixel."""
+    """Computes the ten channels of the features."""
     PLANE = 2
-    """The mask of the plane that carries the lights."""
+    """Segments the plane that carries the lights."""
     LIGHTS = 3
-    """The mask of the lights in it."""
+    """Segments the lights on the plane."""
     UNWARP = 4
-    """The plane seen straight on."""
+    """Unwarps the plane to a frontal view."""
     EMISSION = 5
-    """The emissive texture, laid onto the scene's surface."""
+    """Synthesises the emissive texture and maps it onto the scene's surface."""
     RELIGHT = 6
-    """Its colour and intensity."""
+    """Solves for the colour and intensity of the emission."""
     RENDER = 7
-    """The picture."""
+    """Renders the picture."""
 
 
 class TransferImage(IntEnum):
@@ -446,11 +450,11 @@ class TransferImage(IntEnum):
     EMISSION_MASK = 8
     """1 on lamps of the texture, else 0; 1 channel."""
     RENDER = 9
-    """The scene in its new light, linear RGB in cd/m²; while it is being rendered, as far as it is."""
+    """The scene in its new light, linear RGB in cd/m²; in its current state while the rendering runs."""
     RENDER_VARIANCE = 10
     """Variance of the rendering; 3 channels."""
     RENDER_PREVIEW = 11
-    """The picture with its noise filtered out, if the settings of the stage RENDER have a preview; see
+    """The rendering after a noise filter, if the settings of the stage RENDER have a preview; see
     RenderImage.PREVIEW."""
 
 
@@ -458,98 +462,99 @@ class TransferScene(IntEnum):
     """A scene of the transfer."""
 
     UNSOLVED = 0
-    """With the emission at the photo's own strength, before it is solved for."""
+    """The scene with the emission as bright as in the photo, before the stage RELIGHT solves for its factor."""
     LIT = 1
-    """With the solved emission: the result."""
+    """The scene with the solved emission: the result."""
     WHITE = 2
-    """As TransferScene.LIT, the light's colour taken away and its luminance kept."""
+    """As TransferScene.LIT, with white light of equal luminance."""
 
 
 class GuidesImage(IntEnum):
     """An image of guides."""
 
     FULL = 0
-    """All light."""
+    """All light, reflected any number of times."""
     DIRECT = 1
-    """Light reflected once, by something matt (LDE)."""
+    """Light reflected once, by a diffuse surface (LDE)."""
     SPECULAR = 2
-    """Light reflected once, by something glossy (LSE)."""
+    """Light reflected once, by a glossy surface (LSE)."""
     INDIRECT = 3
-    """Light whose last two reflections were matt (L.*DDE): where colours bleed."""
+    """Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding."""
     TWO_BOUNCES = 4
-    """Light reflected once or twice, by matt things (LD{1,2}E): what is in the shadow."""
+    """Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows."""
     NORMALS = 5
-    """Normals as the camera has them: x right, y up, z towards it; 3 channels."""
+    """Normals in camera space: x right, y up, z towards the camera; 3 channels."""
     EDGES = 6
     """Edges of shapes, in [0, 1]; 1 channel."""
     MATERIALS = 7
-    """A colour for each material, made from its name; 3 channels."""
+    """A colour code for each material, derived from its name; 3 channels."""
     CAUSTICS = 8
-    """Light that glossy things throw onto matt ones (LS+DE)."""
+    """Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE)."""
 
 
 class StylizeMode(IntEnum):
-    """How matches between exemplar and target are made."""
+    """How exemplar patches are assigned to the target."""
 
     BUDGET = 0
-    """Exemplar patches look for their places under an error budget (Fiser et al. 2016), the default."""
+    """Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the
+    default."""
     UNIFORM = 1
     """Every exemplar patch is used equally often (Jamriska et al. 2015)."""
     NEAREST = 2
-    """Each place takes its nearest exemplar patch (Wexler et al. 2007)."""
+    """Each target patch takes its nearest exemplar patch (Wexler et al. 2007)."""
     GREEDY = 3
-    """One pass in scan order (Hertzmann et al. 2001); on one thread."""
+    """One pass in scan order (Hertzmann et al. 2001); runs on one thread."""
     LIT_SPHERE = 4
-    """Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere
-    (Sloan et al. 2001)."""
+    """Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit
+    Sphere (Sloan et al. 2001)."""
     OCCURRENCE = 5
-    """Each place takes its nearest exemplar patch, and one that is used often counts as farther (Kaspar et al.
-    2015): see occurrence. On one thread, and by StylizeSearch.PATCHMATCH only."""
+    """Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar
+    et al. 2015): see the field occurrence. Runs on one thread, and with StylizeSearch.PATCHMATCH only."""
 
 
 class StylizeSearch(IntEnum):
-    """How nearest patches are searched for."""
+    """Search for nearest patches."""
 
     PATCHMATCH = 0
     """PatchMatch, the default."""
     TABLE = 1
-    """A k-d tree over the means of patches: not PatchMatch."""
+    """A k-d tree over the means of patches instead of PatchMatch."""
 
 
 class StylizeVote(IntEnum):
-    """How patches that overlap make a pixel."""
+    """How a pixel is computed from overlapping patches."""
 
     PLAIN = 0
-    """Their mean."""
+    """The mean of the overlapping patches."""
     WEIGHTED = 1
-    """Their mean, closer matches counting more."""
+    """The mean of the overlapping patches, weighted so that closer matches count more."""
     NEAREST = 2
-    """The one nearest to their mean, so that no colour is made that is not in the artwork."""
+    """The colour of the patch that is nearest to the mean, so that every colour occurs in the artwork."""
     MOST = 3
-    """The one that most of them put there, so that pieces of the artwork stay whole up to their seams."""
+    """The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay
+    whole up to their seams."""
 
 
 class StylizePreset(IntEnum):
-    """How good and how fast."""
+    """Presets between quality and speed."""
 
     FULL = 0
     """Full quality, the default."""
     FAST = 1
-    """Nearly as good in half the time."""
+    """Nearly the quality of StylizePreset.FULL in half the time."""
     PREVIEW = 2
-    """Half resolution, guides compressed: for watching while painting."""
+    """Half resolution with compressed guides, for feedback while painting."""
     PAPER = 3
     """The settings of the paper, for comparison."""
 
 
 class GuideRange(IntEnum):
-    """What the numbers of a guide mean."""
+    """Meaning of the values of a guide."""
 
     LIGHT = 0
-    """Linear light >= 0, such as renderings; compared as it would look on a screen."""
+    """Linear light >= 0, such as renderings; it is compared as it would look on a screen."""
     DATA = 1
-    """Numbers without a curve, such as normals, object codes and edges; the range of both images together
-    becomes [0, 1]."""
+    """Data, such as normals, object codes and edges; the common range of both images is scaled to [0, 1]."""
 
 
 class StylizeImage(IntEnum):
@@ -557,30 +562,31 @@ class StylizeImage(IntEnum):
 
     PICTURE = 0
     """The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a
-    cancel its sides are those of the target halved StylizeReport.halvings times, rounded down."""
+    cancel it is smaller: the sides of the target are halved StylizeReport.halvings times, rounded down."""
     GUIDE_ERROR = 1
-    """How far the guides at each pixel are from those where its paint was taken, in [0, 1]; 1 channel. High
-    where the exemplar has nothing that fits."""
+    """Difference between the guides at each pixel and at the place in the exemplar from which it was painted,
+    in [0, 1]; 1 channel. It is high where nothing in the exemplar fits."""
     SOURCES = 2
-    """Where in the artwork the paint of each pixel was taken, x and y in pixels, -1 where nothing was painted;
-    2 channels."""
+    """Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was
+    painted; 2 channels."""
 
 
 class Demo(IntEnum):
     """A generated scene."""
 
     TARGET_ROOM = 0
-    """A furnished room without any light; its ceiling is the object "Ceiling"."""
+    """A furnished room without lights; its ceiling is the object "Ceiling"."""
     EXEMPLAR_ROOM = 1
     """An office under a grid of luminaires; camera 0 takes the photo."""
     SPHERE_ON_TABLE = 2
     """A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation."""
     STILL_LIFE = 3
-    """A vase, a ring and two balls on the same table under the same lamp: a target for a stylisation."""
+    """A vase, a ring and two balls on the table of Demo.SPHERE_ON_TABLE under its lamp: a target for a
+    stylisation."""
 
 
 class Artwork(IntEnum):
-    """How an artwork is drawn."""
+    """The style of a generated artwork."""
 
     PEN = 0
     """Hatching with a pen and two inks."""
@@ -591,7 +597,7 @@ class Artwork(IntEnum):
 
 
 class DemoPhotoImage(IntEnum):
-    """An image of the demonstration."""
+    """An image of the demonstration photo."""
 
     PICTURE = 0
     """The photo: linear RGB, 1 = display white; its lamps are clipped."""
@@ -603,23 +609,28 @@ class Aov(IntFlag):
     """Aov, to be combined with |."""
 
     DEPTH = 1
-    """Distance along the viewing direction, in metres; infinite where nothing is. Layer Depth, channel Z."""
+    """Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel
+    Z."""
     DISTANCE = 2
-    """Distance along the ray, in metres; infinite where nothing is. Layer Distance, channel Z."""
+    """Distance along the ray, in metres; infinite where there is no surface. Layer Distance, channel Z."""
     POSITION = 4
-    """Place in the world, in metres. Layer Position, channels X Y Z."""
+    """Position in world space, in metres. Layer Position, channels X Y Z."""
     NORMAL = 8
-    """Shading normal in the world, towards the viewer; 0 where nothing is. Layer Normal, channels X Y Z."""
+    """Shading normal in world space, towards the camera; 0 where there is no surface. Layer Normal, channels X
+    Y Z."""
     GEOMETRIC_NORMAL = 16
-    """Normal of the triangle itself, likewise. Layer GeometricNormal, channels X Y Z."""
+    """Normal of the triangle in world space, towards the camera; 0 where there is no surface. Layer
+    GeometricNormal, channels X Y Z."""
     ALBEDO = 32
-    """Colour at normal incidence. Layer Albedo, channels R G B."""
+    """Albedo at normal incidence. Layer Albedo, channels R G B."""
     OBJECT = 64
-    """Index of the mesh plus 1, 0 where nothing is; of what most samples met. Layer IndexOB, channel X."""
+    """Index of the mesh plus 1, or 0 where there is no surface; the mesh that most samples of the pixel hit.
+    Layer IndexOB, channel X."""
     MATERIAL = 128
-    """Index of the material plus 1, likewise. Layer IndexMA, channel X."""
+    """Index of the material plus 1, or 0 where there is no surface; the material that most samples of the pixel
+    hit. Layer IndexMA, channel X."""
     ALPHA = 256
-    """Share of the pixel that is covered by surfaces. Layer Alpha, channel A."""
+    """Share of the pixel that surfaces cover. Layer Alpha, channel A."""
     LUMINANCE = 512
     """Luminance of the main image, in cd/m². Layer Luminance, channel Y."""
 
@@ -628,14 +639,14 @@ class GuidesWith(IntFlag):
     """GuidesWith, to be combined with |."""
 
     NORMALS = 1
-    """Flag of luxfer_stylize_add_guides: normals too."""
+    """Flag of luxfer_stylize_add_guides: add the normals."""
     EDGES = 2
-    """Flag: edges too, for shapes finer than the strokes."""
+    """Flag: add the edges, for shapes finer than the strokes."""
     MATERIALS = 4
-    """Flag: the colour code of materials too, so that things of one material are painted from things of the
-    same."""
+    """Flag: add the colour code of materials, so that objects of a material are painted from objects of that
+    material."""
     CAUSTICS = 8
-    """Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto
+    """Flag: add the caustics, at the common exposure, for scenes in which glossy objects reflect light onto
     others."""
 
 
@@ -643,32 +654,32 @@ class Lights(IntFlag):
     """Lights, to be combined with |."""
 
     SURFACE = 1
-    """Some surface emits."""
+    """At least one surface emits."""
     TEXTURE = 2
-    """Some surface emits by a texture."""
+    """At least one surface emits by a texture."""
     POINT = 4
-    """There is a point light that shines."""
+    """At least one point light has an intensity above 0."""
     SPOT = 8
-    """There is a spot light that shines."""
+    """At least one spot light has an intensity above 0."""
     DIRECTIONAL = 16
-    """There is a directional light that shines."""
+    """At least one directional light has an illuminance above 0."""
     ENVIRONMENT = 32
-    """The environment shines."""
+    """The environment emits."""
 
 
 class Scattering(IntFlag):
     """Scattering, to be combined with |."""
 
     DIFFUSE = 1
-    """Some surface scatters diffusely."""
+    """At least one surface scatters diffusely."""
     GLOSSY = 2
-    """Some surface has a rough reflecting layer."""
+    """At least one surface has a rough specular reflection."""
     MIRROR = 4
-    """Some surface reflects as a mirror."""
+    """At least one surface is a mirror."""
     GLASS = 8
-    """Some surface is a clear pane."""
+    """At least one surface is a clear pane of glass."""
     ALPHA = 16
-    """Some surface is partly not there."""
+    """At least one surface is partly transparent by its alpha."""
 
 
 class View(IntFlag):
@@ -679,14 +690,14 @@ class View(IntFlag):
 
 
 class ContextParams(TypedDict, total=False):
-    """How a context is set up."""
+    """Settings of a context."""
 
     num_threads: int
-    """Number of worker threads in [0, 1024]; 0, the default, is one for each core the process may use."""
+    """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use."""
     memory_budget_mib: int
-    """Limit in MiB for the pixels, meshes and textures of all objects the caller makes in this context; what
-    exceeds it is Status.OUT_OF_MEMORY. 0, the default, is no limit. Working memory of a job and its results are
-    not counted."""
+    """Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context;
+    a call that would exceed it returns Status.OUT_OF_MEMORY. 0, the default: no limit. The working memory of
+    jobs and their results do not count."""
 
 
 class ImageView(TypedDict, total=False):
@@ -703,34 +714,33 @@ class ImageView(TypedDict, total=False):
     height: int
     """Rows, in [1, 65536]; default 0, to be set."""
     flags: View | str | int
-    """View, or 0, the default. Unknown flags are refused."""
+    """View, or 0, the default. Unknown flags are an error."""
     pixel_stride: int
-    """Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed."""
+    """Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed."""
     row_stride: int
-    """Bytes from a row to the next; at least the row's size, or 0, the default: packed."""
+    """Bytes from one row to the next; at least the size of a row, or 0, the default: packed."""
     byte_size: int
-    """Bytes at data that may be accessed; what the layout needs beyond is Status.INVALID_ARGUMENT. To be
-    set."""
+    """Size of the memory at data in bytes; Status.INVALID_ARGUMENT if the layout needs more. To be set."""
     data: int
     """The pixels; any alignment. Bytes between pixels and rows are never touched. To be set."""
 
 
 @dataclass(frozen=True)
 class SceneCounts:
-    """How much there is in a scene."""
+    """Numbers of the objects in a scene."""
 
     meshes: int
-    """Number of meshes, whose indices are 0 to meshes - 1; so with what follows."""
+    """Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below."""
     materials: int
     """Number of materials."""
     textures: int
     """Number of textures."""
     lights: int
-    """Number of lights without a surface."""
+    """Number of punctual lights: points, spots, directional lights and luminaires."""
     cameras: int
     """Number of cameras."""
     triangles: int
-    """Triangles of all meshes."""
+    """Number of triangles in all meshes."""
 
 
 @dataclass(frozen=True)
@@ -738,97 +748,99 @@ class Surface:
     """A planar surface of a scene."""
 
     triangles: int
-    """Number of its triangles."""
+    """Number of triangles."""
     origin: tuple[float, float, float]
-    """Corner of its bounding rectangle where u = v = 0, in metres."""
+    """Corner of the bounding rectangle where u = v = 0, in metres."""
     u_axis: tuple[float, float, float]
-    """Unit direction of u, along the first side of the rectangle."""
+    """Unit vector of u, along the first side of the rectangle."""
     v_axis: tuple[float, float, float]
-    """Unit direction of v, along the second side."""
+    """Unit vector of v, along the second side."""
     normal: tuple[float, float, float]
-    """Unit normal on the side that will emit: into the room."""
+    """Unit normal on the side that will emit; it points into the room."""
     size: tuple[float, float]
     """Lengths of the sides along u and v, in metres."""
     area: float
     """Area of the triangles in m²."""
     bent: float
-    """Area of what was named besides and slopes from this plane by 5 to 75 degrees, in m²: as of a vault, which
-    gets no light."""
+    """Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75
+    degrees, as those of a vault; they receive no emission."""
 
 
 class MaterialParams(TypedDict, total=False):
     """A material: metallic-roughness, as in glTF 2.0."""
 
     double_sided: int
-    """Whether back faces reflect and emit as front faces do: 0 or 1, the default."""
+    """1, the default: back faces reflect and emit as front faces do; 0: only front faces do."""
     name: str
-    """Name in UTF-8, copied; None, the default, is none."""
+    """Name in UTF-8, copied; None, the default: no name."""
     base_color: Sequence[float]
-    """Linear colour of the surface, each in [0, 1]; default 0.8."""
+    """Linear colour of the surface, each channel in [0, 1]; default 0.8."""
     metallic: float
-    """In [0, 1]; default 0."""
+    """Share of the surface that is metal, in [0, 1]; default 0."""
     roughness: float
     """Perceptual roughness in [0, 1]; default 1."""
     emission: Sequence[float]
     """Emitted luminance per channel in cd/m², >= 0; default 0."""
     transmission: float
-    """Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0."""
+    """Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1];
+    default 0."""
     ior: float
     """Index of refraction in [1, 4]; default 1.5."""
     alpha: float
-    """In [0, 1], multiplies the alpha of the base colour's texture; default 1."""
+    """Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1."""
     alpha_mode: AlphaMode | str | int
     """AlphaMode; default AlphaMode.OPAQUE."""
     alpha_cutoff: float
-    """For AlphaMode.MASK, >= 0; default 0.5."""
+    """Threshold of alpha for AlphaMode.MASK, >= 0; default 0.5."""
     normal_scale: float
-    """How far the normal texture bends: multiplies its x and y; finite; default 1."""
+    """Strength of the normal texture: multiplies its x and y; finite; default 1."""
 
 
 @dataclass(frozen=True)
 class TextureUse:
-    """A texture as a material uses it."""
+    """The texture that a material uses for one purpose."""
 
     texture: int
-    """Index of the texture; LUXFER_NONE if there is none, and what follows is 0."""
+    """Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0."""
     uv_set: int
-    """Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1."""
+    """Set of the mesh's texture coordinates that it uses, 0 or 1."""
     wrap_u: Wrap
-    """Wrap, along u."""
+    """Wrap along u."""
     wrap_v: Wrap
-    """Wrap, along v."""
+    """Wrap along v."""
     transform: tuple[float, ...]
-    """Two rows of three, applied to (u, v, 1) before the look-up."""
+    """Affine map of the texture coordinates: two rows of three, applied to (u, v, 1) before the look-up."""
 
 
 class MeshParams(TypedDict, total=False):
     """A triangle mesh in world space."""
 
     material: int
-    """Index of its material, as luxfer_scene_add_material has returned it; default 0."""
+    """Index of the mesh's material, from luxfer_scene_add_material; default 0."""
     name: str
-    """Name in UTF-8, copied; surfaces are found by it. None, the default, is none."""
+    """Name in UTF-8, copied; luxfer_scene_find_surface finds surfaces by it. None, the default: no name."""
     vertex_count: int
     """Number of vertices in [3, 2^32 - 1]; to be set."""
     positions: int
-    """Three floats for each vertex, in metres, in [-1e15, 1e15]; to be set."""
+    """Three floats per vertex, in metres, each in [-1e15, 1e15]; to be set."""
     position_stride: int
-    """Bytes from a position to the next; at least 12, or 0, the default: packed."""
+    """Bytes from one position to the next; at least 12, or 0, the default: packed."""
     normals: int
-    """Three floats for each vertex, finite; None, the default: faces are flat."""
+    """Three floats per vertex, finite; None, the default: flat faces."""
     normal_stride: int
-    """Bytes from a normal to the next; at least 12, or 0, the default: packed."""
+    """Bytes from one normal to the next; at least 12, or 0, the default: packed."""
     uvs: int
-    """Two floats for each vertex, finite, (0, 0) the top-left corner of a texture; None, the default: none."""
+    """Texture coordinates: two floats per vertex, finite; (0, 0) is the top-left corner of a texture. None, the
+    default: no texture coordinates."""
     uv_stride: int
-    """Bytes from a pair of texture coordinates to the next; at least 8, or 0, the default: packed."""
+    """Bytes from one pair of texture coordinates to the next; at least 8, or 0, the default: packed."""
     triangle_count: int
     """Number of triangles, at least 1; to be set."""
     indices: int
-    """Three uint32_t for each triangle, each below vertex_count, counter-clockwise seen from the front; to be
+    """Three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the front; to be
     set."""
     index_stride: int
-    """Bytes from a triangle to the next; at least 12, or 0, the default: packed."""
+    """Bytes from one triangle to the next; at least 12, or 0, the default: packed."""
 
 
 class CameraParams(TypedDict, total=False):
@@ -837,80 +849,82 @@ class CameraParams(TypedDict, total=False):
     fov_y: float
     """Full vertical angle of view in radians, in [0.001, 3.1]; default 1."""
     position: Sequence[float]
-    """Where it stands, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
+    """Position in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
     target: Sequence[float]
-    """What it looks at, another point, in [-1e15, 1e15]; default (0, 0, -1)."""
+    """The point that it looks at, in metres, in [-1e15, 1e15], different from position; default (0, 0, -1)."""
     up: Sequence[float]
-    """Direction that is up in the image, not along the view; default (0, 1, 0)."""
+    """Up direction of the image, not parallel to the viewing direction; default (0, 1, 0)."""
 
 
 @dataclass(frozen=True)
 class DistributionReport:
-    """A distribution on the whole."""
+    """Summary of a distribution."""
 
     planes: int
-    """C planes."""
+    """Number of C planes."""
     angles: int
-    """Vertical angles of each plane."""
+    """Number of vertical angles in each plane."""
     flux: float
-    """Luminous flux in lumens: the intensity over all directions."""
+    """Luminous flux in lumens: the integral of the intensity over all directions."""
     lamp_flux: float
-    """Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry)."""
+    """Rated flux of the lamps in lumens; 0 if the file does not state it (absolute photometry)."""
     watts: float
-    """Electric power in watts; 0 if not known."""
+    """Electric power in watts; 0 if unknown."""
     size: tuple[float, float, float]
     """Length, width and height of the luminous opening in metres; negative for round ones."""
 
 
 class LightParams(TypedDict, total=False):
-    """A light without a surface."""
+    """A punctual light."""
 
     kind: LightKind | str | int
     """LightKind; default LightKind.POINT."""
     position: Sequence[float]
-    """Where a point or a spot stands, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
+    """Position of a point or a spot, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
     direction: Sequence[float]
-    """Where a spot or a directional light shines; any length but 0; default (0, -1, 0)."""
+    """Direction in which a spot or a directional light shines; any length but 0; default (0, -1, 0)."""
     intensity: Sequence[float]
-    """Luminous intensity per channel in cd, on the axis of a spot; of a directional light the illuminance in
-    lux on a surface that faces it. Each >= 0; default (1, 1, 1)."""
+    """Luminous intensity per channel in cd, of a spot on its axis; for a directional light, the illuminance in
+    lux on a surface that faces it. Each channel >= 0; default (1, 1, 1)."""
     inner_angle: float
-    """Half the angle of a spot's cone of full intensity, in radians, in [0, outer_angle]; default 0."""
+    """Half angle of the cone in which a spot has its full intensity, in radians, in [0, outer_angle]; default
+    0."""
     outer_angle: float
-    """Half the angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4."""
+    """Half angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4."""
 
 
 class LuminaireParams(TypedDict, total=False):
-    """How a luminaire hangs."""
+    """Flux, position, orientation and colour of a luminaire."""
 
     flux: float
-    """Luminous flux in lumens, finite and >= 0; default 0: that of the distribution."""
+    """Luminous flux in lumens, finite and >= 0; default 0: the flux of the distribution."""
     position: Sequence[float]
-    """Where it hangs, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
+    """Position in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
     axis: Sequence[float]
-    """The direction of its axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down."""
+    """Direction of the axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down."""
     c0: Sequence[float]
-    """About where C is 0: what of it is at right angles to the axis counts, which must not be 0; default (1, 0,
-    0). C grows anticlockwise as seen from above a luminaire that shines down."""
+    """Direction of the plane C = 0. Only its component perpendicular to axis counts, which must not be 0;
+    default (1, 0, 0). Seen from above a luminaire that shines down, C grows anticlockwise."""
     colour: Sequence[float]
-    """Linear colour of its light, each >= 0 and not all 0; its brightness does not count; default (1, 1, 1)."""
+    """Linear colour of the light, each channel >= 0 and not all 0; only the ratio of the channels counts;
+    default (1, 1, 1)."""
 
 
 @dataclass(frozen=True)
 class Ray:
-    """A half-line. An element of arrays, so it will never change."""
+    """A ray. An element of arrays, so this struct never changes."""
 
     origin: tuple[float, float, float]
-    """Where it starts, in metres."""
+    """Start of the ray, in metres."""
     direction: tuple[float, float, float]
-    """Where it goes; need not be of unit length, but not 0."""
+    """Direction; any length but 0."""
     t_max: float
     """Hits lie at distances in (0, t_max), in units of direction; may be infinite."""
 
 
 @dataclass(frozen=True)
 class Hit:
-    """Where a ray meets a scene. An element of arrays, so it will never change."""
+    """The nearest hit of a ray. An element of arrays, so this struct never changes."""
 
     t: float
     """Distance in units of the ray's direction; infinite for a miss."""
@@ -926,25 +940,25 @@ class Hit:
 
 @dataclass(frozen=True)
 class Requirements:
-    """What a scene requires of the renderer."""
+    """Features that a scene requires of the renderer."""
 
     scattering: Scattering
-    """Ways of scattering that can occur: Scattering."""
+    """Kinds of scattering that can occur: Scattering."""
     lights: Lights
-    """Lights that can shine: Lights."""
+    """Kinds of lights that emit: Lights."""
     textures: int
-    """Textures that vary what surfaces scatter, emit, or how they are bent."""
+    """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
-    """How many times light can scatter and still matter: light that was scattered more often is at most the
-    share error, given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Rendering
-    ends paths there only if RenderParams.bounce_error asks for it."""
+    """Number of bounces that matter: light that is scattered more often is at most the share error, given in
+    the call, of all light that surfaces scatter. 0 if the albedos give no bound. The renderer ends paths there
+    only if RenderParams.bounce_error is set."""
     brightest_material: int
-    """Index of the material that sends on most of the light it receives; LUXFER_NONE if there are no
-    surfaces."""
+    """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
-    """The most that any surface sends on, per channel, in [0, 1]."""
+    """Largest albedo of any surface, per channel, in [0, 1]: the share of the received light that it reflects
+    and transmits."""
     flat_triangles: int
-    """Triangles without an area, which are left out."""
+    """Number of triangles with zero area, which are skipped."""
 
 
 @dataclass(frozen=True)
@@ -952,15 +966,15 @@ class MeshInfo:
     """A mesh of a scene."""
 
     material: int
-    """Index of its material."""
+    """Index of the mesh's material."""
     vertex_count: int
     """Number of vertices."""
     triangle_count: int
     """Number of triangles."""
     has_normals: int
-    """1 if it has a normal for each vertex, 0 if its faces are flat."""
+    """1 if each vertex has a normal, 0 if the faces are flat."""
     uv_sets: int
-    """Sum of 1 if it has the first set of texture coordinates and 2 if it has the second."""
+    """Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -973,36 +987,38 @@ class RectifyParams(TypedDict, total=False):
     metric: Metric | str | int
     """Metric; default Metric.SEGMENT."""
     hough_band: float
-    """Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2];
-    default 0.0436, which is 2.5 degrees."""
+    """Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2],
+    for Lines.HOUGH; default 0.0436, which is 2.5 degrees."""
     focal: float
-    """Focal length in pixels, > 0, or 0, the default: unknown."""
+    """Focal length in pixels, > 0; 0, the default: unknown."""
     principal: Sequence[float]
     """Principal point in pixels; NaN, the default: the image's centre."""
     plane_axes: Sequence[int]
-    """The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it."""
+    """The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the
+    plane."""
     max_side: int
-    """Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density
-    decides below."""
+    """Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
+    resolution of the photo does not support this size."""
     max_magnification: float
-    """Largest magnification of the photo, > 0; default 16. What is further away is cut off."""
+    """Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are
+    cut off."""
     seed: int
     """Seed of the search; default 1."""
 
 
 @dataclass(frozen=True)
 class RectifyReport:
-    """What the lines of a photo say about its camera, and how the plane was unwarped."""
+    """The camera found from the lines of a photo, and the unwarping of the plane."""
 
     segments: int
     """Number of line segments found."""
     vanishing_points: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
-    """Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at
-    infinity."""
+    """Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate
+    is 0 at infinity."""
     vanishing_errors: tuple[float, float, float]
-    """Standard deviation of their directions in camera space, in radians."""
+    """Standard deviations of their directions in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
-    """Number of segments that agree with each; 0 = derived from the other two."""
+    """Number of segments that agree with each vanishing point; 0: derived from the other two."""
     focal_source: FocalSource
     """FocalSource."""
     focal: float
@@ -1012,29 +1028,29 @@ class RectifyReport:
     axes: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
     """Room axes as unit vectors in camera space."""
     is_unwarped: int
-    """1 if the plane has been unwarped, else 0, and what follows is 0."""
+    """1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0."""
     to_photo: tuple[float, ...]
-    """The map from unwarped pixels to photo pixels, row by row."""
+    """Homography from unwarped pixels to photo pixels, row by row."""
     corners: tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
-    """Corners of the unwarped rectangle in the photo, x and y."""
+    """Corners of the unwarped rectangle in the photo, x and y in pixels."""
     corner_errors: tuple[float, float, float, float]
     """Expected error of each corner, in unwarped pixels."""
     pixel_size: float
-    """Size of an unwarped pixel as a share of the camera's distance from the plane."""
+    """Size of an unwarped pixel, divided by the camera's distance from the plane."""
     aspect_confidence: float
-    """Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed."""
+    """Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed."""
     distortion: float
-    """How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance
-    from its centre: below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent,
-    and not undone. NaN where the photo has too few lines to tell."""
+    """Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its
+    centre; below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of
+    straight edges, and not corrected. NaN if the photo has too few lines."""
     distortion_error: float
-    """Its standard deviation; NaN where it is."""
+    """Standard deviation of distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
-    """For each axis how far the angle between the two others is from a right one, in radians, by the lines of
-    these two alone: walls that meet at other angles, pixels that are not square and a principal point elsewhere
-    show here. The axes are made orthogonal all the same. NaN where an axis has no lines."""
+    """For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
+    estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point
+    show here; axes is orthogonal in any case. NaN if one of the two axes has no lines."""
     squareness_errors: tuple[float, float, float]
-    """Standard deviation of each; NaN where it is."""
+    """Standard deviations of squareness; NaN where squareness is NaN."""
 
 
 class FeaturesParams(TypedDict, total=False):
@@ -1045,20 +1061,21 @@ class FeaturesParams(TypedDict, total=False):
     far_plane: float
     """Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10."""
     normal_radius: int
-    """Half-width of the window the normals are fitted in, in pixels, in [0, 64]; default 0: from the photo's
-    size."""
+    """Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the
+    photo's size."""
 
 
 @dataclass(frozen=True)
 class FeaturesReport:
-    """How good the features are."""
+    """Quality of the features."""
 
     depth_source: DepthSource
     """DepthSource."""
     depth_confidence: float
-    """Mean trust in the depth, in [0, 1]."""
+    """Mean confidence of the depth, in [0, 1]."""
     replaced_pixels: int
-    """Pixels of the photo that were NaN, infinite or negative and have been replaced from their neighbours."""
+    """Number of pixels of the photo that were NaN, infinite or negative and were replaced by values of their
+    neighbours."""
 
 
 class SegmentParams(TypedDict, total=False):
@@ -1067,36 +1084,37 @@ class SegmentParams(TypedDict, total=False):
     samples_per_class: int
     """Samples drawn from the strokes of each class, in [1, 1000000]; default 1000."""
     channels: int
-    """Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features
-    colour, colour and position, colour and normal, or all, whichever does best on strokes held out; of any
-    other number all. For lights 7, colour only, is best: they share the plane's geometry."""
+    """Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of
+    luxfer_features, the best of colour, colour and position, colour and normal, or all, as measured on held-out
+    strokes; for another number of channels, all of them. For lights use 7, colour only, since lights and plane
+    have one geometry."""
     refine_radius: int
     """Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask
-    follow the edges of the photo: the guided filter, with the first three channels of the features as its
-    guide. 0, the default: none."""
+    follow the edges of the photo: a guided filter with the first three channels of the features as guide. 0,
+    the default: no refinement."""
     ridge: float
-    """Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3."""
+    """Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3."""
     seed: int
     """Seed of the samples; default 1."""
     refine_tolerance: float
-    """Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours
-    are taken for one surface by the refinement, in [1e-3, 1e6]; default 8."""
+    """Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
+    neighbours as one surface, in [1e-3, 1e6]; default 8."""
 
 
 @dataclass(frozen=True)
 class SegmentReport:
-    """How good a segmentation is."""
+    """Quality of a segmentation."""
 
     channels: int
-    """The channels of the features that were used, bit i for channel i."""
+    """Channels of the features that were used, bit i for channel i."""
     error: float
-    """Expected share of wrong pixels, in [0, 1], from strokes held out of the training."""
+    """Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training."""
     negative_samples: int
-    """Samples used of the negative class."""
+    """Number of samples of the negative class."""
     positive_samples: int
-    """Samples used of the positive class."""
+    """Number of samples of the positive class."""
     contradictory_pixels: int
-    """Pixels that strokes of both classes cover; the later stroke counts."""
+    """Number of pixels that strokes of both classes cover; the later stroke counts."""
 
 
 class EmissionParams(TypedDict, total=False):
@@ -1109,82 +1127,83 @@ class EmissionParams(TypedDict, total=False):
     block: int
     """Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights."""
     scale: float
-    """Unwarped pixels per texel, in [1e-3, 1e3]; default 1."""
+    """Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1."""
     working_side: int
     """Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256."""
     metadata_weight: float
-    """Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting."""
+    """Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
     least_regularity: float
-    """Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6.
-    At 0 any repetition is held to exactly, at 1 none is, and patches go anywhere."""
+    """Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition
+    is continued exactly; at 1 no repetition is, and patches may lie anywhere."""
     whole_lamps: int
-    """1, the default, shows every lamp as one piece; with 0 seams may cut lamps."""
+    """1, the default: every lamp stays in one piece; 0: seams may cut lamps."""
     offset: Sequence[float]
-    """Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default
-    0. Lights without a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must
-    be 0 in others."""
+    """Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6,
+    1e6]; default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is
+    tileable, where it shifts the lamps."""
     clip_level: float
-    """Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour
-    of their rims, as dark as the clipped channels allow. With 0 nothing is taken for clipped."""
+    """Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the
+    colour of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped."""
     even_lamps: int
-    """With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo."""
+    """1: every lamp has its mean colour everywhere; 0, the default: as in the photo."""
     tileable: int
-    """With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is
-    stretched, by less than half a period over the whole, to fit. Needs whole_lamps. Default 0."""
+    """1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite
+    side, and a lattice is stretched to fit, by less than half a period over the whole texture. Needs
+    whole_lamps. Default 0."""
     centred: int
-    """With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or
-    the middle between two in its middle, so that the border cuts as few lamps as it can. Default 0."""
+    """1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle
+    between two lamps, so that the border cuts as few lamps as possible. Default 0."""
     candidates: int
-    """Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536];
+    """Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536];
     default 192."""
 
 
 @dataclass(frozen=True)
 class EmissionReport:
-    """How good the texture is."""
+    """Quality of the texture."""
 
     luminaires: int
     """Number of luminaires; see luxfer_emission_get_luminaire."""
     error: float
-    """The largest relative difference between texture and exemplar in the share that is lit, the area of whole
-    lamps, and the distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan,
-    which is no texture yet."""
+    """Largest relative difference between texture and exemplar in three statistics: the share of lit area, the
+    area of whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as
+    exemplar_lamps allows. NaN for a plan, which has no texture yet."""
     regularity: float
-    """How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found,
-    0 without."""
+    """Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a
+    lattice."""
     exemplar_lamps: int
-    """Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border
-    cuts off is a large part of what there is, and without a whole lamp the texture shows the cut ones."""
+    """Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then
+    cuts a large part of the lamps. Without a whole lamp the texture shows the cut ones."""
     sampling_error: float
-    """By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the
-    same difference between parts of the texture as large as the exemplar, and the whole. An error of up to
-    twice this says nothing against the texture. 0 where the texture shows nothing else than the exemplar does,
-    of blended exemplars, and of a plan."""
+    """Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined
+    for error, between the whole texture and parts of it that are as large as the exemplar. If error is at most
+    twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar,
+    for blended exemplars, and for a plan."""
 
 
 @dataclass(frozen=True)
 class Luminaire:
-    """One lamp of the texture."""
+    """A lamp of the texture."""
 
     corners: int
-    """Number of corners of its outline."""
+    """Number of corners of the outline."""
     centre: tuple[float, float]
     """Centre in texels, x and y."""
     size: tuple[float, float]
-    """Lengths of the principal axes in texels, the long one first."""
+    """Lengths of the principal axes in texels, the longer first."""
     orientation: float
     """Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]."""
     area: float
-    """Area in texels, of those at the edge what is light."""
+    """Area in texels; texels at the edge count with the share that the lamp covers."""
     flux_share: float
-    """Share of the light of the whole texture, in [0, 1]."""
+    """Share of the luminous flux of the whole texture, in [0, 1]."""
     colour: tuple[float, float, float]
     """Mean linear colour, relative to the photo's white."""
     kind: int
-    """Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the
-    border cuts it."""
+    """Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are
+    sorted by the number of their lamps, the largest first. 0 if the border cuts the lamp."""
 
 
 class RenderParams(TypedDict, total=False):
@@ -1195,68 +1214,69 @@ class RenderParams(TypedDict, total=False):
     height: int
     """Height of the image in pixels, in [1, 65536]; default 720."""
     samples: int
-    """Paths per pixel, in [1, 1048576]; default 64. With a target this is the most on the average over the
+    """Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the
     image."""
     target_error: float
-    """Stop when the error of the report falls to this, >= 0, and give paths to where they lower it most;
-    default 0: never."""
+    """Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they
+    reduce the error most. Default 0: no target."""
     time_budget_ms: int
-    """Stop after this many milliseconds; default 0: never."""
+    """Stop after this number of milliseconds; default 0: no limit."""
     seed: int
     """Seed of the paths; default 1."""
     pixel_error: float
-    """Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width
-    of the 95 % interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean,
-    whichever is more. 0.1 means within 10 % of its value, 19 times out of 20. A part gets at most 64 times
-    samples, though it may miss the target. Default 0: never."""
+    """Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is
+    the root mean square over its pixels of half the width of the 95 % confidence interval of the luminance,
+    divided by that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of
+    the value, 19 times out of 20. A block receives at most 64 times samples paths per pixel, even if it then
+    misses the target. Default 0: no target."""
     bounce_error: float
-    """End every path where what is left is at most this share of all light that surfaces scatter, in [0, 1):
-    the image is too dark by up to that share. After how many bounces, luxfer_scene_requirements tells. Default
-    0: never; paths end by chance alone, and the image is right on the average."""
+    """Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light
+    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number
+    of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
     preview: float
-    """Strength of the filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no
-    preview, as final images are made. The other images are the same with and without it."""
+    """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
+    Default 0: no preview, as for final images. It does not change the other images."""
     relative_error: float
-    """Stop when the relative_error of the report falls to this, >= 0, and give paths to where they lower it
-    most: as noise is seen, in the shade as in the light. Default 0: never. With several targets all are
-    reached."""
+    """Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where
+    they reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no
+    target. With several targets, rendering stops when all are reached."""
 
 
 @dataclass(frozen=True)
 class RenderReport:
-    """How good a rendering is."""
+    """Quality of a rendering."""
 
     samples: int
-    """Paths per pixel so far, on the average."""
+    """Mean number of paths per pixel so far."""
     error: float
-    """Root mean square over the pixels of the standard error, relative to the image's mean; infinite while a
-    pixel has less than two paths."""
+    """Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a
+    pixel has fewer than two paths."""
     discarded: int
-    """Paths that were left out because their radiance was no finite number."""
+    """Number of paths that were discarded because their radiance was not finite."""
     preview_bias: float
-    """How far the mean of such previews is from the truth: root mean square over squares of 8 x 8 pixels,
-    relative to the image's mean, estimated. 0 without a preview."""
+    """Estimated bias of the preview: the difference between its expected value and the true image, as root mean
+    square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview."""
     relative_error: float
-    """Root mean square over the pixels of the standard error, relative to the pixel itself (the mean of its
-    channels, but at least a hundredth of the image's mean); infinite while a pixel has less than two paths. Of
-    few paths it states rather too much, of 8 about a quarter."""
+    """Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its
+    channels, but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths.
+    With few paths it overestimates: with 8 by about a quarter."""
 
 
 class RenderPart(TypedDict, total=False):
     """A part of a rendering."""
 
     x: int
-    """Column of its first pixel; default 0."""
+    """Column of the first pixel; default 0."""
     y: int
-    """Row of its first pixel, from the top; default 0."""
+    """Row of the first pixel, from the top; default 0."""
     width: int
-    """Width in pixels; default 0: as far as the image goes."""
+    """Width in pixels; default 0: up to the right edge of the image."""
     height: int
-    """Height in pixels; default 0: as far as the image goes."""
+    """Height in pixels; default 0: up to the bottom edge of the image."""
     first_sample: int
-    """Number of its first path in each pixel; default 0."""
+    """Index of the first path of each pixel; default 0."""
     samples: int
-    """Paths per pixel; default 0: all that follow, of RenderParams.samples."""
+    """Paths per pixel; default 0: all paths from first_sample up to RenderParams.samples."""
 
 
 class IlluminanceParams(TypedDict, total=False):
@@ -1276,21 +1296,22 @@ class IlluminanceGrid(TypedDict, total=False):
     """A calculation grid."""
 
     origin: Sequence[float]
-    """A corner, in metres; default (0, 0, 0)."""
+    """Corner of the grid, in metres; default (0, 0, 0)."""
     across: Sequence[float]
-    """The edge along which columns count, in metres; default (1, 0, 0). Points are the centres of the cells."""
+    """Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the
+    centres of the cells."""
     down: Sequence[float]
-    """The edge along which rows count, in metres; default (0, 0, 1)."""
+    """Edge of the grid along which the rows are counted, in metres; default (0, 0, 1)."""
     normal: Sequence[float]
-    """The side from which light counts, of any length but 0; default (0, 1, 0)."""
+    """Normal of the side that receives the light; any length but 0; default (0, 1, 0)."""
 
 
 @dataclass(frozen=True)
 class IlluminanceReport:
-    """The illuminance on the whole, in lux."""
+    """Summary of the illuminance, in lux."""
 
     points: int
-    """Points that there are: of a mesh, the texels with a surface."""
+    """Number of points; on a mesh, the texels that the surface covers."""
     least: float
     """Smallest illuminance; least / mean is the uniformity U0."""
     mean: float
@@ -1307,12 +1328,12 @@ class RelightParams(TypedDict, total=False):
     quantity: Quantity | str | int
     """Quantity; default Quantity.OUTGOING."""
     paths: int
-    """Most paths to trace, in [1024, 2^30]; default 2^20."""
+    """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when the half-width of the widest 95 % interval is below this share of its answer, in [0, 1];
-    default 0.01; 0 = never."""
+    """Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in
+    [0, 1]; default 0.01; 0: no target."""
     time_budget_ms: int
-    """Stop after this many milliseconds; default 0: never."""
+    """Stop after this number of milliseconds; default 0: no limit."""
     fit: Fit | str | int
     """Fit; default Fit.MEAN."""
     seed: int
@@ -1321,25 +1342,25 @@ class RelightParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class RelightReport:
-    """The solution and how sure it is."""
+    """The solution and its confidence."""
 
     paths: int
-    """Paths traced."""
+    """Number of traced paths."""
     scale: tuple[float, float, float]
-    """What to multiply the emission with, per channel, >= 0."""
+    """Factor for the emission, per channel, >= 0."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of scale."""
     response: tuple[float, float, float]
-    """Mean radiance of the target under the emission at scale 1, in cd/m²."""
+    """Mean radiance of the target from the emission at scale 1, in cd/m²."""
     background: tuple[float, float, float]
-    """Mean radiance of the target under all other light, in cd/m²."""
+    """Mean radiance of the target from all other light, in cd/m²."""
     reach: tuple[Reach, Reach, Reach]
     """Reach of each channel."""
     error: float
-    """The widest relative half-width among the channels that met their target."""
+    """The largest relative half-width among the channels that meet their target."""
     delta_e: float
-    """How far the target's colour may be off: 95 % of errors are below this CIEDE2000 difference, seen at the
-    exposure that shows the target as a middle grey."""
+    """Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this
+    value, at the exposure that shows the target as middle grey."""
 
 
 class LampsParams(TypedDict, total=False):
@@ -1348,31 +1369,33 @@ class LampsParams(TypedDict, total=False):
     group: Group | str | int
     """Group; default Group.EACH."""
     row_tolerance: float
-    """Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01."""
+    """Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a
+    new row; default 0.01."""
     free_colour: int
-    """1: each channel of a group is solved for itself, for goals of colour only; 0: its power alone; default
-    0."""
+    """1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default:
+    solve for the power only."""
     most: float
-    """Largest multiplier of a group, >= 0; default infinity."""
+    """Largest factor for the emission of a group, >= 0; default infinity."""
     evenness: float
-    """How much lamps that differ weigh against missing the goals, in [1e-9, 1e3]; default 1e-6."""
+    """Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep
+    the powers equal; default 1e-6."""
     tolerance: float
-    """A goal is met when it is missed by no more than this share of itself, in [1e-6, 1], or its noise; default
-    0.01."""
+    """A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise;
+    default 0.01."""
     paths: int
-    """Most paths to trace for a goal, in [1024, 2^30]; default 2^20."""
+    """Maximum number of paths for each goal, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when a goal's response to all lamps together is known to this share, in [0, 1]; default 0.01; 0 =
-    never."""
+    """Stop tracing a goal when the relative error of its response to all lamps together is below this value, in
+    [0, 1]; default 0.01; 0: no target."""
     time_budget_ms: int
-    """Stop after this many milliseconds; default 0: never."""
+    """Stop after this number of milliseconds; default 0: no limit."""
     seed: int
     """Seed of the paths; default 1."""
 
 
 @dataclass(frozen=True)
 class LampsReport:
-    """The result on the whole."""
+    """Summary of the result."""
 
     lamps: int
     """Number of lamps."""
@@ -1381,9 +1404,9 @@ class LampsReport:
     goals: int
     """Number of goals."""
     paths: int
-    """Paths traced for each goal."""
+    """Number of paths traced for each goal."""
     met: int
-    """1 if all goals are met; 0 if not: luxfer_lamps_get_reason tells why."""
+    """1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason."""
 
 
 @dataclass(frozen=True)
@@ -1391,37 +1414,37 @@ class Lamp:
     """One lamp."""
 
     group: int
-    """The group it is in."""
+    """Index of its group."""
     centre: tuple[float, float, float]
-    """Its centre: texture coordinates and 0, or metres."""
+    """Centre: texture coordinates and 0, or, without a texture, the position in metres."""
     scale: tuple[float, float, float]
-    """What to multiply its emission with, per channel, >= 0."""
+    """Factor for its emission, per channel, >= 0."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of scale."""
 
 
 @dataclass(frozen=True)
 class LampsGoal:
-    """What a goal gets."""
+    """The light that a goal receives."""
 
     reach: tuple[Reach, Reach, Reach]
     """Reach of each channel."""
     target: tuple[float, float, float]
-    """Mean radiance asked for, in cd/m²; illuminance / pi for a grid."""
+    """Mean radiance of the goal, in cd/m²; illuminance / pi for a grid."""
     achieved: tuple[float, float, float]
-    """Mean radiance under the powers found."""
+    """Mean radiance with the powers found, in cd/m²."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of achieved."""
     background: tuple[float, float, float]
-    """Mean radiance under all other light."""
+    """Mean radiance from all other light, in cd/m²."""
 
 
 @dataclass(frozen=True)
 class LampsResponse:
-    """What one lamp means to one goal."""
+    """The light that one goal receives from one lamp."""
 
     mean: tuple[float, float, float]
-    """Mean radiance of the goal under the lamp as it is, in cd/m² per channel."""
+    """Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of mean."""
 
@@ -1436,75 +1459,78 @@ class ImportanceParams(TypedDict, total=False):
     quantity: Quantity | str | int
     """Quantity; default Quantity.OUTGOING."""
     paths: int
-    """Most paths to trace, in [1024, 2^30]; default 2^20."""
+    """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when the response to an even emission is known to this share, in [0, 1]; default 0.01; 0 = never."""
+    """Stop when the relative error of the response to a uniform emission is below this value, in [0, 1];
+    default 0.01; 0: no target."""
     time_budget_ms: int
-    """Stop after this many milliseconds; default 0: never."""
+    """Stop after this number of milliseconds; default 0: no limit."""
     seed: int
     """Seed of the paths; default 1."""
 
 
 @dataclass(frozen=True)
 class ImportanceReport:
-    """What a texture means to the target."""
+    """The light that the target receives from a texture."""
 
     paths: int
-    """Paths behind the map."""
+    """Number of paths of the map."""
     response: tuple[float, float, float]
-    """Mean radiance of the target under the texture, in cd/m² per channel as the texture's values are."""
+    """Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]
-    """What cells of twice the side change, noise included; the cells themselves are off by about a third of
-    it."""
+    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
+    the cells is about a third of it."""
 
 
 class PlacementParams(TypedDict, total=False):
-    """What may be, and what is best. A texture is scaled and then turned about the centre of the surface's
-    texture coordinates, and shifted."""
+    """Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated
+    about their centre (0.5, 0.5), and then shifted."""
 
     aim: Aim | str | int
     """Aim; default Aim.MOST."""
     radiance: Sequence[float]
-    """The radiance to aim at, in cd/m² per channel, each finite and >= 0; default 0."""
+    """Mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default 0."""
     starts: int
-    """Places the search starts from, in [1, 4096]; default 64."""
+    """Number of placements at which the search starts, in [1, 4096]; default 64."""
     least_offset: Sequence[float]
-    """Smallest offset along u and v of the texture, which has period 1, in [-16, 16]; default -0.5."""
+    """Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5."""
     most_offset: Sequence[float]
-    """Largest; default 0.5. Where smallest and largest are the same, here and below, nothing changes."""
+    """Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value
+    is fixed."""
     least_scale: Sequence[float]
-    """How often the texture repeats along the surface's u and v, at least, in [1/64, 64]; default 1."""
+    """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
     most_scale: Sequence[float]
-    """At most; default 1."""
+    """Largest number of repetitions, in [1/64, 64]; default 1."""
     least_rotation: float
     """Smallest rotation in radians, in [-2 pi, 2 pi]; default 0."""
     most_rotation: float
-    """Largest; default 0."""
+    """Largest rotation in radians, in [-2 pi, 2 pi]; default 0."""
     seed: int
-    """Seed of the places; default 1."""
+    """Seed of the starting placements; default 1."""
 
 
 @dataclass(frozen=True)
 class Placement:
-    """The best placement, and what it means to the target."""
+    """The best placement, and the light that the target then receives."""
 
     placement: tuple[float, ...]
-    """From the surface's texture coordinates to those of the texture, as luxfer_importance_respond takes it."""
+    """The map from the surface's texture coordinates to those of the texture, as for
+    luxfer_importance_respond."""
     offset: tuple[float, float]
-    """Its offset along u and v."""
+    """Offset along u and v."""
     scale: tuple[float, float]
-    """Its scale along u and v."""
+    """Scale along u and v."""
     rotation: float
-    """Its rotation in radians."""
+    """Rotation in radians."""
     response: tuple[float, float, float]
-    """Mean radiance of the target under the texture alone, in cd/m² per channel."""
+    """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]
-    """What cells of twice the side change, noise included; the cells themselves are off by about a third of
-    it."""
+    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
+    the cells is about a third of it."""
 
 
 @dataclass(frozen=True)
@@ -1512,16 +1538,16 @@ class GlareReport:
     """The glare of a view."""
 
     sources: int
-    """Sources of glare."""
+    """Number of glare sources."""
     ugr: float
-    """Unified glare rating (CIE 117): below 10 means none, 19 is what offices may have; -infinity without
-    sources."""
+    """Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity
+    without sources."""
     background: float
     """Luminance of the background in cd/m²."""
     threshold: float
-    """Luminance from which on a pixel counted as glare, in cd/m²."""
+    """Luminance in cd/m² above which a pixel counted as a glare source."""
     solid_angle: float
-    """Solid angle of all sources in steradian."""
+    """Solid angle of all sources in steradians."""
 
 
 class FalseColourParams(TypedDict, total=False):
@@ -1532,127 +1558,132 @@ class FalseColourParams(TypedDict, total=False):
     unit: Unit | str | int
     """Unit, written above the bar; default Unit.LUMINANCE."""
     bar: int
-    """1: draw the scale bar beside the image, which then is wider; 0: none; default 1."""
+    """1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar."""
     least: float
-    """Value of the darkest colour, >= 0; on a logarithmic scale 0 stands for a thousandth of the largest;
-    default 0."""
+    """Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the
+    lightest colour; default 0."""
     most: float
-    """Value of the lightest colour, more than least; 0 stands for the largest value of the image; default 0."""
+    """Value of the lightest colour, greater than least; 0, the default, means the largest value of the
+    image."""
 
 
 @dataclass(frozen=True)
 class Mixture:
-    """A light mixed from primaries."""
+    """A colour mixed from primaries."""
 
     reached: int
-    """1 if it is the colour asked for; 0 if that is out of reach, and this the nearest."""
+    """1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
+    mixture."""
     colour: tuple[float, float, float]
-    """The linear colour it is."""
+    """Linear colour of the mixture."""
     delta_e: float
-    """CIEDE2000 difference from the colour asked for, seen at the exposure that shows that as a middle grey."""
+    """CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle
+    grey."""
 
 
 @dataclass(frozen=True)
 class TemperatureFit:
-    """The blackbody light that suits a target."""
+    """The blackbody light that fits a target best."""
 
     kelvin: float
     """Correlated colour temperature, in [1000, 20000] kelvin."""
     luminance: float
-    """Luminance of the emission, >= 0, where responses are those to 1 cd/m² of white."""
+    """Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m²."""
     achieved: tuple[float, float, float]
-    """Mean radiance of the target under it and all other light, in cd/m²."""
+    """Mean radiance of the target from this light and all other light, in cd/m²."""
     delta_e: float
-    """CIEDE2000 difference of that from the target, seen at the exposure that shows the target as a middle
+    """CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle
     grey."""
 
 
 @dataclass(frozen=True)
 class Preset:
-    """What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts."""
+    """Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the
+    standard itself is binding."""
 
     edition: int
     """Year of the edition of the standard."""
     illuminance: float
-    """Least mean illuminance of the task area, in lux."""
+    """Minimum mean illuminance of the task area, in lux."""
     glare: float
-    """Largest unified glare rating."""
+    """Maximum unified glare rating."""
     uniformity: float
-    """Least uniformity U0 of the task area."""
+    """Minimum uniformity U0 of the task area."""
     rendering: float
-    """Least colour rendering index."""
+    """Minimum colour rendering index."""
     walls: float
-    """Least mean illuminance of the walls, in lux; 0 where none is asked for."""
+    """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
     ceiling: float
-    """Least mean illuminance of the ceiling, in lux; 0 where none is asked for."""
+    """Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement."""
 
 
 class PatternParams(TypedDict, total=False):
-    """How the pattern lies on the surface, whose axes u and v and corner are those of Surface."""
+    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
+    Surface."""
 
     scale: PatternScale | str | int
     """PatternScale; default PatternScale.DISTANCE."""
     length: float
-    """What the lamp or the spacing measures, in metres, in [1e-6, 1e6]; default 1. The other scales do not read
-    it."""
+    """Length of the lamp or the spacing, in metres, in [1e-6, 1e6]; default 1. Only PatternScale.LAMP and
+    PatternScale.SPACING use it."""
     texel_size: float
-    """Metres per texel, in [0, 1e6]; 0, the default, is as fine as the unwarped photo, where max_texels of
-    TransferParams allows it."""
+    """Size of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, as far as
+    max_texels of TransferParams allows."""
     rotation: float
-    """Turn of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
+    """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
     offset: Sequence[float]
-    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a
-    lattice go anywhere, and are not shifted."""
+    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices
+    only: lamps without a lattice have no fixed places and are not shifted."""
     margin: float
-    """Distance in metres that lamps keep from the edge of the surface and from the zones of
-    luxfer_transfer_set_zones, in [-1, 1e6]; those that do not are left out. Below 0 the edge of the surface
-    cuts lamps; default -1."""
+    """Minimum distance in metres of lamps from the edge of the surface and from the zones of
+    luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
+    default -1, keeps the lamps at the edge of the surface, which cuts them."""
 
 
 class TransferParams(TypedDict, total=False):
-    """Settings of a transfer. The structs pointed to are read during the call."""
+    """Settings of a transfer. The structs behind the pointers are read during the call."""
 
     max_texels: int
-    """Longest side of the emissive texture in texels, in [1, 16384]; default 2048."""
+    """Maximum side of the emissive texture in texels, in [1, 16384]; default 2048."""
     plane_distance: float
-    """Distance of the photo's camera from the lit plane in metres, in [0.01, 1e4]; default 1.2. It sets the
-    scale of the pattern."""
+    """Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It
+    sets the scale of the pattern."""
     white_luminance: float
-    """Luminance that the photo's white stands for, in cd/m², in [1e-6, 1e9]; default 100."""
+    """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100."""
     target: Target | str | int
     """Target; default Target.SURFACE."""
     rectify: RectifyParams
-    """Settings of the stages VIEW and UNWARP; None, the default, for their defaults."""
+    """Settings of the stages VIEW and UNWARP; None, the default: their defaults."""
     features: FeaturesParams
-    """Settings of the stage FEATURES; None, the default, for their defaults."""
+    """Settings of the stage FEATURES; None, the default: their defaults."""
     plane: SegmentParams
-    """Settings of the stage PLANE; None, the default, for their defaults."""
+    """Settings of the stage PLANE; None, the default: their defaults."""
     lights: SegmentParams
-    """Settings of the stage LIGHTS; None, the default, for those of luxfer_segment with channels = 7, colour
-    only."""
+    """Settings of the stage LIGHTS; None, the default: the defaults with channels = 7, colour only."""
     emission: EmissionParams
-    """Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; None, the
-    default, for their defaults."""
+    """Settings of the stage EMISSION; None, the default: their defaults. The transfer sets width, height, scale
+    and offset itself."""
     relight: RelightParams
-    """Settings of the stage RELIGHT; None, the default, for their defaults."""
+    """Settings of the stage RELIGHT; None, the default: their defaults."""
     render: RenderParams
-    """Settings of the stage RENDER; None, the default, for their defaults."""
+    """Settings of the stage RENDER; None, the default: their defaults."""
     pattern: PatternParams
-    """How the lights lie on the surface; None, the default, for the defaults."""
+    """Layout of the lights on the surface; None, the default: the defaults."""
 
 
 @dataclass(frozen=True)
 class TransferReport:
-    """What each stage took and how good its result is. Errors of stages without a result are NaN."""
+    """Time and error of each stage. The error of a stage without a result is NaN."""
 
     fixtures: int
-    """Number of fixtures; see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has ended."""
+    """Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT
+    has ended."""
     seconds: tuple[float, ...]
-    """Seconds each stage took when it last ran, by Stage."""
+    """Duration of each stage's last run in seconds, by Stage."""
     view_error: float
     """Largest standard deviation of a vanishing point's direction, in radians."""
     depth_confidence: float
-    """Mean trust in the depth of the features, in [0, 1]."""
+    """Mean confidence of the features' depth, in [0, 1]."""
     plane_error: float
     """Expected share of wrong pixels in the mask of the plane."""
     lights_error: float
@@ -1660,15 +1691,16 @@ class TransferReport:
     unwarp_error: float
     """Largest expected error of a corner of the unwarped image, in unwarped pixels."""
     emission_error: float
-    """Relative difference between texture and photo in the share of lit area."""
+    """Relative difference between texture and photo in the share of the lit area."""
     relight_error: float
-    """Widest relative half-width of the solution's 95 % intervals."""
+    """Largest relative half-width of the solution's 95 % confidence intervals."""
     render_error: float
-    """As the error of RenderReport: root mean square of the picture's standard errors, relative to its mean."""
+    """As the field error of RenderReport: root mean square of the rendering's standard errors, divided by its
+    mean."""
     texel_size: float
     """Size of a texel of the emission in metres."""
     target: tuple[float, float, float]
-    """Mean colour the surface is to have, relative to the photo's white."""
+    """Mean colour that the surface should have, relative to the photo's white."""
 
 
 @dataclass(frozen=True)
@@ -1678,15 +1710,15 @@ class Fixture:
     position: tuple[float, float, float]
     """Centre in metres."""
     normal: tuple[float, float, float]
-    """Unit direction the lamp shines in."""
+    """Unit vector of the direction in which the lamp shines."""
     axis: tuple[float, float, float]
-    """Unit direction of its long axis."""
+    """Unit vector of the long axis."""
     radiance: tuple[float, float, float]
     """Mean luminance per channel in cd/m²."""
     kind: int
-    """Number of its kind, as of Luminaire."""
+    """Number of the lamp's kind, as in Luminaire."""
     size: tuple[float, float]
-    """Lengths along and across the axis in metres."""
+    """Length along the long axis and across it, in metres."""
     area: float
     """Area in m²."""
     flux: float
@@ -1698,34 +1730,35 @@ class Fixture:
 
 
 class PlanParams(TypedDict, total=False):
-    """What a plan is made for: one of its fields must be set."""
+    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
 
     time_budget_ms: int
-    """Milliseconds for all that is planned; default 0: the error counts."""
+    """Time for all planned work in milliseconds; default 0: the goal is target_error."""
     target_error: float
-    """Error of the picture, root mean square over its pixels relative to its mean, in [1e-5, 1]; default 0: the
-    time counts."""
+    """Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the
+    goal is time_budget_ms."""
 
 
 @dataclass(frozen=True)
 class PlanReport:
-    """What a plan expects."""
+    """Times and errors that a plan predicts."""
 
     relights: int
-    """1 if the plan relights, as that of a transfer; 0 if it is of a rendering or a stylisation."""
+    """1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation."""
     seconds: float
-    """Seconds for all that is planned."""
+    """Seconds for all planned work."""
     error: float
     """Error of the picture."""
     relight_seconds: float
-    """Seconds for relighting, which makes the scene ready first; 0 in other plans than that of a transfer."""
+    """Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer."""
     relight_error: float
-    """The error that RelightReport should state, half the width of its interval; 0 in other plans."""
+    """Predicted field error of RelightReport, half the width of its interval; 0 unless the plan is of a
+    transfer."""
     render_seconds: float
-    """Seconds for rendering; in a plan of a transfer it makes the scene ready first; 0 in a plan of a
+    """Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
     stylisation."""
     render_error: float
-    """The error that RenderReport should state; 0 in a plan of a stylisation."""
+    """Predicted field error of RenderReport; 0 in a plan of a stylisation."""
 
 
 class GuidesParams(TypedDict, total=False):
@@ -1740,14 +1773,14 @@ class GuidesParams(TypedDict, total=False):
     camera: int
     """Index of the scene's camera; default 0."""
     smooth: int
-    """1: smooth the light along surfaces, so that noise is not matched; default 1."""
+    """1, the default: smooth the light along surfaces, so that the stylisation does not match noise; 0: keep
+    the noise."""
     seed: int
     """Seed of the paths; default 1."""
 
 
 class StylizeParams(TypedDict, total=False):
-    """Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the
-    defaults given here are those of StylizePreset.FULL."""
+    """Settings of a stylisation. The defaults stated here are those of StylizePreset.FULL."""
 
     mode: StylizeMode | str | int
     """StylizeMode; default StylizeMode.BUDGET."""
@@ -1756,86 +1789,89 @@ class StylizeParams(TypedDict, total=False):
     patch: int
     """Width of a patch in pixels, odd, in [1, 33]; default 5."""
     guide_weight: float
-    """Weight of all guides together against the artwork's colours together, in [0, 1e6]; default 2."""
+    """Weight of all guides together, relative to the artwork's colours together, in [0, 1e6]; default 2."""
     levels: int
-    """Most resolution levels, each half of the next, in [1, 16]; default 6."""
+    """Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6."""
     iterations: int
-    """Rounds of matching and painting on the level before the finest, in [1, 100]; default 6."""
+    """Rounds of matching and painting on the second finest level, in [1, 100]; default 6."""
     finest_iterations: int
-    """Rounds on the finest level, in [1, 100]; default 1."""
+    """Rounds of matching and painting on the finest level, in [1, 100]; default 1."""
     polish: int
-    """Rounds after those, without the budget, in which each place takes its nearest match, in [0, 100]; default
-    3; 0 is the paper's. Modes without a budget do as many more of their own."""
+    """Additional rounds on the finest level without the error budget, in which each target patch takes its
+    nearest match, in [0, 100]; default 3; the paper has 0. In other modes than StylizeMode.BUDGET these are
+    additional rounds of that mode."""
     sweeps: int
-    """Sweeps of a search, in [1, 100]; default 1."""
+    """PatchMatch sweeps of a search, in [1, 100]; default 1."""
     coverage: float
-    """Share of the target that is matched under the budget before the rest is matched without, in [0, 1];
-    default 0.9."""
+    """Share of the target that is matched under the error budget before the rest is matched without it, in [0,
+    1]; default 0.9."""
     passes: int
-    """Most passes of matching under the budget in a round, in [1, 1000]; default 6."""
+    """Maximum number of matching passes under the error budget in a round, in [1, 1000]; default 6."""
     settle: int
-    """Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0
-    is the paper's."""
+    """Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100];
+    default 2; the paper has 0."""
     seam: float
-    """What a seam between neighbours costs in those sweeps, as a share of the mean error, in [0, 100]; default
-    0.2."""
+    """Cost of a seam between neighbouring patches in those sweeps, as a share of the mean error, in [0, 100];
+    default 0.2."""
     vote: StylizeVote | str | int
     """StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
     """StylizeVote for the final picture; default StylizeVote.MOST."""
     preview: int
-    """1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0."""
+    """1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
+    default: full resolution."""
     keep_for_update: int
-    """1: keep what luxfer_stylize_update needs, about as much memory as all guides take; default 0."""
+    """1: keep the data that luxfer_stylize_update needs, about as much memory as all guides; 0, the default:
+    free it."""
     coherence: float
-    """Share of the paint of the frame before that is kept where it fits, in [0, 1]; default 1. Below 1 it
-    boils, as hand-painted frames do, if each frame has its own seed. Without luxfer_stylize_set_motion it has
-    no effect."""
+    """Share of the previous frame's paint that is kept where it fits, in [0, 1]; default 1. Below 1 the paint
+    changes from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It
+    needs luxfer_stylize_set_motion; without it, it has no effect."""
     match_appearance: float
-    """How far the exemplar's light is changed to the brightness and contrast of the target's, in [0, 1];
-    default 0."""
+    """How far the light guides of the exemplar are adapted to the brightness and contrast of the target's, in
+    [0, 1]; default 0."""
     seed: int
     """Seed of the search; default 1."""
     coarse_guides: float
-    """How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the
-    paper's. More follows the guides more closely, in smaller pieces."""
+    """Factor of guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. A larger
+    factor follows the guides more closely, with smaller connected pieces of the artwork."""
     coarse_iterations: int
-    """Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the
-    paper's."""
+    """Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6."""
     occurrence: float
-    """Weight of usage in StylizeMode.OCCURRENCE, lambda, in [0, 10]; default 0.1, which Fiser et al. found best
-    by hand (Fig. 10n). What a match to a patch that is used as often as all on average costs beside its
-    distance, both in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
-    StylizeMode.NEAREST."""
+    """Weight lambda of the usage of a patch in StylizeMode.OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
+    al. found best by hand (Fig. 10n). It is the cost, in addition to the distance, of a match to a patch of
+    average usage. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a
+    patch. 0 is StylizeMode.NEAREST."""
 
 
 @dataclass(frozen=True)
 class StylizeReport:
-    """How good a stylisation is."""
+    """Quality of a stylisation."""
 
     finished: int
-    """1 if the run ended, 0 if only `levels` levels are done: then the fields from `used` on are 0."""
+    """1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are
+    0."""
     levels: int
-    """Number of levels done; see luxfer_stylize_get_level."""
+    """Number of finished levels; see luxfer_stylize_get_level."""
     halvings: int
-    """How often the sides of the picture are half those of the target."""
+    """Number of times that the sides of the target were halved to get the size of the picture."""
     patch: int
-    """Width of patches that was used."""
+    """Width of the patches, in pixels."""
     most_used: int
-    """Most uses of one exemplar patch."""
+    """Largest number of uses of an exemplar patch."""
     energy: float
-    """Mean squared difference of the channels in [0, 1] of matched patches (Eq. 3), last round; the artwork's
-    channels count 1 together, the guides guide_weight."""
+    """Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
+    channels of the artwork have the weight 1 together, the guides guide_weight."""
     used: float
-    """Share of the exemplar's patches that were used."""
+    """Share of the exemplar patches that were used, in [0, 1]."""
     entropy: float
-    """Entropy of their usage in bits."""
+    """Entropy of the usage of exemplar patches, in bits."""
     guide_error: float
     """Root mean square of StylizeImage.GUIDE_ERROR."""
     broken_source: int
-    """Exemplar pixels left out because they are no numbers."""
+    """Number of exemplar pixels that were not used because a value is not finite."""
     broken_target: int
-    """Pixels of the target's guides taken as 0 for it."""
+    """Number of target pixels with a guide value that is not finite and was taken as 0."""
 
 
 @dataclass(frozen=True)
@@ -1843,28 +1879,30 @@ class StylizeRound:
     """One round of matching and painting."""
 
     passes: int
-    """Passes of matching under the budget; see luxfer_stylize_get_pass."""
+    """Number of matching passes under the error budget; see luxfer_stylize_get_pass."""
     energy: float
-    """As StylizeReport.energy, after this round."""
+    """Energy after this round, as StylizeReport.energy."""
 
 
 @dataclass(frozen=True)
 class StylizePass:
-    """One pass of matching under the budget."""
+    """One matching pass under the error budget."""
 
     knee: float
-    """Share of the exemplar's patches that fitted well enough, in [0, 1]."""
+    """Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the
+    knee of the error curve."""
     coverage: float
     """Share of the target with a match after this pass, in [0, 1]."""
     gained: int
-    """Target patches that were given a match in this pass."""
+    """Number of target patches that received a match in this pass."""
 
 
 class SheetParams(TypedDict, total=False):
     """Settings of a print sheet."""
 
     even_light: int
-    """1: even out the light of the photo by the white of the marks, so that paper is 1; default 1."""
+    """1, the default: correct uneven lighting of the photo by the white of the marks, so that paper becomes 1;
+    0: no correction."""
     paper_width: float
     """Width of the paper in millimetres, in [60, 2000]; default 297."""
     paper_height: float
@@ -1874,22 +1912,22 @@ class SheetParams(TypedDict, total=False):
     margin: float
     """Distance of the marks from the edge of the paper in millimetres, in [0, 50]; default 8."""
     contrast: float
-    """Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints it as it is."""
+    """Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints the picture unchanged."""
 
 
 @dataclass(frozen=True)
 class SheetReport:
-    """How well a photo was aligned."""
+    """Quality of the alignment of a photo."""
 
     marks: int
-    """Marks found, of 10; 6 are enough."""
+    """Number of marks found, of 10; at least 6 are needed."""
     residual: float
-    """Root mean square distance between marks and where the map puts them, in pixels of the photo; more than a
-    pixel or two means paper that is not flat, or a lens that bends lines."""
+    """Root mean square distance between the marks and their positions by to_photo, in pixels of the photo. More
+    than one or two pixels mean that the paper is not flat or that the lens distorts."""
     error: float
     """Expected alignment error in pixels of the picture."""
     to_photo: tuple[float, ...]
-    """From pixels of the picture to pixels of the photo, 3 x 3, row by row."""
+    """Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row."""
 
 
 class DemoPhotoParams(TypedDict, total=False):
@@ -1898,8 +1936,8 @@ class DemoPhotoParams(TypedDict, total=False):
     width: int
     """Width in pixels, in [16, 8192]; default 600."""
     height: int
-    """Height in pixels, in [16, 8192]; default 400. The camera is made for 3:2."""
+    """Height in pixels, in [16, 8192]; default 400. The camera is designed for an aspect ratio of 3:2."""
     samples: int
-    """Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise."""
+    """Paths per pixel, in [2, 1048576]; default 12, which leaves some noise."""
     seed: int
-    """Seed of paths and noise; default 1."""
+    """Seed of the paths and the noise; default 1."""

@@ -1,20 +1,21 @@
 """Scenes from USD files (.usda, .usdc, .usdz) and back, by Pixar's own library: `pip install luxfer[usd]`.
 
-What USD composes is taken as it is at the default time, in metres and Y up whatever the stage is in:
+load() reads the composed stage at the default time and converts it to metres and Y up:
 
-| in USD | becomes |
+| USD | luxfer |
 |---|---|
 | Mesh | triangles in world space, of the control cage; a mesh for each GeomSubset with a material |
 | UsdPreviewSurface | base colour, metallic, roughness, ior, opacity, emission in cd/m²; the textures of both colours |
 | RectLight, DiskLight | a surface that emits, towards -z, intensity · 2^exposure · colour in cd/m² |
-| SphereLight | a point of the same luminous intensity, or with ShapingAPI's cone a spot |
-| DistantLight | a directional light of the same illuminance |
+| SphereLight | a point light of equal luminous intensity, or a spot if it has ShapingAPI's cone |
+| DistantLight | a directional light of equal illuminance |
 | DomeLight | the environment, of one colour |
 | Camera | a camera |
 
-Left out: what is invisible, guides and proxies, curves, points, volumes, what a PointInstancer places, skinning, subdivision,
-other shaders, other textures, UsdTransform2d, the images of domes, other lights, light linking. save() leaves out lights
-without a surface and the environment, all textures but those of base colour and emission, and how textures are moved.
+load() ignores invisible prims, guides and proxies, curves, points, volumes, instances of a PointInstancer, skinning,
+subdivision, other shaders, other textures, UsdTransform2d, the images of domes, other lights, light linking. save()
+leaves out punctual lights and the environment, all textures but those of base colour and emission, and texture
+transforms.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ WRAPS = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "cla
 
 
 def load(context: Context, path: str | os.PathLike[str]) -> Scene:
-    """Loads a USD file with all it refers to. Meshes have the names of their prims."""
+    """Loads a USD file with all files that it refers to. Meshes have the names of their prims."""
     from pxr import Tf, Usd
 
     try:
@@ -149,7 +150,7 @@ class _Reader:
                 )
 
     def primvar(self, mesh: Any, name: str, width: int) -> tuple[NDArray[Any], str] | None:
-        """Values of a mesh, and what they belong to."""
+        """Values of a mesh, and their interpolation."""
         from pxr import UsdGeom
 
         found = UsdGeom.PrimvarsAPI(mesh.GetPrim()).FindPrimvarWithInheritance(name)
@@ -174,7 +175,7 @@ class _Reader:
             return index
 
         def number(name: str, default: Any) -> tuple[Any, Any]:
-            """An input's value, and the texture in its place if there is one."""
+            """The value of an input, and its texture if it is connected to one."""
             given = shader.GetInput(name)
             if not given:
                 return default, None
@@ -293,7 +294,7 @@ class _Reader:
 
 
 def fans(counts: NDArray[Any], turned: bool) -> tuple[NDArray[Any], NDArray[Any]]:
-    """The triangles of faces with so many corners each: the face of each, and its three corners.
+    """Triangulates faces with the given numbers of corners: returns the face and the three corners of each triangle.
 
     >>> fans(np.array([4, 3]), False)[1].tolist()
     [[0, 1, 2], [0, 2, 3], [4, 5, 6]]
@@ -309,8 +310,8 @@ def fans(counts: NDArray[Any], turned: bool) -> tuple[NDArray[Any], NDArray[Any]
 def spread(
     values: NDArray[Any], interpolation: str, vertices: NDArray[Any], points: int, corners: int
 ) -> NDArray[Any] | None:
-    """Values for each vertex, from those for each point, for each corner (then the vertices are the corners) or for all; None
-    for others, or if they do not fit."""
+    """Values per vertex from values per point, per corner (then the vertices are the corners) or constant; None for
+    other interpolations, or if the lengths do not match."""
     if interpolation in ("vertex", "varying") and len(values) == points:
         return values[vertices]
     if interpolation == "faceVarying" and len(values) == corners == len(vertices):
@@ -417,7 +418,7 @@ def _write(scene: Scene, path: Path) -> None:
 
 
 def _names(scene: Scene) -> Iterator[tuple[str, int]]:
-    """A name for each mesh that USD allows and no other has, and its material."""
+    """A valid, unique USD name for each mesh, and its material."""
     from pxr import Tf
 
     taken = {"Materials"}

@@ -1,4 +1,4 @@
-//! Paper, and what a tool leaves on it.
+//! Paper and canvas, and the marks that tools leave on them.
 
 use crate::demo::pattern::noise;
 use crate::error::Result;
@@ -12,14 +12,14 @@ pub struct Canvas {
     pub width: usize,
     pub height: usize,
     colour: Vec<Vec3>,
-    /// Roughness of the ground in `[0, 1]`: high places take ink first.
+    /// Surface roughness in `[0, 1]`: raised places take ink first.
     tooth: Vec<f32>,
     /// Thickness of paint.
     relief: Vec<f32>,
 }
 
 impl Canvas {
-    /// Paper of a colour, cloudy and fibrous.
+    /// Paper of a colour, with cloudy variation and fibres.
     pub fn paper(width: usize, height: usize, colour: Vec3, seed: u64) -> Result<Self> {
         let mut canvas = Self {
             width,
@@ -51,7 +51,7 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// A round spot, soft at its rim; `opacity` in `[0, 1]`. The ground's roughness breaks it where it is thin.
+    /// A round spot with a soft rim; `opacity` in `[0, 1]`. Surface roughness breaks it up where it is thin.
     pub fn spot(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
             let taken = cover * opacity * (0.55 + 0.9 * canvas.tooth[i]).min(1.0);
@@ -59,13 +59,13 @@ impl Canvas {
         });
     }
 
-    /// A touch of thick paint.
+    /// A dab of thick paint.
     pub fn touch(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32, thickness: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
-            // A loaded brush covers; a dry one only reaches the high places of the canvas.
-            let reach = (opacity * 1.6 - canvas.tooth[i] * 0.6).clamp(0.0, 1.0);
-            canvas.colour[i] = canvas.colour[i].lerp(colour, cover * reach);
-            canvas.relief[i] += (thickness - canvas.relief[i]) * cover * reach;
+            // A loaded brush covers everything; a dry one touches only the raised places of the canvas.
+            let coverage = (opacity * 1.6 - canvas.tooth[i] * 0.6).clamp(0.0, 1.0);
+            canvas.colour[i] = canvas.colour[i].lerp(colour, cover * coverage);
+            canvas.relief[i] += (thickness - canvas.relief[i]) * cover * coverage;
         });
     }
 
@@ -83,8 +83,8 @@ impl Canvas {
         }
     }
 
-    /// The sheet in linear colour, its relief lit from the upper left.
-    pub fn finish(self) -> Result<Image> {
+    /// The sheet in linear colour, with its relief lit from the upper left.
+    pub fn into_image(self) -> Result<Image> {
         let (width, height) = (self.width, self.height);
         let relief = |x: usize, y: usize| self.relief[y.min(height - 1) * width + x.min(width - 1)];
         let mut out = Image::new(width, height, 3)?;
@@ -98,7 +98,7 @@ impl Canvas {
     }
 }
 
-/// Smooth noise in `[-1, 1]` along a line, for hands that are not machines.
+/// Smooth noise in `[-1, 1]` along a line, to imitate a human hand.
 pub fn tremor(at: f32, seed: u64) -> f32 {
     2.0 * noise(Vec2::new(at, 0.5), [1 << 20, 1], seed) - 1.0
 }

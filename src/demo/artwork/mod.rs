@@ -1,9 +1,10 @@
-//! Artworks for the sphere on a table, drawn by a program in place of an artist: a pen drawing, dots of ink, and a painting.
+//! Artworks of the sphere on a table, drawn by a program in place of an artist: a pen drawing, a stipple drawing and a
+//! painting.
 //!
-//! Each is drawn stroke by stroke on paper or canvas, from the guides of the scene, so that it lies exactly on them; and
-//! each answers to the light as artists do: highlights are left white, shadows are crossed with more lines or take another
-//! colour, and where the ball's red light falls onto the table there is red ink. Sizes of strokes are a share of the width
-//! of the picture. The same bits every time.
+//! Each is drawn stroke by stroke on paper or canvas from the guides of the scene, so that it is exactly aligned with
+//! them. Each responds to light as artists do: highlights stay white, shadows are cross-hatched or take another
+//! colour, and red ink appears where the ball's red light falls onto the table. Stroke sizes are proportional to the
+//! width of the picture. The result is the same to the bit every time.
 
 mod canvas;
 mod paint;
@@ -16,18 +17,18 @@ use crate::guides::Guides;
 use crate::image::Image;
 use subject::Subject;
 
-/// In what manner to draw.
+/// The drawing technique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// Hatching with a pen and two inks.
+    /// Hatching with a pen in two inks.
     Pen,
-    /// Dots of two inks.
+    /// Stippling in two inks.
     Stipple,
     /// Oil on canvas.
     Paint,
 }
 
-/// Draws what the guides show: linear RGB of their size.
+/// Draws the guides in a style; the result is linear RGB of their size.
 pub fn draw(style: Style, guides: &Guides) -> Result<Image> {
     let subject = Subject::new(guides)?;
     let canvas = match style {
@@ -35,7 +36,7 @@ pub fn draw(style: Style, guides: &Guides) -> Result<Image> {
         Style::Stipple => stipple::draw(&subject)?,
         Style::Paint => paint::draw(&subject)?,
     };
-    canvas.finish()
+    canvas.into_image()
 }
 
 #[cfg(test)]

@@ -1,20 +1,20 @@
-//! A painting: brush strokes along the form, broad ones first and fine ones where there is something to tell (after
-//! Hertzmann 1998), each a bundle of bristles.
+//! A painting: brush strokes along the form, broad ones first, fine ones in detailed areas (after Hertzmann 1998);
+//! each stroke is a bundle of bristles.
 
 use super::canvas::{Canvas, tremor};
-use super::subject::{Sight, Subject};
+use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
 
 const GROUND: Vec3 = Vec3::new(0.80, 0.52, 0.34);
 
-/// A size of brush.
+/// A brush size.
 struct Brush {
-    /// Half its width and the length of a stroke, in units.
+    /// Half the brush width, and the length of a stroke, in units.
     radius: f32,
     length: f32,
-    /// How much must be going on for it to be used.
+    /// Minimum local detail for its use.
     detail: f32,
 }
 
@@ -24,8 +24,8 @@ const BRUSHES: [Brush; 3] = [
     Brush { radius: 2.6, length: 30.0, detail: 0.22 },
 ];
 
-/// The painter's colours: not the scene's, but bound to its light.
-fn mixed(s: &Sight) -> Vec3 {
+/// The painter's palette: differs from the scene's colours but follows its light.
+fn mixed(s: &Appearance) -> Vec3 {
     let ramp = |stops: &[Vec3; 4], t: f32| {
         let t = t.clamp(0.0, 1.0) * 2.999;
         stops[t as usize].lerp(stops[t as usize + 1], t.fract())
@@ -44,7 +44,7 @@ fn mixed(s: &Sight) -> Vec3 {
     ];
     const RED: Vec3 = Vec3::new(0.82, 0.16, 0.20);
     const LIGHT: Vec3 = Vec3::new(1.0, 0.97, 0.88);
-    if s.is_thing {
+    if s.is_object {
         let body = ramp(&SHAPE, s.lit * 1.05).lerp(Vec3::new(0.50, 0.28, 0.52), (s.bleed * 2.0).min(0.55));
         body.lerp(LIGHT, ((s.shine - 0.4) * 2.5).clamp(0.0, 1.0))
     } else {
@@ -64,7 +64,7 @@ fn layer(canvas: &mut Canvas, subject: &Subject, brush: &Brush, seed: u64) {
     let radius = brush.radius * subject.unit;
     let spacing = 0.85 * radius;
     let (columns, rows) = ((subject.width as f32 / spacing) as u64 + 1, (subject.height as f32 / spacing) as u64 + 1);
-    // In no order.
+    // Place strokes in random order.
     let mut places: Vec<u64> = (0..columns * rows).collect();
     places.sort_by_key(|&p| crate::rng::hash(seed, &[p]));
     for place in places {
@@ -78,7 +78,7 @@ fn layer(canvas: &mut Canvas, subject: &Subject, brush: &Brush, seed: u64) {
     }
 }
 
-/// How much the picture changes around a place.
+/// Local variation of the picture around a position.
 fn detail(subject: &Subject, at: Vec2, radius: f32) -> f32 {
     let around = [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].map(|d| mixed(subject.at(at + d * 2.0 * radius)));
     let here = mixed(subject.at(at));
@@ -88,12 +88,12 @@ fn detail(subject: &Subject, at: Vec2, radius: f32) -> f32 {
 fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mut rng: Rng) {
     let (unit, radius) = (subject.unit, brush.radius * subject.unit);
     let here = *subject.at(start);
-    // No two strokes of one colour.
+    // No two strokes have the same colour.
     let shift = Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) - 0.5;
     let colour = mixed(&here) * (0.93 + 0.14 * rng.next_f32()) + 0.07 * shift;
 
-    // The way of the brush: with the form, or slanting over table and wall; it stops where the colour would be wrong.
-    let lean = if here.is_thing { 0.25 } else { -0.75 } + 0.35 * (rng.next_f32() - 0.5);
+    // Direction of the stroke: along the form, or slanted on table and wall. It ends where the colour would be wrong.
+    let lean = if here.is_object { 0.25 } else { -0.75 } + 0.35 * (rng.next_f32() - 0.5);
     let length = brush.length * unit * (0.4 + 0.6 * rng.next_f32());
     let (bend, wobble) = (0.006 / unit * (rng.next_f32() - 0.5), rng.next_u32() as u64);
     let mut ends = [Vec::new(), Vec::new()];
@@ -103,8 +103,10 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
             let direction = Vec2::from_angle(lean + bend * gone * way).rotate(subject.at(at).along) * way;
             at += direction * 0.8;
             gone += 0.8;
-            let sight = subject.at(at);
-            if !subject.contains(at) || sight.is_thing != here.is_thing || (mixed(sight) - mixed(&here)).length() > 0.17
+            let appearance = subject.at(at);
+            if !subject.contains(at)
+                || appearance.is_object != here.is_object
+                || (mixed(appearance) - mixed(&here)).length() > 0.17
             {
                 break;
             }
@@ -114,7 +116,7 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
     let along = Vec2::from_angle(lean).rotate(here.along);
     let path: Vec<(Vec2, Vec2)> = ends[1].iter().rev().chain([&(start, along)]).chain(&ends[0]).copied().collect();
 
-    // Bristles, each with a load of paint that ends somewhere.
+    // Bristles, each with a limited load of paint.
     let bristles = (2.0 * radius / 0.9).ceil().max(2.0) as usize;
     let last = path.len() as f32;
     for b in 0..bristles {

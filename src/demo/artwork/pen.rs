@@ -1,8 +1,8 @@
-//! Hatching: lines that keep their distance (after Jobard and Lefer 1997), one set across the other as it gets darker
-//! (Winkenbach and Salesin 1994).
+//! Hatching: evenly spaced lines (after Jobard and Lefer 1997), in sets that cross as the tone darkens (Winkenbach and
+//! Salesin 1994).
 
 use super::canvas::{Canvas, tremor};
-use super::subject::{Sight, Subject};
+use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::rng::Rng;
@@ -12,42 +12,60 @@ const PAPER: Vec3 = Vec3::new(0.955, 0.935, 0.885);
 const INK: Vec3 = Vec3::new(0.12, 0.10, 0.13);
 const SANGUINE: Vec3 = Vec3::new(0.66, 0.21, 0.12);
 
-/// One set of lines.
+/// A set of lines.
 struct Set {
-    /// How much is drawn where: above 0 there are lines, at 1 they are firm.
-    weight: fn(&Sight) -> f32,
+    /// Drawing weight at a position: lines appear above 0 and are full at 1.
+    weight: fn(&Appearance) -> f32,
     /// Angle to the direction of the form, in radians.
     turn: f32,
-    /// Distance between lines and their longest length, in units.
+    /// Distance between lines, and their maximum length, in units.
     spacing: f32,
     length: f32,
     ink: Vec3,
 }
 
-/// Darkness below a tone, firm where it is a quarter below.
-fn below(sight: &Sight, tone: f32) -> f32 {
-    // A highlight is left alone, whatever is around it.
-    if sight.shine > 0.6 { 0.0 } else { (tone - sight.tone) * 4.0 }
+/// Darkness below a tone; full where it is a quarter below.
+fn below(appearance: &Appearance, tone: f32) -> f32 {
+    // Leave highlights blank, whatever surrounds them.
+    if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }
 }
 
 const SETS: [Set; 7] = [
-    // Table and wall: slanting, then across in the shadow.
+    // Table and wall: slanted lines, crossed in the shadow.
     Set {
-        weight: |s| if s.is_thing { 0.0 } else { below(s, 0.80) },
+        weight: |s| if s.is_object { 0.0 } else { below(s, 0.80) },
         turn: -0.55,
         spacing: 7.5,
         length: 70.0,
         ink: INK,
     },
-    Set { weight: |s| if s.is_thing { 0.0 } else { below(s, 0.66) }, turn: 0.25, spacing: 6.0, length: 60.0, ink: INK },
-    Set { weight: |s| if s.is_thing { 0.0 } else { below(s, 0.52) }, turn: -1.2, spacing: 5.0, length: 36.0, ink: INK },
-    // The thing: around its form, across it, and both.
-    Set { weight: |s| if s.is_thing { below(s, 0.93) } else { 0.0 }, turn: 0.0, spacing: 5.2, length: 80.0, ink: INK },
-    Set { weight: |s| if s.is_thing { below(s, 0.66) } else { 0.0 }, turn: 1.0, spacing: 5.2, length: 48.0, ink: INK },
-    Set { weight: |s| if s.is_thing { below(s, 0.49) } else { 0.0 }, turn: -0.7, spacing: 4.4, length: 34.0, ink: INK },
-    // Red light from the thing, on the table and back on the thing.
     Set {
-        weight: |s| (s.bleed - 0.035) * if s.is_thing { 5.0 } else { 18.0 },
+        weight: |s| if s.is_object { 0.0 } else { below(s, 0.66) },
+        turn: 0.25,
+        spacing: 6.0,
+        length: 60.0,
+        ink: INK,
+    },
+    Set {
+        weight: |s| if s.is_object { 0.0 } else { below(s, 0.52) },
+        turn: -1.2,
+        spacing: 5.0,
+        length: 36.0,
+        ink: INK,
+    },
+    // The object: around its form, across it, and both.
+    Set { weight: |s| if s.is_object { below(s, 0.93) } else { 0.0 }, turn: 0.0, spacing: 5.2, length: 80.0, ink: INK },
+    Set { weight: |s| if s.is_object { below(s, 0.66) } else { 0.0 }, turn: 1.0, spacing: 5.2, length: 48.0, ink: INK },
+    Set {
+        weight: |s| if s.is_object { below(s, 0.49) } else { 0.0 },
+        turn: -0.7,
+        spacing: 4.4,
+        length: 34.0,
+        ink: INK,
+    },
+    // Red light from the object, on the table and reflected back onto the object.
+    Set {
+        weight: |s| (s.bleed - 0.035) * if s.is_object { 5.0 } else { 18.0 },
         turn: 0.5,
         spacing: 5.6,
         length: 40.0,
@@ -66,7 +84,7 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// Which line has passed where, so that the next keeps its distance.
+/// The positions of lines drawn so far, for spacing.
 struct Drawn {
     cell: f32,
     columns: usize,
@@ -91,7 +109,7 @@ impl Drawn {
         }
     }
 
-    /// Whether another line is nearer than `distance`, at most one cell.
+    /// Whether another line is nearer than `distance`, which is at most one cell.
     fn is_near(&self, at: Vec2, distance: f32, line: usize) -> bool {
         let (x, y) = self.place(at);
         (y.saturating_sub(1)..=y + 1).any(|row| {
@@ -117,21 +135,21 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
         if (set.weight)(subject.at(start)) <= 0.05 || drawn.is_near(start, keep, line) {
             continue;
         }
-        // Both ways from the start, as far as there is something to draw.
+        // Trace in both directions from the start, as far as there is something to draw.
         let lean = set.turn + 0.10 * (rng.next_f32() - 0.5);
-        let reach = set.length * unit * (0.35 + 0.65 * rng.next_f32()) / 2.0;
+        let half_length = set.length * unit * (0.35 + 0.65 * rng.next_f32()) / 2.0;
         let mut ends = [Vec::new(), Vec::new()];
         for (way, path) in [1.0, -1.0].into_iter().zip(&mut ends) {
             let (mut at, mut gone) = (start, 0.0);
-            let inside = subject.at(start).is_thing;
-            while gone < reach {
-                let sight = subject.at(at);
+            let inside = subject.at(start).is_object;
+            while gone < half_length {
+                let appearance = subject.at(at);
                 let along = Vec2::from_angle(lean + 0.06 * tremor(gone / (14.0 * unit), seed + 7 * line as u64))
-                    .rotate(sight.along);
+                    .rotate(appearance.along);
                 at += along * way * 0.6;
                 gone += 0.6;
                 let here = subject.at(at);
-                let stop = !subject.contains(at) || here.is_thing != inside || (set.weight)(here) <= 0.0;
+                let stop = !subject.contains(at) || here.is_object != inside || (set.weight)(here) <= 0.0;
                 if stop || drawn.is_near(at, 0.6 * keep, line) {
                     break;
                 }
@@ -145,7 +163,7 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
         let last = (path.len() - 1).max(1) as f32;
         for (i, at) in path.iter().enumerate() {
             drawn.add(*at, line);
-            // The pen is set down, pressed, and lifted.
+            // Press the pen on and lift it off gradually.
             let t = i as f32 / last;
             let swell = (t / 0.12).min((1.0 - t) / 0.35).min(1.0);
             let firm =
@@ -157,21 +175,21 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
     Ok(())
 }
 
-/// The outline of the thing, gone over with a hand that is not quite sure.
+/// The outline of the object, redrawn with an unsteady hand.
 fn outline(canvas: &mut Canvas, subject: &Subject, seed: u64) {
     let unit = subject.unit;
     for y in 0..subject.height {
         for x in 0..subject.width {
             let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
             let here = subject.at(at);
-            let is_rim = here.is_thing
-                && [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].iter().any(|d| !subject.at(at + *d).is_thing);
+            let is_rim = here.is_object
+                && [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].iter().any(|d| !subject.at(at + *d).is_object);
             if !is_rim {
                 continue;
             }
             let (a, b) = (at.x / (38.0 * unit), at.y / (38.0 * unit));
             let sway = Vec2::new(tremor(a + 2.0 * b, seed), tremor(2.0 * a - b + 90.0, seed + 1)) * 1.8 * unit;
-            // Thin, or not there at all, on the side of the light.
+            // Thin or absent on the lit side.
             let press = (1.15 - 0.8 * here.tone + 0.4 * tremor(a - b + 50.0, seed + 2)).clamp(0.0, 1.0);
             if press > 0.12 {
                 canvas.spot(at + sway, unit * (0.4 + 0.9 * press), INK, 0.35 + 0.6 * press);

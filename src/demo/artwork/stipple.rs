@@ -1,7 +1,7 @@
-//! Dots, closer where it is darker (Poisson disks of varying radius, by throwing darts).
+//! Stippling, denser where it is darker (Poisson disks of varying radius, by dart throwing).
 
 use super::canvas::Canvas;
-use super::subject::{Sight, Subject};
+use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::rng::Rng;
@@ -13,8 +13,8 @@ const RED: Vec3 = Vec3::new(0.80, 0.16, 0.18);
 
 /// A kind of dot.
 struct Ink {
-    /// Darkness to be reached, in `[0, 1]`.
-    darkness: fn(&Sight) -> f32,
+    /// Target darkness, in `[0, 1]`.
+    darkness: fn(&Appearance) -> f32,
     colour: Vec3,
     /// Radius in units.
     radius: f32,
@@ -24,7 +24,7 @@ const INKS: [Ink; 2] = [
     Ink {
         darkness: |s| match () {
             () if s.shine > 0.6 => 0.0,
-            () if s.is_thing => 1.1 * (0.9 - s.tone) + 0.25 * s.edge - 0.3 * s.bleed,
+            () if s.is_object => 1.1 * (0.9 - s.tone) + 0.25 * s.edge - 0.3 * s.bleed,
             () => 1.3 * (0.84 - s.tone),
         },
         colour: BLUE,
@@ -33,7 +33,7 @@ const INKS: [Ink; 2] = [
     Ink {
         darkness: |s| match () {
             () if s.shine > 0.6 => 0.0,
-            () if s.is_thing => 0.24 + 0.9 * s.bleed + 0.4 * s.edge - 0.12 * s.lit,
+            () if s.is_object => 0.24 + 0.9 * s.bleed + 0.4 * s.edge - 0.12 * s.lit,
             () => 3.2 * (s.bleed - 0.03),
         },
         colour: RED,
@@ -49,12 +49,12 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// Dots farther from each other than this, in radii, are not seen as a tone.
-const WIDEST: f32 = 9.0;
+/// Maximum distance between dots, in radii: wider dots do not read as a tone [convention].
+const MAX_SPACING: f32 = 9.0;
 
 fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<()> {
     let radius = ink.radius * subject.unit;
-    // Dots in cells no two of which lie in one.
+    // Store the dots in a grid with at most one dot per cell.
     let cell = (1.45 * radius).max(1.0) / std::f32::consts::SQRT_2;
     let (columns, rows) = ((subject.width as f32 / cell) as usize + 1, (subject.height as f32 / cell) as usize + 1);
     let mut taken = try_vec(columns * rows, Vec2::NAN)?;
@@ -66,19 +66,19 @@ fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<
         if darkness < 0.03 {
             continue;
         }
-        // Ink covers the share of the paper that is the darkness.
-        let apart = radius * (1.75 / darkness.sqrt()).clamp(1.45, WIDEST);
-        let (x, y, reach) = ((at.x / cell) as usize, (at.y / cell) as usize, (apart / cell).ceil() as usize);
-        let mut near = (y.saturating_sub(reach)..(y + reach + 1).min(rows))
+        // The share of the paper covered by ink equals the darkness.
+        let apart = radius * (1.75 / darkness.sqrt()).clamp(1.45, MAX_SPACING);
+        let (x, y, span) = ((at.x / cell) as usize, (at.y / cell) as usize, (apart / cell).ceil() as usize);
+        let mut near = (y.saturating_sub(span)..(y + span + 1).min(rows))
             .flat_map(|row| {
-                (x.saturating_sub(reach)..(x + reach + 1).min(columns)).map(move |column| row * columns + column)
+                (x.saturating_sub(span)..(x + span + 1).min(columns)).map(move |column| row * columns + column)
             })
             .map(|i| taken[i]);
         if near.any(|other| other.distance_squared(at) < apart * apart) {
             continue;
         }
         taken[y * columns + x] = at;
-        // Two touches of the nib beside each other: no dot is a disk.
+        // Draw two touches of the nib side by side, so that no dot is a perfect disk.
         let size = radius * (0.72 + 0.4 * rng.next_f32() + 0.15 * darkness);
         let aside = Vec2::from_angle(rng.next_f32() * std::f32::consts::TAU) * 0.45 * size;
         canvas.spot(at, size * 0.85, ink.colour, 0.95);

@@ -1,4 +1,4 @@
-//! What an artist sees in the scene: tones, not radiances.
+//! The scene as an artist sees it: in tones instead of radiances.
 
 use crate::error::Result;
 use crate::guides::{self, Guides};
@@ -6,24 +6,24 @@ use crate::image::colour::{linear_to_srgb, luminance};
 use crate::image::{Image, try_collect, try_with_capacity};
 use glam::{Vec2, Vec3};
 
-/// The axis that strokes go around, as the camera has it, and the way of strokes on the table.
+/// The axis, in camera space, around which strokes run, and the direction of strokes on the table.
 const AXIS: Vec3 = Vec3::new(0.45, 0.75, 0.48);
 const TABLE: Vec2 = Vec2::new(0.97, -0.24);
 
-/// A place in the picture.
+/// A position in the picture.
 #[derive(Clone, Copy)]
-pub struct Sight {
-    /// Lightness of the whole, in `[0, 1]`.
+pub struct Appearance {
+    /// Overall lightness, in `[0, 1]`.
     pub tone: f32,
-    /// Lightness of the light that falls there directly.
+    /// Lightness of the direct light.
     pub lit: f32,
     /// Strength of the highlight.
     pub shine: f32,
-    /// How red the light from other things is.
+    /// Redness of the light from other objects.
     pub bleed: f32,
-    /// Whether it is a thing on the table, not table or wall.
-    pub is_thing: bool,
-    /// Unit direction in the picture (y down) along which strokes follow the form.
+    /// Whether it shows an object, as opposed to table or wall.
+    pub is_object: bool,
+    /// Unit direction in the picture (y down) of strokes that follow the form.
     pub along: Vec2,
     /// Strength of the edge of a shape.
     pub edge: f32,
@@ -32,9 +32,9 @@ pub struct Sight {
 pub struct Subject {
     pub width: usize,
     pub height: usize,
-    /// Length in pixels of what is one pixel in a picture 800 wide.
+    /// Size in pixels of one pixel of a picture 800 wide.
     pub unit: f32,
-    sights: Vec<Sight>,
+    appearances: Vec<Appearance>,
 }
 
 impl Subject {
@@ -44,37 +44,37 @@ impl Subject {
         let lightness = |image: &Image, x: usize, y: usize, factor: f32| {
             linear_to_srgb((luminance(image.rgb(x, y)) * exposure * factor).clamp(0.0, 1.0))
         };
-        // What is in the corner is the ground.
-        let ground = guides.materials.pixel(0, 0);
-        // A thing's own colour is not its tone: its brightest part is light, however dark its paint.
-        let things =
-            direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != ground);
-        let mut brightest = try_collect(things.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
+        // The material in the corner is the background.
+        let background = guides.materials.pixel(0, 0);
+        // Normalise tones by the object's own colour: its brightest part is light, however dark its paint.
+        let objects =
+            direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != background);
+        let mut brightest = try_collect(objects.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
         brightest.sort_unstable_by(f32::total_cmp);
         let light = brightest.get(brightest.len() * 98 / 100).copied().unwrap_or(0.0);
         let own = if light > 0.0 { 0.7 / (light * exposure) } else { 1.0 };
-        let mut sights = try_with_capacity(full.width * full.height)?;
+        let mut appearances = try_with_capacity(full.width * full.height)?;
         for y in 0..full.height {
             for x in 0..full.width {
-                let is_thing = guides.materials.pixel(x, y) != ground;
+                let is_object = guides.materials.pixel(x, y) != background;
                 let normal = Vec3::from_slice(guides.normals.pixel(x, y));
-                // Around the form, like the rings of a turned thing whose axis leans.
+                // Around the form, like the rings of a turned object with a tilted axis.
                 let ring = normal.cross(AXIS);
-                let along = if is_thing { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
+                let along = if is_object { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
                 let light = indirect.rgb(x, y) * exposure;
-                let factor = if is_thing { own } else { 1.0 };
-                sights.push(Sight {
+                let factor = if is_object { own } else { 1.0 };
+                appearances.push(Appearance {
                     tone: lightness(full, x, y, factor),
                     lit: lightness(direct, x, y, factor),
                     shine: lightness(specular, x, y, 1.0),
                     bleed: (light.x - 0.5 * (light.y + light.z)).max(0.0),
-                    is_thing,
+                    is_object,
                     along,
                     edge: guides.edges.pixel(x, y)[0],
                 });
             }
         }
-        Ok(Self { width: full.width, height: full.height, unit: full.width as f32 / 800.0, sights })
+        Ok(Self { width: full.width, height: full.height, unit: full.width as f32 / 800.0, appearances })
     }
 
     pub fn contains(&self, at: Vec2) -> bool {
@@ -82,8 +82,8 @@ impl Subject {
     }
 
     /// The nearest pixel.
-    pub fn at(&self, at: Vec2) -> &Sight {
+    pub fn at(&self, at: Vec2) -> &Appearance {
         let clamp = |v: f32, n: usize| (v.max(0.0) as usize).min(n - 1);
-        &self.sights[clamp(at.y, self.height) * self.width + clamp(at.x, self.width)]
+        &self.appearances[clamp(at.y, self.height) * self.width + clamp(at.x, self.width)]
     }
 }

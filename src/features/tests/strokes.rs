@@ -1,9 +1,9 @@
-//! Strokes on a plane of the room: what they add to its lines.
+//! Strokes on a plane of the room improve the layout found from lines alone.
 
 use super::*;
 use crate::features::layout::Face;
 
-/// The pixels of a thick line.
+/// Pixels of a thick line.
 fn painted(a: DVec2, b: DVec2, [width, height]: [usize; 2]) -> Vec<u32> {
     let near = |i: &u32| {
         let p = DVec2::new((*i as usize % width) as f64 + 0.5, (*i as usize / width) as f64 + 0.5);
@@ -25,7 +25,7 @@ fn layout_of(camera: &Perspective, segments: &[(Segment, Option<usize>)], all: &
 
 const SIZE: [usize; 2] = [640, 480];
 
-/// A room with furniture, with some of its edges and none of the others seen, and strokes on its ceiling, mostly.
+/// A furnished room with only some of its edges detected, and strokes mostly on its ceiling.
 struct Cluttered {
     camera: Perspective,
     sides: [f64; 4],
@@ -38,14 +38,14 @@ impl Cluttered {
         let mut rng = Rng::new(77, &[seed]);
         let mut within = |a: f64, b: f64| a + (b - a) * rng.next_f64();
         let mut sides = [0.0; 4];
-        for (side, (least, most)) in sides.iter_mut().zip([(0.3, 1.0), (0.3, 1.0), (0.15, 0.5), (0.25, 0.6f64)]) {
-            *side = within(f64::ln(least), most.ln()).exp();
+        for (side, (smallest, largest)) in sides.iter_mut().zip([(0.3, 1.0), (0.3, 1.0), (0.15, 0.5), (0.25, 0.6f64)]) {
+            *side = within(f64::ln(smallest), largest.ln()).exp();
         }
         let mut camera = camera(within(-0.5, 0.5), within(-0.25, 0.25), within(-0.03, 0.03), SIZE[0], SIZE[1]);
         camera.focal *= within(0.75, 1.25);
         let (low, high) = (DVec3::new(-sides[0], -sides[2], 0.05), DVec3::new(sides[1], sides[3], 1.0));
 
-        // Pieces of the seams, lines on the faces, and edges of what stands on the floor or hangs in the room.
+        // Pieces of the seams, lines on the faces, and edges of objects that stand on the floor or hang in the room.
         let mut lines = Vec::new();
         for (axis, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             for corner in 0..4 {
@@ -90,7 +90,7 @@ impl Cluttered {
             }
         }
 
-        // As a photo shows them: in pieces, a little off, one in twenty named wrongly.
+        // As a photo shows them: broken into pieces, slightly displaced, one in twenty assigned to the wrong axis.
         let seen = |p: DVec3| {
             let c = camera.axes * p;
             let at = camera.principal + c.truncate() * (camera.focal / c.z);
@@ -111,15 +111,15 @@ impl Cluttered {
             }
         }
 
-        // Two strokes on a plane, one on each other face that is seen, and sometimes one on something before any of them.
+        // Two strokes on one plane, one on each other visible face, and sometimes one on an object in front of them.
         let mut places: [Vec<DVec2>; Face::COUNT] = Default::default();
         for _ in 0..400 {
             let place = DVec2::new(within(5.0, SIZE[0] as f64 - 5.0), within(5.0, SIZE[1] as f64 - 5.0));
             places[truth(&camera, &sides, place.x as usize, place.y as usize).1].push(place);
         }
         let wanted = if within(0.0, 1.0) < 0.7 { Face::Ceiling as usize } else { within(0.0, 5.0) as usize };
-        let most = (0..Face::COUNT).max_by_key(|&face| places[face].len()).unwrap();
-        let plane = if places[wanted].len() >= 12 { wanted } else { most };
+        let largest = (0..Face::COUNT).max_by_key(|&face| places[face].len()).unwrap();
+        let plane = if places[wanted].len() >= 12 { wanted } else { largest };
         let mut strokes = Vec::new();
         for (face, places) in places.iter().enumerate().filter(|(_, places)| places.len() >= 12) {
             for pair in places.chunks(2).take(if face == plane { 2 } else { 1 }) {
@@ -133,7 +133,7 @@ impl Cluttered {
         Self { camera, sides, segments, strokes }
     }
 
-    /// Share of the view on the right face, and half of it is no further off in depth than this factor's logarithm.
+    /// The share of the view on the correct face, and the median absolute logarithm of the depth error.
     fn judge(&self, layout: &Layout) -> [f64; 2] {
         let pixels = (4..SIZE[1]).step_by(8).flat_map(|y| (4..SIZE[0]).step_by(8).map(move |x| (x, y)));
         let (mut right, mut logs) = (0, Vec::new());
@@ -171,7 +171,7 @@ fn strokes_bring_more_of_cluttered_rooms_onto_the_right_face() {
     assert!(both[1] < 0.9 * lines[1], "{means:?}");
 }
 
-/// A picture rail that hides the ceiling's seam: by lines alone the ceiling begins at it.
+/// A picture rail in front of a hidden ceiling seam: from lines alone, the ceiling begins at the rail.
 #[test]
 fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     let camera = camera(0.1, 0.2, 0.0, SIZE[0], SIZE[1]);
@@ -201,7 +201,7 @@ fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     println!("{without:?} {with:?}");
     assert!((without.sides[2] / -rail - 1.0).abs() < 0.03, "{without:?}");
     assert!((with.sides[2] / sides[2] - 1.0).abs() < 0.15, "{with:?}");
-    // Which is the plane is found, not presumed: painted the other way round, the back wall lies on one face.
+    // The plane is inferred, not assumed: with the two kinds swapped, the strokes on the back wall lie on one face.
     let turned = strokes.map(|(pixels, positive)| (pixels, !positive));
     assert!((layout_of(&camera, &segments, &turned).sides[2] / sides[2] - 1.0).abs() < 0.15);
 }
@@ -217,7 +217,7 @@ fn a_mirrored_room_is_laid_out_as_the_mirrored_box() {
             axes: flip * room.camera.axes * flip,
             ..room.camera
         };
-        // In another order, and each from its other end.
+        // Reverse the order of segments and their end points.
         let segments: Vec<_> =
             (room.segments.iter().rev()).map(|(s, axis)| (Segment { a: across(s.b), b: across(s.a) }, *axis)).collect();
         let moved = |&p: &u32| {
@@ -238,7 +238,7 @@ fn a_mirrored_room_is_laid_out_as_the_mirrored_box() {
 fn strokes_alone_shape_the_room() {
     let camera = camera(0.0, 0.0, 0.0, SIZE[0], SIZE[1]);
     let line = |y: f64| painted(DVec2::new(250.0, y), DVec2::new(390.0, y), SIZE);
-    // A usual room's ceiling begins at 0.4 of the focal length above the middle, row 35: here it begins lower.
+    // The ceiling of the prior room begins at 0.4 of the focal length above the centre, row 35; here it begins lower.
     let strokes = [(line(20.0), true), (line(140.0), true), (line(160.0), false), (line(300.0), false)];
     let layout = layout_of(&camera, &[], &strokes);
     let face = |y: usize| truth(&camera, &layout.sides, 320, y).1;
@@ -254,12 +254,12 @@ fn strokes_of_one_kind_off_the_photo_and_at_odds() {
     let room = Cluttered::new(3);
     let plain = layout_of(&room.camera, &room.segments, &[]);
     let beyond = vec![(SIZE[0] * SIZE[1]) as u32, u32::MAX];
-    // What lies elsewhere says nothing if no one says where the plane is.
+    // Strokes elsewhere are uninformative without a stroke on the plane.
     let others: Vec<_> = room.strokes.iter().filter(|s| !s.1).cloned().collect();
     for silent in [vec![(beyond.clone(), true)], vec![(vec![], true)], others, vec![(beyond, false)]] {
         assert_eq!(layout_of(&room.camera, &room.segments, &silent), plain);
     }
-    // Both kinds on every pixel: nothing speaks for one box, and the answer is one all the same.
+    // Both kinds on every pixel: contradictory evidence still yields a valid box.
     let all: Vec<u32> = (0..(SIZE[0] * SIZE[1]) as u32).collect();
     let layout = layout_of(&room.camera, &room.segments, &[(all.clone(), true), (all, false)]);
     assert!(layout.sides.iter().all(|s| s.is_finite() && *s > 0.0) && (0.0..=1.0).contains(&layout.trust));

@@ -1,17 +1,17 @@
-//! Convolutions of images, direct: no matrix of patches is ever made. Four output channels by sixteen pixels are summed in
+//! Direct convolution of images, without an im2col matrix. Four output channels by sixteen pixels are accumulated in
 //! registers, over input channels and taps in order.
 
 use super::super::read::unsupported;
-use super::super::tensor::{Room, Tensor};
+use super::super::tensor::{MemoryBudget, Tensor};
 use super::pool::{Padding, Window};
 use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::simd::widest;
 
-/// Pixels along a row that are summed together.
+/// Pixels along a row that are accumulated together.
 const LANES: usize = 16;
-/// Output channels that are summed together.
+/// Output channels that are accumulated together.
 const GROUP: usize = 4;
 
 pub struct Conv {
@@ -30,7 +30,7 @@ impl Conv {
         Ok(Self { window: Window::read(at)?, groups, output_padding, output_shape: at.integers("output_shape") })
     }
 
-    /// Weights `[out, in / groups, rows, columns]`.
+    /// Convolution with weights `[out, in / groups, rows, columns]`.
     pub fn run(&self, call: &Call) -> Result<Tensor> {
         let (x, weights, bias) = (call.input(0)?, call.input(1)?, call.optional(2));
         let [batch, channels, height, width] = x.shape_of()?;
@@ -47,17 +47,17 @@ impl Conv {
             Some(bias) if bias.len() == out_channels => bias.as_floats()?,
             Some(bias) => return Err(Error::format(format!("{} biases for {out_channels} channels", bias.len()))),
             None => {
-                zeros = call.room.vec(out_channels, 0.0)?;
+                zeros = call.budget.vec(out_channels, 0.0)?;
                 &zeros
             }
         };
         let place = self.window.place([height, width], [rows, columns], false)?;
-        let padded = Padded::of(x.as_floats()?, batch * channels, [height, width], &place, call.room)?;
+        let padded = Padded::of(x.as_floats()?, batch * channels, [height, width], &place, call.budget)?;
         let [out_height, out_width] = place.out;
         let shape = vec![batch, out_channels, out_height, out_width];
-        let mut out = call.room.zeros(&shape)?;
+        let mut out = call.budget.zeros(&shape)?;
 
-        // Output channels of one group that share what they read.
+        // Output channels of one group that read the same inputs.
         let of_group = out_channels / groups;
         let together = [GROUP, 2, 1].into_iter().find(|n| of_group.is_multiple_of(*n)).unwrap_or(1);
         let weights = weights.as_floats()?;
@@ -76,7 +76,7 @@ impl Conv {
                     return;
                 }
                 match together {
-                    GROUP => four(&source, &mine, &taps, y, out_width, out),
+                    GROUP => four_channels(&source, &mine, &taps, y, out_width, out),
                     2 => two(&source, &mine, &taps, y, out_width, out),
                     _ => single(&source, &mine, &taps, y, out_width, out),
                 }
@@ -86,7 +86,8 @@ impl Conv {
         Ok(Tensor::floats(shape, out))
     }
 
-    /// The transpose of a convolution, weights `[in, out / groups, rows, columns]`: every output pixel gathers what reaches it.
+    /// Transposed convolution with weights `[in, out / groups, rows, columns]`: every output pixel gathers its
+    /// contributions.
     pub fn run_transposed(&self, call: &Call) -> Result<Tensor> {
         let (x, weights, bias) = (call.input(0)?, call.input(1)?, call.optional(2));
         let [batch, channels, height, width] = x.shape_of()?;
@@ -107,11 +108,11 @@ impl Conv {
             let whole =
                 strides[axis] * size.saturating_sub(1) + self.output_padding[axis] + (kernel - 1) * dilations[axis] + 1;
             let cut = pads[axis] + pads[axis + 2];
-            whole.checked_sub(cut).ok_or_else(|| Error::format(format!("pads of {cut} leave nothing of {whole}")))
+            whole.checked_sub(cut).ok_or_else(|| Error::format(format!("pads of {cut} remove all of {whole}")))
         };
         let (out_height, out_width) = (out_size(0, height, rows)?, out_size(1, width, columns)?);
         let shape = vec![batch, out_channels, out_height, out_width];
-        let mut out = call.room.zeros(&shape)?;
+        let mut out = call.budget.zeros(&shape)?;
         let (values, weights) = (x.as_floats()?, weights.as_floats()?);
         let bias = bias.map(Tensor::as_floats).transpose()?.filter(|bias| bias.len() == out_channels);
         let per_group = channels / self.groups;
@@ -147,7 +148,7 @@ impl Conv {
     }
 }
 
-/// Images with a border of zeros.
+/// Images padded with a border of zeros.
 struct Padded {
     values: Vec<f32>,
     height: usize,
@@ -155,11 +156,17 @@ struct Padded {
 }
 
 impl Padded {
-    fn of(values: &[f32], planes: usize, size: [usize; 2], place: &super::pool::Place, room: Room) -> Result<Self> {
+    fn of(
+        values: &[f32],
+        planes: usize,
+        size: [usize; 2],
+        place: &super::pool::Place,
+        budget: MemoryBudget,
+    ) -> Result<Self> {
         let [height, width] = size;
         let [top, left] = place.before;
-        let (padded_height, padded_width) = (place.reach[0].max(height + top), place.reach[1].max(width + left));
-        let mut padded = room.zeros(&[planes, padded_height, padded_width])?;
+        let (padded_height, padded_width) = (place.extent[0].max(height + top), place.extent[1].max(width + left));
+        let mut padded = budget.zeros(&[planes, padded_height, padded_width])?;
         for (k, row) in values.chunks_exact(width.max(1)).enumerate() {
             let (plane, y) = (k / height, k % height);
             padded[(plane * padded_height + y + top) * padded_width + left..][..width].copy_from_slice(row);
@@ -176,7 +183,7 @@ struct Planes<'a> {
 }
 
 struct Weights<'a> {
-    /// Of the output channels that are summed together, one after the other.
+    /// Weights of the output channels that are accumulated together, one after the other.
     taps: &'a [f32],
     bias: &'a [f32],
 }
@@ -189,7 +196,7 @@ struct Taps {
     dilations: [usize; 2],
 }
 
-/// A row of `N` output channels.
+/// Computes a row of `N` output channels.
 #[inline(always)]
 fn row<const N: usize>(source: &Planes, weights: &Weights, taps: &Taps, y: usize, width: usize, out: &mut [f32]) {
     let plane = out.len() / N;
@@ -232,7 +239,7 @@ fn row<const N: usize>(source: &Planes, weights: &Weights, taps: &Taps, y: usize
 }
 
 widest! {
-    fn four(source: &Planes, weights: &Weights, taps: &Taps, y: usize, width: usize, out: &mut [f32]) {
+    fn four_channels(source: &Planes, weights: &Weights, taps: &Taps, y: usize, width: usize, out: &mut [f32]) {
         row::<GROUP>(source, weights, taps, y, width, out);
     }
 }

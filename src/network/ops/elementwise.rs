@@ -1,13 +1,13 @@
-//! Operators that go item by item, with numpy's broadcasting.
+//! Element-wise operators, with numpy's broadcasting.
 
-use super::super::tensor::{Data, Room, Tensor, count};
+use super::super::tensor::{Data, MemoryBudget, Tensor, count};
 use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_collect;
 use crate::job::Job;
 
-/// Items of a row that is one unit of work.
+/// Items per unit of work.
 const ROW: usize = 4096;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub enum Unary {
 impl Unary {
     pub fn read(kind: &str, at: &Settings) -> Option<Self> {
         Some(match kind {
-            // What only training tells apart from the identity.
+            // Dropout is the identity outside training.
             "Identity" | "Dropout" => Self::Identity,
             "Relu" => Self::Relu,
             "LeakyRelu" => Self::LeakyRelu(at.float("alpha", 0.01)),
@@ -108,7 +108,7 @@ impl Unary {
     }
 }
 
-/// The error function, within 2e-7 (Abramowitz and Stegun 7.1.26, in double precision).
+/// The error function, accurate to 2e-7 (Abramowitz and Stegun 7.1.26, in double precision).
 pub fn erf(x: f32) -> f32 {
     let z = f64::from(x.abs());
     let t = 1.0 / (1.0 + 0.327_591_1 * z);
@@ -122,7 +122,7 @@ pub fn unary(op: Unary, call: &Call) -> Result<Tensor> {
     match (&x.data, op) {
         (_, Unary::Identity) => Ok(x.clone()),
         (Data::Floats(values), _) if op != Unary::Not => {
-            let mut out = call.room.zeros(&x.shape)?;
+            let mut out = call.budget.zeros(&x.shape)?;
             by_rows(&mut out, call.job, |start, row| {
                 row.iter_mut().zip(&values[start..]).for_each(|(out, &x)| *out = op.of(x));
             })?;
@@ -135,7 +135,7 @@ pub fn unary(op: Unary, call: &Call) -> Result<Tensor> {
                 Unary::Relu => v.max(0),
                 _ => i64::from(v == 0),
             };
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             out.iter_mut().zip(values.iter()).for_each(|(out, v)| *out = of(v));
             Ok(Tensor::integers(x.shape.clone(), out))
         }
@@ -143,7 +143,7 @@ pub fn unary(op: Unary, call: &Call) -> Result<Tensor> {
     }
 }
 
-/// Works on rows of one length, the last one shorter; `start` is the number of a row's first item.
+/// Processes rows of equal length, the last one shorter; `start` is the index of a row's first item.
 pub fn by_rows<T: Send>(out: &mut [T], job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     let whole = out.len() / ROW * ROW;
     let (rows, rest) = out.split_at_mut(whole);
@@ -205,7 +205,7 @@ impl Binary {
             Self::Div if b == 0 => 0,
             Self::Div => a.wrapping_div(b),
             Self::Mod if b == 0 => 0,
-            // The sign of the divisor, as numpy has it.
+            // The result has the sign of the divisor, as in numpy.
             Self::Mod => a.wrapping_rem(b).wrapping_add(b).wrapping_rem(b),
             Self::Pow => a.wrapping_pow(u32::try_from(b).unwrap_or(0)),
             Self::Min => a.min(b),
@@ -228,7 +228,7 @@ impl Binary {
     }
 }
 
-/// Two or more inputs, from left to right.
+/// Two or more inputs, combined from left to right.
 pub fn binary(op: Binary, call: &Call) -> Result<Tensor> {
     let mut left = call.input(0)?.clone();
     for k in 1..call.inputs.len().max(2) {
@@ -241,17 +241,17 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
     let spread = Spread::of(&[left, right])?;
     match (&left.data, &right.data) {
         (Data::Floats(a), Data::Floats(b)) => {
-            let room = call.room;
+            let budget = call.budget;
             macro_rules! floats {
                 ($of:expr) => {{
-                    let out = spread.zip(room, call.job, a, b, 0.0f32, $of)?;
+                    let out = spread.zip(budget, call.job, a, b, 0.0f32, $of)?;
                     Ok(Tensor::floats(spread.shape, out))
                 }};
             }
             macro_rules! truths {
                 ($of:expr) => {{
                     let of = $of;
-                    let out = spread.zip(room, call.job, a, b, 0i64, |a: f32, b: f32| i64::from(of(a, b)))?;
+                    let out = spread.zip(budget, call.job, a, b, 0i64, |a: f32, b: f32| i64::from(of(a, b)))?;
                     Ok(Tensor::integers(spread.shape, out))
                 }};
             }
@@ -260,7 +260,7 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
                 Binary::Sub => floats!(|a, b| a - b),
                 Binary::Mul => floats!(|a, b| a * b),
                 Binary::Div => floats!(|a, b| a / b),
-                // Squares are most of what powers are used for.
+                // Fast path: most powers are squares.
                 Binary::Pow if b.len() == 1 && b[0] == 2.0 => floats!(|a, _| a * a),
                 Binary::Pow => floats!(|a: f32, b| a.powf(b)),
                 Binary::Min => floats!(|a: f32, b| a.min(b)),
@@ -276,10 +276,10 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
             }
         }
         (Data::Integers(a), Data::Integers(b)) => {
-            let out = spread.zip(call.room, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
+            let out = spread.zip(call.budget, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
             Ok(Tensor::integers(spread.shape, out))
         }
-        // An exponent may be whole.
+        // The exponent may be an integer.
         (Data::Floats(_), Data::Integers(b)) if op == Binary::Pow => {
             let b = try_collect(b.iter().map(|&v| v as f32))?;
             pair(op, left, &Tensor::floats(right.shape.clone(), b), call)
@@ -288,10 +288,10 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
     }
 }
 
-/// How tensors are spread over one shape.
+/// Broadcasting of several tensors to a common shape.
 pub struct Spread {
     pub shape: Vec<usize>,
-    /// Of each tensor along each axis; 0 where it is repeated.
+    /// Stride of each tensor along each axis; 0 where it is repeated.
     strides: Vec<Vec<usize>>,
 }
 
@@ -323,7 +323,7 @@ impl Spread {
         Ok(Self { shape, strides })
     }
 
-    /// Where in a tensor the row along the last axis starts that is the `row`th of the shape.
+    /// The position in a tensor at which the `row`th row of the shape (along the last axis) starts.
     fn start(&self, tensor: usize, mut row: usize) -> usize {
         let outer = self.shape.len().saturating_sub(1);
         let mut start = 0;
@@ -336,7 +336,7 @@ impl Spread {
 
     fn zip<A: Copy + Sync, T: Clone + Send>(
         &self,
-        room: Room,
+        budget: MemoryBudget,
         job: Job,
         a: &[A],
         b: &[A],
@@ -344,7 +344,7 @@ impl Spread {
         of: impl Fn(A, A) -> T + Sync,
     ) -> Result<Vec<T>> {
         let total = count(&self.shape)?;
-        let mut out = room.vec(total, zero)?;
+        let mut out = budget.vec(total, zero)?;
         if a.len() == total && b.len() == total {
             by_rows(&mut out, job, |start, row| {
                 for ((out, &a), &b) in row.iter_mut().zip(&a[start..]).zip(&b[start..]) {
@@ -373,9 +373,9 @@ impl Spread {
         Ok(out)
     }
 
-    /// The items of a tensor over the whole shape.
+    /// The items of a tensor broadcast to the whole shape.
     pub fn all<T: Copy + Send + Sync>(&self, tensor: usize, values: &[T], zero: T, call: &Call) -> Result<Vec<T>> {
-        let mut out = call.room.vec(count(&self.shape)?, zero)?;
+        let mut out = call.budget.vec(count(&self.shape)?, zero)?;
         let length = self.shape.last().copied().unwrap_or(1);
         let step = self.strides[tensor].last().copied().unwrap_or(0);
         exec::for_rows(&mut out, length, call.job, |k, row| {
@@ -386,7 +386,7 @@ impl Spread {
     }
 }
 
-/// The bounds are inputs in newer files.
+/// Clips to bounds, which newer files give as inputs.
 pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let bound = |setting: Option<f32>, k: usize, none: f32| match (setting, call.optional(k)) {
@@ -396,7 +396,7 @@ pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> 
     };
     let (low, high) = (bound(low, 1, f32::NEG_INFINITY)?, bound(high, 2, f32::INFINITY)?);
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     by_rows(&mut out, call.job, |start, row| {
         row.iter_mut().zip(&values[start..]).for_each(|(out, v)| *out = v.max(low).min(high));
     })?;
@@ -428,18 +428,18 @@ pub fn cast(to_float: bool, is_bool: bool, call: &Call) -> Result<Tensor> {
     let shape = x.shape.clone();
     Ok(match &x.data {
         Data::Integers(values) if to_float => {
-            let mut out = call.room.zeros(&shape)?;
+            let mut out = call.budget.zeros(&shape)?;
             out.iter_mut().zip(values.iter()).for_each(|(out, &v)| *out = v as f32);
             Tensor::floats(shape, out)
         }
         Data::Floats(values) if !to_float => {
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             let of = |v: f32| if is_bool { i64::from(v != 0.0) } else { v as i64 };
             out.iter_mut().zip(values.iter()).for_each(|(out, &v)| *out = of(v));
             Tensor::integers(shape, out)
         }
         Data::Integers(values) if is_bool => {
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             out.iter_mut().zip(values.iter()).for_each(|(out, &v)| *out = i64::from(v != 0));
             Tensor::integers(shape, out)
         }

@@ -1,4 +1,4 @@
-//! Operators that put items elsewhere: each output axis says which index of the input's axis it shows, or none.
+//! Operators that rearrange items: each output index along an axis maps to an input index, or to none.
 
 use super::super::read::unsupported;
 use super::super::tensor::{Data, Tensor, count};
@@ -6,7 +6,8 @@ use super::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// The items of a tensor of the same rank whose index along each axis is `index(axis, i)`, and `fill` where there is none.
+/// The items of a tensor of the same rank with index `index(axis, i)` along each axis, and `fill` where that is
+/// `None`.
 fn picked(
     x: &Tensor,
     shape: Vec<usize>,
@@ -15,10 +16,10 @@ fn picked(
     index: impl Fn(usize, usize) -> Option<usize>,
 ) -> Result<Tensor> {
     let (total, rank) = (count(&shape)?, shape.len());
-    // Room first: the maps below are as long as the axes.
+    // Allocate first: the maps below are as long as the axes.
     let data = match &x.data {
-        Data::Floats(values) => Values::Floats(values, call.room.vec(total, fill)?),
-        Data::Integers(values) => Values::Integers(values, call.room.vec(total, fill as i64)?),
+        Data::Floats(values) => Values::Floats(values, call.budget.vec(total, fill)?),
+        Data::Integers(values) => Values::Integers(values, call.budget.vec(total, fill as i64)?),
     };
     let maps: Vec<Vec<Option<usize>>> = if total == 0 {
         Vec::new()
@@ -57,7 +58,7 @@ impl Rows<'_> {
         let outer = self.to.len().saturating_sub(1);
         let length = self.to.last().copied().unwrap_or(1);
         exec::for_rows(out, length, call.job, |row, out| {
-            // The start of the row's source, from the slowest axis on.
+            // Compute the start of the row's source, from the slowest axis on.
             let (mut start, mut rest) = (Some(0), row);
             let mut stride = self.from.last().copied().unwrap_or(1);
             for axis in (0..outer).rev() {
@@ -81,7 +82,7 @@ impl Rows<'_> {
     }
 }
 
-/// What lies beyond an image.
+/// The padding mode beyond an image.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Pad {
     Constant,
@@ -152,7 +153,7 @@ pub fn slice(
         let axis = x.axis(axis)?;
         let size = x.shape[axis] as i64;
         let wrapped = |v: i64| if v < 0 { v.saturating_add(size) } else { v };
-        // As numpy: what lies outside is cut off.
+        // Clip to the valid range, as numpy does.
         let (start, end) = match step {
             0 => return Err(Error::format("a slice has a step of 0")),
             1.. => (wrapped(start).clamp(0, size), wrapped(end).clamp(0, size)),
@@ -168,7 +169,7 @@ pub fn slice(
     })
 }
 
-/// Takes the items along an axis whose numbers are given.
+/// Selects items along an axis by given indices.
 pub fn gather(axis: i64, call: &Call) -> Result<Tensor> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
     let axis = x.axis(axis)?;
@@ -187,14 +188,14 @@ pub fn gather(axis: i64, call: &Call) -> Result<Tensor> {
     taken.reshaped(shape)
 }
 
-/// A shape from a list of integers.
+/// A shape from a tensor of integers.
 pub fn shape_from(tensor: &Tensor) -> Result<Vec<usize>> {
     let sizes = tensor.as_integers()?;
     let of = |&d: &i64| usize::try_from(d).map_err(|_| Error::format(format!("a shape holds {d}")));
     sizes.iter().map(of).collect()
 }
 
-/// The tensor with axes of 1 in front, up to a rank.
+/// The tensor with leading axes of size 1 added up to a rank.
 fn of_rank(x: &Tensor, rank: usize) -> Tensor {
     let mut shape = vec![1; rank.saturating_sub(x.shape.len())];
     shape.extend(&x.shape);
@@ -208,7 +209,7 @@ pub fn expand(call: &Call) -> Result<Tensor> {
     let first = shape.len() - wanted.len();
     for (to, &size) in shape[first..].iter_mut().zip(&wanted) {
         if *to != size && *to != 1 && size != 1 {
-            return Err(Error::format(format!("a tensor of shape {:?} cannot be spread over {wanted:?}", x.shape)));
+            return Err(Error::format(format!("a tensor of shape {:?} cannot be broadcast to {wanted:?}", x.shape)));
         }
         *to = if *to == 1 { size } else { *to };
     }
@@ -228,7 +229,7 @@ pub fn tile(call: &Call) -> Result<Tensor> {
     picked(x, shape, 0.0, call, |axis, i| Some(i % x.shape[axis]))
 }
 
-/// Exchanges axes: output axis `k` is the input's axis `order[k]`; an empty order turns them round.
+/// Permutes axes: output axis `k` is the input's axis `order[k]`; an empty order reverses them.
 pub fn transpose(order: &[i64], call: &Call) -> Result<Tensor> {
     turned(call.input(0)?, order, call)
 }
@@ -273,24 +274,24 @@ fn turned(x: &Tensor, order: &[i64], call: &Call) -> Result<Tensor> {
     }
     match &x.data {
         Data::Floats(values) => {
-            let mut out = call.room.zeros(&shape)?;
+            let mut out = call.budget.zeros(&shape)?;
             copy(values, &mut out, &shape, &strides, call)?;
             Ok(Tensor::floats(shape, out))
         }
         Data::Integers(values) => {
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             copy(values, &mut out, &shape, &strides, call)?;
             Ok(Tensor::integers(shape, out))
         }
     }
 }
 
-/// Channels become pixels: `block²` of them one pixel's neighbourhood.
+/// Moves channels to pixels: `block²` channels become one pixel's neighbourhood.
 pub fn depth_to_space(block: usize, columns_first: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let [batch, channels, height, width] = x.shape_of()?;
     if channels % (block * block) != 0 {
-        return Err(Error::format(format!("{channels} channels are no multiple of {block} x {block}")));
+        return Err(Error::format(format!("{channels} channels are not a multiple of {block} x {block}")));
     }
     let left = channels / (block * block);
     let (apart, order) = if columns_first {

@@ -1,4 +1,4 @@
-//! Products of matrices: four rows by sixteen columns are summed in registers, in order along the shared axis.
+//! Matrix products: four rows by sixteen columns are accumulated in registers, in order along the shared axis.
 
 use super::super::tensor::{Tensor, count};
 use super::elementwise::Spread;
@@ -10,7 +10,7 @@ use crate::simd::widest;
 
 const ROWS: usize = 4;
 const LANES: usize = 16;
-/// Length along the shared axis whose part of the right matrix stays in the cache.
+/// Block length along the shared axis for which the block of the right matrix stays in the cache.
 const DEPTH: usize = 256;
 
 pub struct Gemm {
@@ -59,14 +59,14 @@ impl Gemm {
 fn transposed(tensor: &Tensor, call: &Call) -> Result<Tensor> {
     let [rows, columns] = tensor.shape_of()?;
     let values = tensor.as_floats()?;
-    let mut out = call.room.zeros(&[columns, rows])?;
+    let mut out = call.budget.zeros(&[columns, rows])?;
     exec::for_rows(&mut out, rows, call.job, |c, out| {
         out.iter_mut().enumerate().for_each(|(r, out)| *out = values[r * columns + c]);
     })?;
     Ok(Tensor::floats(vec![columns, rows], out))
 }
 
-/// The product of two stacks of matrices, as numpy's.
+/// The product of two stacks of matrices, as in numpy.
 pub fn run(call: &Call) -> Result<Tensor> {
     product(call.input(0)?, call.input(1)?, call)
 }
@@ -89,7 +89,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
         return Err(wrong());
     }
 
-    // Which matrix of each stack goes with which.
+    // Pair the matrices of both stacks by broadcasting.
     let numbered = |shape: &[usize]| -> Result<Tensor> {
         Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))
     };
@@ -104,9 +104,9 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     let mut shape = spread.shape.clone();
     shape.extend([rows, columns]);
     count(&shape)?;
-    // Rows in fours, the last four filled up: they are cut off again.
+    // Process rows in fours; pad the last four, and cut the padding off afterwards.
     let padded = rows.next_multiple_of(ROWS);
-    let mut out = call.room.zeros(&[stack, padded, columns])?;
+    let mut out = call.budget.zeros(&[stack, padded, columns])?;
     exec::for_rows(&mut out, ROWS * columns, call.job, |k, out| {
         if call.job.is_cancelled() {
             return;
@@ -115,7 +115,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
         let b = &values_b[of_b[m] as usize * shared * columns..][..shared * columns];
         let a = &values_a[(of_a[m] as usize * rows + first) * shared..][..ROWS.min(rows - first) * shared];
         let block = Block { a, b, shared, columns };
-        if a.len() == ROWS * shared { four(&block, out) } else { rest(&block, out) }
+        if a.len() == ROWS * shared { four_rows(&block, out) } else { rest(&block, out) }
     })?;
     call.job.check()?;
     if padded != rows {
@@ -134,7 +134,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(shape, out))
 }
 
-/// Some rows of the left matrix, and the right one.
+/// Some rows of the left matrix, and the right matrix.
 struct Block<'a> {
     a: &'a [f32],
     b: &'a [f32],
@@ -143,13 +143,13 @@ struct Block<'a> {
 }
 
 widest! {
-    fn four(block: &Block, out: &mut [f32]) {
+    fn four_rows(block: &Block, out: &mut [f32]) {
         rows_of::<ROWS>(block, out);
     }
 }
 
 widest! {
-    /// The last rows, fewer than four.
+    /// Processes the last rows, fewer than four.
     fn rest(block: &Block, out: &mut [f32]) {
         for (a, out) in block.a.chunks_exact(block.shared.max(1)).zip(out.chunks_exact_mut(block.columns)) {
             rows_of::<1>(&Block { a, ..*block }, out);

@@ -1,25 +1,25 @@
-//! The operators: how each is read from its node, and which function runs it. Their meaning is that of the ONNX operator
-//! specification, <https://onnx.ai/onnx/operators/>.
+//! The operators: parsing from a node, and dispatch. Their semantics are those of the ONNX operator specification,
+//! <https://onnx.ai/onnx/operators/>.
 
 mod conv;
 mod elementwise;
 mod gather;
-mod layout;
 mod matmul;
 mod norm;
 mod pool;
 mod reduce;
 mod resize;
+mod shapes;
 
 use super::read::{Attribute, NodeMessage, unsupported};
-use super::tensor::{Room, Tensor};
+use super::tensor::{MemoryBudget, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use elementwise::{Binary, Unary};
 pub use resize::cubic_planes as resize_cubic;
 use std::collections::HashMap;
 
-/// An operator with its settings. Those that newer files give as inputs and older ones as settings are `Option`s.
+/// An operator with its attributes. Attributes that newer files give as inputs are `Option`s.
 pub enum Op {
     Constant(Tensor),
     Unary(Unary),
@@ -57,17 +57,17 @@ pub enum Op {
     DepthToSpace { block: usize, columns_first: bool },
 }
 
-/// What a node is run with.
+/// The arguments of a node's execution.
 pub struct Call<'a> {
     pub inputs: Vec<Option<&'a Tensor>>,
-    pub room: Room,
-    /// How many outputs the node has.
+    pub budget: MemoryBudget,
+    /// Number of the node's outputs.
     pub outputs: usize,
     pub job: Job<'a>,
 }
 
 impl<'a> Call<'a> {
-    /// An input that must be there.
+    /// A required input.
     pub fn input(&self, k: usize) -> Result<&'a Tensor> {
         self.optional(k).ok_or_else(|| Error::format(format!("input {k} is missing")))
     }
@@ -76,7 +76,7 @@ impl<'a> Call<'a> {
         self.inputs.get(k).copied().flatten()
     }
 
-    /// Integers from a setting, or else from an input if there is one.
+    /// Integers from an attribute, or else from an optional input.
     pub fn integers(&self, setting: &Option<Vec<i64>>, k: usize) -> Result<Option<Vec<i64>>> {
         match (setting, self.optional(k)) {
             (Some(values), _) => Ok(Some(values.clone())),
@@ -86,7 +86,7 @@ impl<'a> Call<'a> {
     }
 }
 
-/// The settings of a node.
+/// The attributes of a node.
 pub struct Settings<'a, 'b>(&'b HashMap<&'a str, Attribute<'a>>);
 
 impl<'a> Settings<'a, '_> {
@@ -106,7 +106,7 @@ impl<'a> Settings<'a, '_> {
         self.0.get(name).map(|a| a.integers.clone())
     }
 
-    /// Whole numbers from 0 to 65536, of which there must be so many.
+    /// Exactly `N` integers from 0 to 65536.
     pub fn sizes<const N: usize>(&self, name: &str, default: usize) -> Result<[usize; N]> {
         let Some(values) = self.integers(name).filter(|values| !values.is_empty()) else { return Ok([default; N]) };
         let wrong = || Error::format(format!("{name} is {values:?}; {N} numbers from 0 to 65536 are needed"));
@@ -115,7 +115,7 @@ impl<'a> Settings<'a, '_> {
         sizes.try_into().map_err(|_| wrong())
     }
 
-    /// A switch that must be at the one value that is done.
+    /// Checks that an attribute has the only supported value.
     pub fn only(&self, name: &str, value: i64) -> Result<()> {
         match self.integer(name, value) {
             found if found == value => Ok(()),
@@ -129,7 +129,7 @@ impl<'a> Settings<'a, '_> {
 }
 
 impl Op {
-    /// Reads the settings of a node; `constants` are those of its inputs that are known.
+    /// Parses the attributes of a node; `constants` are its inputs known in advance.
     pub fn read(node: &NodeMessage, opset: i64, constants: &[Option<&Tensor>]) -> Result<Self> {
         let at = Settings(&node.attributes);
         if !matches!(node.domain, "" | "ai.onnx") {
@@ -166,7 +166,7 @@ impl Op {
             "LayerNormalization" => {
                 Self::LayerNorm { axis: at.integer("axis", -1), epsilon: at.float("epsilon", 1e-5) }
             }
-            // Before opset 13 all axes from this one on are one.
+            // Before opset 13, softmax is over all axes from this one on.
             "Softmax" if opset < 13 => Self::Softmax { axis: at.integer("axis", 1), flattens: true },
             "Softmax" => Self::Softmax { axis: at.integer("axis", -1), flattens: false },
             "ReduceMean" | "ReduceSum" | "ReduceMax" | "ReduceMin" => {
@@ -208,7 +208,7 @@ impl Op {
         })
     }
 
-    /// The outputs, as many as the operator has; one more or less than the node wants does no harm.
+    /// Computes the operator's outputs; the node may use fewer.
     pub fn run(&self, call: &Call) -> Result<Vec<Tensor>> {
         let one = |tensor: Result<Tensor>| tensor.map(|tensor| vec![tensor]);
         match self {
@@ -231,20 +231,20 @@ impl Op {
             Self::Reduce(reduce) => one(reduce.run(call)),
             Self::Resize(resize) => one(resize.run(call)),
             Self::Pad { mode, pads, value } => one(gather::pad(*mode, pads, *value, call)),
-            Self::Reshape { keeps_zero } => one(layout::reshape(*keeps_zero, call)),
-            Self::Flatten { axis } => one(layout::flatten(*axis, call)),
-            Self::Squeeze { axes } => one(layout::squeeze(axes, call)),
-            Self::Unsqueeze { axes } => one(layout::unsqueeze(axes, call)),
+            Self::Reshape { keeps_zero } => one(shapes::reshape(*keeps_zero, call)),
+            Self::Flatten { axis } => one(shapes::flatten(*axis, call)),
+            Self::Squeeze { axes } => one(shapes::squeeze(axes, call)),
+            Self::Unsqueeze { axes } => one(shapes::unsqueeze(axes, call)),
             Self::Transpose { order } => one(gather::transpose(order, call)),
-            Self::Concat { axis } => one(layout::concat(*axis, call)),
-            Self::Split { axis, sizes } => layout::split(*axis, sizes, call),
+            Self::Concat { axis } => one(shapes::concat(*axis, call)),
+            Self::Split { axis, sizes } => shapes::split(*axis, sizes, call),
             Self::Slice { starts, ends, axes } => one(gather::slice(starts, ends, axes, call)),
             Self::Gather { axis } => one(gather::gather(*axis, call)),
             Self::Expand => one(gather::expand(call)),
             Self::Tile => one(gather::tile(call)),
-            Self::Shape { start, end } => one(layout::shape(*start, *end, call)),
-            Self::ConstantOfShape(value) => one(layout::filled(value, call)),
-            Self::Range => one(layout::range(call)),
+            Self::Shape { start, end } => one(shapes::shape(*start, *end, call)),
+            Self::ConstantOfShape(value) => one(shapes::filled(value, call)),
+            Self::Range => one(shapes::range(call)),
             Self::DepthToSpace { block, columns_first } => one(gather::depth_to_space(*block, *columns_first, call)),
         }
     }
@@ -267,5 +267,5 @@ fn constant(at: &Settings) -> Result<Tensor> {
     if let Some(a) = get("value_ints") {
         return Ok(Tensor::integers(vec![a.integers.len()], a.integers.clone()));
     }
-    Err(unsupported("a constant that is no number"))
+    Err(unsupported("a constant that is not numeric"))
 }

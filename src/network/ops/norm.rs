@@ -5,7 +5,7 @@ use super::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// `scale (x - mean) / √(variance + ε) + bias`, all given for each channel.
+/// `scale (x - mean) / √(variance + ε) + bias`, with per-channel parameters.
 pub fn batch(epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let channels = x.shape.get(1).copied().unwrap_or(1);
@@ -13,7 +13,7 @@ pub fn batch(epsilon: f32, call: &Call) -> Result<Tensor> {
     let (scale, bias, mean, variance) = (of_channel(1)?, of_channel(2)?, of_channel(3)?, of_channel(4)?);
     let values = x.as_floats()?;
     let size: usize = x.shape.iter().skip(2).product();
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size, call.job, |k, out| {
         let c = k % channels;
         let factor = scale[c] / (variance[c] + epsilon).sqrt();
@@ -31,14 +31,14 @@ fn channel_values(tensor: &Tensor, channels: usize) -> Result<&[f32]> {
     Err(Error::format(format!("{} values for {channels} channels", values.len())))
 }
 
-/// Every channel of every image to zero mean and unit variance, then scaled and shifted.
+/// Normalises every channel of every image to zero mean and unit variance, then scales and shifts it.
 pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let channels = x.shape.get(1).copied().unwrap_or(1);
     let (scale, bias) = (channel_values(call.input(1)?, channels)?, channel_values(call.input(2)?, channels)?);
     let size: usize = x.shape.iter().skip(2).product();
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size, call.job, |k, out| {
         let c = k % channels;
         standardise(&values[k * size..][..size], epsilon, out);
@@ -47,7 +47,7 @@ pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(x.shape.clone(), out))
 }
 
-/// All axes from one on to zero mean and unit variance, then scaled and shifted item by item.
+/// Normalises over all axes from `axis` on to zero mean and unit variance, then scales and shifts item by item.
 pub fn layer(axis: i64, epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let axis = x.axis(axis)?;
@@ -55,7 +55,7 @@ pub fn layer(axis: i64, epsilon: f32, call: &Call) -> Result<Tensor> {
     let scale = channel_values(call.input(1)?, size)?;
     let bias = call.optional(2).map(|bias| channel_values(bias, size)).transpose()?;
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size, call.job, |k, out| {
         standardise(&values[k * size..][..size], epsilon, out);
         out.iter_mut().zip(scale).for_each(|(v, s)| *v *= s);
@@ -74,22 +74,22 @@ fn standardise(values: &[f32], epsilon: f32, out: &mut [f32]) {
     out.iter_mut().zip(values).for_each(|(out, &v)| *out = ((f64::from(v) - mean) * factor) as f32);
 }
 
-/// `e^x / Σ e^x` along an axis, or along all from one on.
+/// `e^x / Σ e^x` along an axis, or, if `flattens`, along all axes from it on.
 pub fn softmax(axis: i64, flattens: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let axis = x.axis(axis)?;
     let after: usize = if flattens { 1 } else { x.shape[axis + 1..].iter().product() };
     let size: usize = if flattens { x.shape[axis..].iter().product() } else { x.shape[axis] };
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size * after, call.job, |k, out| {
         let values = &values[k * size * after..][..size * after];
         for i in 0..after {
             let items = || (i..size * after).step_by(after);
-            let most = items().fold(f32::NEG_INFINITY, |most, j| most.max(values[j]));
+            let max = items().fold(f32::NEG_INFINITY, |max, j| max.max(values[j]));
             let mut sum = 0.0;
             for j in items() {
-                out[j] = (values[j] - most).exp();
+                out[j] = (values[j] - max).exp();
                 sum += out[j];
             }
             items().for_each(|j| out[j] /= sum);

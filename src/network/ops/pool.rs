@@ -1,4 +1,4 @@
-//! Windows over images, and what is pooled in them.
+//! Pooling over windows of images.
 
 use super::super::read::unsupported;
 use super::super::tensor::Tensor;
@@ -6,7 +6,7 @@ use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// How windows lie over an image.
+/// The placement of windows over an image.
 pub struct Window {
     pub strides: [usize; 2],
     pub dilations: [usize; 2],
@@ -16,16 +16,16 @@ pub struct Window {
 pub enum Padding {
     /// Top, left, bottom, right.
     Explicit([usize; 4]),
-    /// As much as makes the output `⌈input / stride⌉`, the odd one at the end or at the start.
+    /// Padding for which the output size is `⌈input / stride⌉`, with the odd pixel at the end or at the start.
     Same { odd_first: bool },
 }
 
-/// Windows over an image of a certain size.
+/// Windows over an image of a given size.
 pub struct Place {
     /// Rows and columns of padding before the image.
     pub before: [usize; 2],
-    /// Rows and columns that all windows together reach over, padding included.
-    pub reach: [usize; 2],
+    /// Rows and columns that all windows together cover, including padding.
+    pub extent: [usize; 2],
     pub out: [usize; 2],
 }
 
@@ -46,7 +46,7 @@ impl Window {
     }
 
     pub fn place(&self, size: [usize; 2], kernel: [usize; 2], rounds_up: bool) -> Result<Place> {
-        let mut place = Place { before: [0; 2], reach: [0; 2], out: [0; 2] };
+        let mut place = Place { before: [0; 2], extent: [0; 2], out: [0; 2] };
         for axis in 0..2 {
             let (stride, n) = (self.strides[axis], size[axis]);
             let extent = (kernel[axis].saturating_sub(1)).saturating_mul(self.dilations[axis]).saturating_add(1);
@@ -69,7 +69,7 @@ impl Window {
             }
             place.before[axis] = before;
             place.out[axis] = last + 1;
-            place.reach[axis] = last * stride + extent;
+            place.extent[axis] = last * stride + extent;
         }
         Ok(place)
     }
@@ -105,10 +105,10 @@ impl Pool {
         let place = self.window.place([height, width], self.kernel, self.rounds_up)?;
         let [out_height, out_width] = place.out;
         let shape = vec![batch, channels, out_height, out_width];
-        let mut out = call.room.zeros(&shape)?;
+        let mut out = call.budget.zeros(&shape)?;
         let values = x.as_floats()?;
         let Window { strides, dilations, .. } = &self.window;
-        // Where the taps of the window at `k` along an axis lie inside the image.
+        // The taps of the window at `k` along an axis that lie inside the image.
         let inside = |axis: usize, k: usize, size: usize| {
             let start = k * strides[axis];
             (0..self.kernel[axis]).filter_map(move |i| {
@@ -138,7 +138,7 @@ pub fn global_average(call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let [batch, channels, height, width] = x.shape_of()?;
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&[batch, channels, 1, 1])?;
+    let mut out = call.budget.zeros(&[batch, channels, 1, 1])?;
     let size = (height * width).max(1);
     for (out, plane) in out.iter_mut().zip(values.chunks_exact(size)) {
         *out = (plane.iter().map(|&v| f64::from(v)).sum::<f64>() / size as f64) as f32;

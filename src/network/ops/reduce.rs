@@ -1,4 +1,4 @@
-//! Sums, means and extremes along axes.
+//! Sums, means and extrema along axes.
 
 use super::super::tensor::{Tensor, count};
 use super::{Call, Settings};
@@ -42,7 +42,7 @@ impl Reduce {
             is_reduced[x.axis(axis)?] = true;
         }
 
-        // Where each item of the input goes, axis by axis.
+        // The output position of each input item, axis by axis.
         let kept: Vec<usize> = x.shape.iter().zip(&is_reduced).map(|(&n, &r)| if r { 1 } else { n }).collect();
         let mut strides = vec![0; kept.len()];
         let mut stride = 1;
@@ -56,7 +56,7 @@ impl Reduce {
             Kind::Max => f64::NEG_INFINITY,
             Kind::Min => f64::INFINITY,
         };
-        let mut sums = call.room.vec(total, start)?;
+        let mut sums = call.budget.vec(total, start)?;
         let last = x.shape.last().copied().unwrap_or(1).max(1);
         let step = strides.last().copied().unwrap_or(0);
         for (row, values) in x.as_floats()?.chunks_exact(last).enumerate() {

@@ -1,8 +1,8 @@
-//! Enlarging and shrinking images along their last two axes, one after the other: each output row or column is a sum of up to
-//! four of the input's.
+//! Resizing of images along their last two axes, one after the other: each output row or column is a weighted sum of
+//! up to four input ones.
 
 use super::super::read::unsupported;
-use super::super::tensor::{Room, Tensor, count};
+use super::super::tensor::{MemoryBudget, Tensor, count};
 use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -12,7 +12,7 @@ pub struct Resize {
     pub filter: Filter,
     pub place: Place,
     scales: Option<Vec<f32>>,
-    /// Which inputs hold scales and sizes.
+    /// Indices of the inputs that hold scales and sizes.
     scales_at: usize,
     sizes_at: Option<usize>,
 }
@@ -21,7 +21,7 @@ pub struct Resize {
 pub enum Filter {
     Nearest(Rounding),
     Linear,
-    /// Keys' cubic with this slope: -0.75 in OpenCV and ONNX.
+    /// Keys' cubic with this parameter: -0.75 in OpenCV and ONNX.
     Cubic(f32),
 }
 
@@ -33,11 +33,11 @@ pub enum Rounding {
     Ceil,
 }
 
-/// Where the centre of an output pixel lies in the input.
+/// The mapping from the centre of an output pixel to the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     HalfPixel,
-    /// As the former, but a single pixel lies at the first.
+    /// Like `HalfPixel`, but a single output pixel maps to the first input pixel.
     PytorchHalfPixel,
     AlignCorners,
     Asymmetric,
@@ -48,7 +48,7 @@ pub enum Place {
 pub struct Axis {
     pub from: usize,
     pub to: usize,
-    /// Output pixels for each of the input.
+    /// Output pixels per input pixel.
     pub scale: f64,
 }
 
@@ -84,7 +84,7 @@ impl Resize {
         let (scales_at, sizes_at) = if is_old { (1, None) } else { (2, Some(3)) };
         let known = constants.get(scales_at).copied().flatten();
         if known.is_some_and(|tensor| tensor.as_floats().is_err()) {
-            return Err(Error::format("scales are no floats"));
+            return Err(Error::format("scales must be floats"));
         }
         Ok(Self { filter, place, scales, scales_at, sizes_at })
     }
@@ -112,7 +112,7 @@ impl Resize {
         };
         if shape.len() != rank || scales.len() != rank || rank < 2 || shape[..rank - 2] != x.shape[..rank - 2] {
             return Err(if shape.len() == rank {
-                unsupported("resizing of other axes than the last two")
+                unsupported("resizing of axes other than the last two")
             } else {
                 wrong()
             });
@@ -123,32 +123,32 @@ impl Resize {
         let axis = |k: usize| Axis { from: x.shape[k], to: shape[k], scale: scales[k] };
         let axes = [axis(rank - 2), axis(rank - 1)];
         let planes: usize = x.shape[..rank - 2].iter().product();
-        let out = resample(x.as_floats()?, planes, axes, self.filter, self.place, call.room, call.job)?;
+        let out = resample(x.as_floats()?, planes, axes, self.filter, self.place, call.budget, call.job)?;
         Ok(Tensor::floats(shape, out))
     }
 }
 
-/// Resamples images that stand one after the other: rows and columns.
+/// Resamples consecutive images, given by rows and columns.
 pub fn resample(
     values: &[f32],
     planes: usize,
     [vertical, horizontal]: [Axis; 2],
     filter: Filter,
     place: Place,
-    room: Room,
+    budget: MemoryBudget,
     job: Job,
 ) -> Result<Vec<f32>> {
     // Along rows first, then along columns.
-    let taps = taps(horizontal, filter, place, room)?;
-    let mut wide = room.zeros(&[planes, vertical.from, horizontal.to])?;
+    let taps = taps(horizontal, filter, place, budget)?;
+    let mut wide = budget.zeros(&[planes, vertical.from, horizontal.to])?;
     exec::for_rows(&mut wide, horizontal.to, job.part(0.0, 0.5), |k, out| {
         let row = &values[k * horizontal.from..][..horizontal.from];
         for (out, taps) in out.iter_mut().zip(&taps) {
             *out = taps.iter().map(|&(i, w)| w * row[i]).sum();
         }
     })?;
-    let taps = self::taps(vertical, filter, place, room)?;
-    let mut out = room.zeros(&[planes, vertical.to, horizontal.to])?;
+    let taps = self::taps(vertical, filter, place, budget)?;
+    let mut out = budget.zeros(&[planes, vertical.to, horizontal.to])?;
     exec::for_rows(&mut out, horizontal.to, job.part(0.5, 1.0), |k, out| {
         let plane = &wide[k / vertical.to * vertical.from * horizontal.to..];
         for &(i, weight) in taps[k % vertical.to].iter().filter(|(_, weight)| *weight != 0.0) {
@@ -159,9 +159,9 @@ pub fn resample(
     Ok(out)
 }
 
-/// What each output pixel is the sum of: numbers of input pixels, with weights.
-fn taps(axis: Axis, filter: Filter, place: Place, room: Room) -> Result<Vec<[(usize, f32); 4]>> {
-    let mut taps = room.vec(axis.to, [(0, 0.0); 4])?;
+/// The input indices and weights of each output pixel.
+fn taps(axis: Axis, filter: Filter, place: Place, budget: MemoryBudget) -> Result<Vec<[(usize, f32); 4]>> {
+    let mut taps = budget.vec(axis.to, [(0, 0.0); 4])?;
     let last = axis.from as i64 - 1;
     let inside = |i: i64| i.clamp(0, last) as usize;
     for (k, taps) in taps.iter_mut().enumerate() {
@@ -209,15 +209,15 @@ fn taps(axis: Axis, filter: Filter, place: Place, room: Room) -> Result<Vec<[(us
     Ok(taps)
 }
 
-/// Keys' cubic convolution at a fraction `t` between the second and the third of four pixels.
+/// Weights of Keys' cubic convolution at a fraction `t` between the second and the third of four pixels.
 fn cubic(t: f32, a: f32) -> [f32; 4] {
     let near = |t: f32| ((a + 2.0) * t - (a + 3.0)) * t * t + 1.0;
     let far = |t: f32| ((a * t - 5.0 * a) * t + 8.0 * a) * t - 4.0 * a;
     [far(t + 1.0), near(t), near(1.0 - t), far(2.0 - t)]
 }
 
-/// Resizes planes of some height and width by cubic convolution, without a low-pass, as OpenCV's `INTER_CUBIC` does.
+/// Resizes planes by cubic convolution without a low-pass filter, as OpenCV's `INTER_CUBIC` does.
 pub fn cubic_planes(values: &[f32], planes: usize, from: [usize; 2], to: [usize; 2], job: Job) -> Result<Vec<f32>> {
     let axis = |k: usize| Axis { from: from[k], to: to[k], scale: to[k] as f64 / from[k] as f64 };
-    resample(values, planes, [axis(0), axis(1)], Filter::Cubic(-0.75), Place::HalfPixel, Room(usize::MAX), job)
+    resample(values, planes, [axis(0), axis(1)], Filter::Cubic(-0.75), Place::HalfPixel, MemoryBudget(usize::MAX), job)
 }

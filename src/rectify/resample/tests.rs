@@ -1,4 +1,4 @@
-//! Warps beside exact means, and at every limit.
+//! Compares warps with exact means, and tests extreme sizes and maps.
 
 use super::warp;
 use crate::error::ErrorKind;
@@ -23,7 +23,7 @@ fn a_minified_checker_averages_and_the_identity_is_the_identity() {
     }
     let same = warp(&checker, &Homography(DMat3::IDENTITY), 400, 400, monitor.job()).unwrap();
     assert!(same.data.iter().zip(&checker.data).all(|(a, b)| (a - b).abs() < 1e-6));
-    // What is outside or behind the camera is 0.
+    // Pixels outside the source or behind the camera are 0.
     let away = Homography(DMat3::from_translation(DVec2::new(1e4, 0.0)));
     assert!(warp(&checker, &away, 8, 8, monitor.job()).unwrap().data.iter().all(|&v| v == 0.0));
     let white = Image::from_fn(50, 50, |_, _| [1.0f32]).unwrap();
@@ -32,14 +32,14 @@ fn a_minified_checker_averages_and_the_identity_is_the_identity() {
     assert!((41..78).all(|y| seen.row(y).iter().all(|&v| v == 0.0)));
 }
 
-/// A picture of bars and discs, as fine as the source can show.
+/// A pattern of bars and discs, as fine as the source can represent.
 fn drawing(p: DVec2) -> f32 {
     let bar = p.x.rem_euclid(23.0) < 9.0;
     let disc = (p - (p / 31.0).floor() * 31.0 - DVec2::splat(15.5)).length() < 11.0;
     0.1 + 0.5 * f32::from(bar) + 0.3 * f32::from(disc)
 }
 
-/// The mean of the drawing over the pixel at (x, y) of what a map shows of it.
+/// The mean of the drawing over the footprint of the pixel at (x, y).
 fn mean_of_drawing(map: &Homography, x: usize, y: usize, sub: usize) -> f32 {
     let at = |k: usize| DVec2::new((k % sub) as f64 + 0.5, (k / sub) as f64 + 0.5) / sub as f64;
     let sum: f32 = (0..sub * sub).map(|k| drawing(map.apply(DVec2::new(x as f64, y as f64) + at(k)))).sum();
@@ -57,9 +57,9 @@ fn warps_are_means_over_what_pixels_cover() {
         let [to, from] = [256.0, -32.0].map(|c| DMat3::from_translation(DVec2::splat(c)));
         Homography(to * map * from)
     };
-    // Turned, aslant, and as small as takes levels and parts; the ratio of 1 to the root mean square, in dB. Of the first the
-    // truth's own steps are what is left.
-    for (turn, scale, tilt, least) in [
+    // Rotations, tilts, and scales small enough to need pyramid levels and parts. The last number is the minimum peak
+    // signal-to-noise ratio in dB; in the first case the reference's own discretisation limits it.
+    for (turn, scale, tilt, min_decibels) in [
         (0.0, 1.0, DVec2::ZERO, 50.0),
         (0.4, 1.0, DVec2::ZERO, 38.0),
         (0.7, 2.2, DVec2::new(0.004, 0.006), 39.0),
@@ -81,7 +81,7 @@ fn warps_are_means_over_what_pixels_cover() {
         }
         let decibels = -10.0 * (squares / count + 1e-12).log10();
         println!("turned by {turn}, {scale} times, {tilt}: {decibels:.1} dB of {count} pixels");
-        assert!(count > 500.0 && decibels > least, "turned by {turn}, {scale} times, {tilt}: {decibels}");
+        assert!(count > 500.0 && decibels > min_decibels, "turned by {turn}, {scale} times, {tilt}: {decibels}");
     }
 }
 
@@ -110,7 +110,7 @@ fn channels_are_warped_alike_whatever_their_number_and_at_the_border() {
         same(&warped[1], &warped[2], 1, 1);
         (0..6).for_each(|c| same(&warped[3], &warped[2], c, c % 3));
     }
-    // A constant stays what it is, up to the very border.
+    // A constant image stays constant up to the very border.
     let grey = Image::from_fn(37, 23, |_, _| [0.7f32]).unwrap();
     for scale in [0.3, 1.0, 2.0, 5.0, 40.0] {
         let map = Homography(DMat3::from_scale(DVec2::splat(scale)));
@@ -130,7 +130,8 @@ fn warps_are_the_same_to_the_bit_at_every_level_of_instructions_and_on_any_numbe
         image.data.iter_mut().enumerate().for_each(|(i, v)| *v = Rng::new(6, &[i as u64]).next_f32());
         image
     });
-    // Interpolated, between that and averaged, and averaged over few and many parts; aslant and not, beyond every border.
+    // Interpolation, the transition to averaging, and averages over few and many parts; with and without tilt, across
+    // every border.
     let tilted =
         DMat3::from_cols(DVec3::new(1.0, 0.25, 0.001), DVec3::new(-0.3, 0.9, 0.002), DVec3::new(30.0, -20.0, 1.0));
     let straight = DMat3::from_translation(DVec2::splat(-3.3));
@@ -159,7 +160,8 @@ fn warps_of_the_smallest_sources_and_of_the_least_and_largest_quads_show_what_is
         for channels in [1, 3, 4] {
             let mut grey = Image::new(width, height, channels).unwrap();
             grey.data.fill(0.7);
-            // From a quad of a millionth of a pixel to one of a million pixels, about the source's middle.
+            // From a quadrilateral of a millionth of a pixel to one of a million pixels, around the centre of the
+            // source.
             for scale in [1e-6 / 40.0, 0.1, 1.0, 3.0, 1e6 / 40.0] {
                 let middle = DVec2::new(width as f64, height as f64) / 2.0;
                 let centred = DMat3::from_translation(middle) * DMat3::from_scale(DVec2::splat(scale));
@@ -172,7 +174,7 @@ fn warps_of_the_smallest_sources_and_of_the_least_and_largest_quads_show_what_is
                     assert!(pixel.iter().all(|v| (v - want).abs() < 1e-5), "{width} x {height}, {scale}: {pixel:?}");
                 }
             }
-            // A map that shows one point or nothing at all, and one that is none.
+            // A map to a single point, a map to nothing, and a map that is not finite.
             let nothing = warp(&grey, &Homography(DMat3::ZERO), 5, 5, monitor.job()).unwrap();
             assert!(nothing.data.iter().all(|&v| v == 0.0));
             let point = Homography(DMat3::from_cols(DVec3::ZERO, DVec3::ZERO, DVec3::new(0.5, 0.5, 1.0)));
@@ -200,7 +202,7 @@ fn a_pixel_that_is_not_finite_spoils_those_it_is_part_of_and_no_others() {
                 let at = DVec2::new((i % 80) as f64 + 0.5, (i / 80) as f64 + 0.5) * scale - 20.5;
                 hit += usize::from(!b[1].is_finite());
                 assert!(a[0] == b[0] && a[2] == b[2]);
-                // Nearer than a pixel it has a say whatever the scale, and it has none beyond the samples taken.
+                // A pixel closer than 0.6 always contributes; a pixel beyond the taps never does.
                 assert!(!(at.abs().max_element() < 0.6) || !b[1].is_finite(), "{at} at {scale}");
                 assert!(at.abs().max_element() <= 2.0 || a[1] == b[1], "{at} at {scale}");
             }

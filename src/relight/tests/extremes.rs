@@ -1,9 +1,9 @@
-//! What the paper saw, and inputs at the edge of what makes sense.
+//! Results of the paper, and inputs at the limits.
 
 use super::*;
 
-/// "The red curtain and the floor, which has a wooden material, naturally impact the colour of the light": the solved light
-/// is shifted towards blue (§8, Fig. 16).
+/// "The red curtain and the floor, which has a wooden material, naturally impact the colour of the light": the solved
+/// light is shifted towards blue (§8, Fig. 16).
 #[test]
 fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
     let solved = |floor: Vec3, curtain: Vec3| {
@@ -12,7 +12,7 @@ fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
             scene.materials.push(Material { double_sided: false, ..Material::diffuse("paint", colour) });
             scene.meshes[mesh].material = scene.materials.len() - 1;
         }
-        // A strip of the ceiling shines and the rest of it is the target, as the photo shows it.
+        // A strip of the ceiling emits; the rest of the ceiling is the target, as in the photo.
         let ceiling = scene.meshes[1].clone();
         scene.meshes[1].material = 0;
         let strip = Vec3::new(0.5, 0.0, 0.1);
@@ -29,15 +29,16 @@ fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
     };
     let grey = solved(Vec3::splat(0.3), Vec3::splat(0.3));
     let warm = solved(Vec3::new(0.45, 0.28, 0.15), Vec3::new(0.6, 0.05, 0.05));
-    // The same target needs white light in a grey room and bluish light in a warm one, beyond both intervals.
+    // The same target needs white light in a grey room and bluish light in a warm one; the difference exceeds both
+    // intervals.
     let blue = |s: &Solution| (s.scale.z / s.scale.x, (s.half_width.z / s.scale.z).hypot(s.half_width.x / s.scale.x));
     let ((neutral, e), (shifted, f)) = (blue(&grey), blue(&warm));
     assert!((neutral - 1.0).abs() < 1.5 * e, "{grey:?}");
     assert!(shifted > 1.2 * (1.0 + e + f), "{warm:?}");
 }
 
-/// Matching the ceiling and matching all that is seen give different light (the paper's Table 1): the ceiling has its
-/// light from the floor, which is wooden, the grey walls have it from the lamp.
+/// Matching the ceiling and matching all visible surfaces give different light (the paper's Table 1): the ceiling is
+/// lit by the wooden floor, the grey walls by the lamp.
 #[test]
 fn ceiling_and_overall_targets_differ() {
     let mut scene = room(Vec3::new(5.0, 2.7, 4.0), Vec3::splat(0.5), Vec3::splat(0.8), Vec3::ONE);
@@ -62,7 +63,7 @@ fn ceiling_and_overall_targets_differ() {
     assert!(ceiling.scale.y > 1.1 * overall.scale.y, "{ceiling:?} {overall:?}");
 }
 
-/// A closed room of albedo 0.99 has long paths: `L = e / (1 - ρ)` on all of it where all of it shines.
+/// A closed room of albedo 0.99 has long paths: with all surfaces emitting, `L = e / (1 - ρ)` everywhere.
 #[test]
 fn a_white_closed_room_and_rooms_of_any_size() {
     for size in [1e-6, 1.0, 1e6] {
@@ -92,7 +93,7 @@ fn a_white_closed_room_and_rooms_of_any_size() {
         let responses = Pool::new(2)
             .unwrap()
             .run(|| lamp_responses(&world, 1, &lamps, &[grid], &params, Monitor::default().job()).unwrap());
-        // Every wall sends out e / (1 - ρ) = 2, of which the six lamps are a part each.
+        // Every wall emits and reflects e / (1 - ρ) = 2 in total, of which each of the six lamps has a share.
         let all = responses.all(0);
         assert_eq!(lamps.count(), 6);
         assert!((all.mean.x - 2.0).abs() < 4.0 * all.standard_error.x + 1e-5, "size {size}: {all:?}");
@@ -101,12 +102,12 @@ fn a_white_closed_room_and_rooms_of_any_size() {
     let scene = room(Vec3::ONE, Vec3::splat(0.99), Vec3::splat(0.99), Vec3::ONE);
     let params = Params { quantity: Quantity::Incident, paths: 1 << 13, target_error: 0.0, ..Params::default() };
     let solution = solve(&scene, Vec3::ONE, &params).unwrap();
-    // Flux π e S/6 into 6 walls, each of which takes 1 %: the mean radiance is about 1/6 / 0.01 = 16.7.
+    // Flux π e S/6 into 6 walls, each of which absorbs 1 %: the mean radiance is about 1/6 / 0.01 = 16.7.
     let mean = solution.response.x;
     assert!((mean / (1.0 / 0.06) - 1.0).abs() < 0.1, "{mean}");
 }
 
-/// A vault that bulges into emptiness sees nothing of itself: no light of its lamps comes back to it, and that is said.
+/// A convex vault in empty space sees nothing of itself: no light of its lamps returns to it, and the result says so.
 #[test]
 fn a_convex_ceiling_that_sees_nothing_is_dark() {
     let (apex, ring) = (Vec3::Y, |i: u32| Vec3::new((i as f32 * 0.785).cos(), 0.0, (i as f32 * 0.785).sin()) * 2.0);
@@ -133,10 +134,10 @@ fn a_convex_ceiling_that_sees_nothing_is_dark() {
     assert!(error.message.contains("no light of the emission finds its way back"), "{error}");
 }
 
-/// A lamp that the target sees from its edge alone, or not at all, has nothing to say to it.
+/// A lamp that the target sees edge-on, or not at all, has no response.
 #[test]
 fn a_lamp_seen_edge_on_is_dark() {
-    // The ceiling shines; the target is its own plane, and all else is black.
+    // The ceiling emits; the target is coplanar with it, and everything else is black.
     let mut scene = room(Vec3::ONE, Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
     let mut beside = scene.meshes[1].clone();
     beside.positions.iter_mut().for_each(|p| p.x += 1.0);

@@ -1,14 +1,14 @@
-//! Per-lamp responses and the powers of groups.
+//! Tests of per-lamp responses and of the powers of groups.
 
 use super::*;
 use crate::image::Image;
 use crate::photometry::Luminaire;
 use crate::scene::{Texture, TextureRef};
 
-/// Texels of the ceiling's texture along each side.
+/// Texels along each side of the ceiling's texture.
 const TEXELS: usize = 16;
 
-/// A grey room whose ceiling has `lamps` texels lit, each a lamp.
+/// A grey room with emissive texels at `lamps` in the ceiling's texture; each is a lamp.
 fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
     let mut image = Image::new(TEXELS, TEXELS, 1).unwrap();
     for (&[x, y], &value) in lamps.iter().zip(values) {
@@ -27,7 +27,7 @@ fn goal(place: Place<'_>, target: Vec3) -> Goal<'_> {
     Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, sense: EXACTLY, weight: 1.0 }
 }
 
-/// A horizontal square of side 1 m below the ceiling's point (x, z).
+/// A horizontal square of side 1 m below the point (x, z) of the ceiling.
 fn desk(x: f32, z: f32) -> Place<'static> {
     let origin = Vec3::new(x - 0.5, 0.8, z - 0.5);
     Place::Grid { origin, across: Vec3::X, down: Vec3::Z, normal: Vec3::Y }
@@ -46,7 +46,7 @@ fn lamps_sum_to_the_whole_and_mirrored_lamps_respond_alike() {
     let params = Params { paths: 1 << 15, target_error: 0.0, quantity: Quantity::Incident, ..Params::default() };
     let input = Input { world: &world, emitter: 1, target_triangles: FLOOR, target: Vec3::ONE };
     let whole = Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap());
-    // The same paths, sorted otherwise.
+    // The same paths, in different bins.
     let all = responses.all(0).mean;
     assert!((all - whole.response).abs().max_element() < 1e-9 * all.x, "{all} {}", whole.response);
     for lamp in 1..4 {
@@ -74,17 +74,18 @@ fn one_group_is_the_closed_form_and_bounds_hold() {
     let expected = 20.0 / responses.all(0).mean.x;
     assert!((free.scale[0].x / expected - 1.0).abs() < 1e-9, "{free:?}, expected {expected}");
     assert!(free.half_width[0].x > 0.0 && free.half_width[0].x < 0.05 * expected);
-    assert_eq!((free.outcomes[0].reach, &free.unreachable), ([Reach::Met; 3], &None));
-    // Half of what it takes is allowed: the bound is the nearest answer, and the reason says so.
-    let bounded = GroupParams { most: vec![expected / 2.0], ..GroupParams::default() };
+    assert_eq!((free.outcomes[0].status, &free.unreachable), ([TargetStatus::Met; 3], &None));
+    // With half the required power as bound, the bound is the solution, and the explanation names it.
+    let bounded = GroupParams { max_scale: vec![expected / 2.0], ..GroupParams::default() };
     let bounded = powers(&responses, &goals, &bounded).unwrap();
     assert_eq!(bounded.scale[0].x, expected / 2.0);
-    assert_eq!(bounded.outcomes[0].reach, [Reach::TooDim; 3]);
+    assert_eq!(bounded.outcomes[0].status, [TargetStatus::TooDim; 3]);
     assert!((bounded.outcomes[0].achieved.x - 10.0).abs() < 1e-6);
     assert!(bounded.unreachable.unwrap().contains("largest power"));
 }
 
-/// Identical groups share alike, groups of very different strength are no trouble, and darkness is a goal like another.
+/// Identical groups get equal powers, groups of very different strength cause no problems, and darkness is a valid
+/// goal.
 #[test]
 fn groups_that_are_alike_unlike_or_dark() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 3], [3, 12], [12, 12]], &[1.0, 1.0, 1.0, 1e-12]);
@@ -92,38 +93,42 @@ fn groups_that_are_alike_unlike_or_dark() {
     let responses = respond(&world, &lamps, &goals);
     let solution = powers(&responses, &goals, &GroupParams::default()).unwrap();
     let x: Vec<f64> = solution.scale.iter().map(|x| x.x).collect();
-    // The small pull towards equal lamps decides what one goal leaves open: all are alike.
+    // The regularisation decides what a single goal leaves open: all lamps are equal.
     assert!(x.iter().all(|v| (v / x[0] - 1.0).abs() < 1e-6), "{x:?}");
     assert!((solution.outcomes[0].achieved.x / 20.0 - 1.0).abs() < 1e-6);
-    // Where the faint one alone could help, it would have to be 1e12 times as strong: the answer stays finite, and says so.
+    // Where only the faint lamp could help, it would have to be 1e12 times as strong: the solution stays finite, and
+    // the result says that the goal is missed.
     let ask = [goal(desk(0.9, 0.9), Vec3::splat(20.0)), goal(desk(3.1, 3.1), Vec3::splat(90.0))];
     let (faint, pair) = lamp_room(&[[3, 3], [12, 12]], &[1.0, 1e-12]);
-    let most = GroupParams { most: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
+    let most = GroupParams { max_scale: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
     for params in [GroupParams::default(), most] {
         let solution = powers(&respond(&faint, &pair, &ask), &ask, &params).unwrap();
         let finite = solution.scale.iter().chain(&solution.half_width).all(|x| x.is_finite());
-        let met = solution.outcomes.iter().all(|o| o.reach == [Reach::Met; 3]);
+        let met = solution.outcomes.iter().all(|o| o.status == [TargetStatus::Met; 3]);
         assert!(finite && met == solution.unreachable.is_none(), "{solution:?}");
     }
-    // A goal of darkness turns them off.
+    // A goal of darkness switches the lamps off.
     let dark = [goal(Place::Surface(FLOOR), Vec3::ZERO)];
     let off = powers(&responses, &dark, &GroupParams::default()).unwrap();
     assert!(off.scale.iter().all(|x| *x == DVec3::ZERO) && off.unreachable.is_none(), "{off:?}");
-    // Two desks, each under a lamp; one is to be brighter than the other.
+    // Two desks, each below a lamp; one of them is to be brighter.
     let goals = [goal(desk(0.9, 0.9), Vec3::splat(40.0)), goal(desk(3.1, 3.1), Vec3::splat(25.0))];
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
     let responses = respond(&world, &lamps, &goals);
     let solution = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert!(solution.scale[0].x > 1.3 * solution.scale[1].x, "{solution:?}");
     for (outcome, want) in solution.outcomes.iter().zip([40.0, 25.0]) {
-        assert!((outcome.achieved.x / want - 1.0).abs() < 1e-3 && outcome.reach == [Reach::Met; 3], "{outcome:?}");
+        assert!(
+            (outcome.achieved.x / want - 1.0).abs() < 1e-3 && outcome.status == [TargetStatus::Met; 3],
+            "{outcome:?}"
+        );
     }
-    // One lamp for both cannot: the answer lies between, and the reason names a goal.
+    // A single group cannot meet both goals: the solution is a compromise, and the explanation names a goal.
     let one = responses.grouped(&[0, 0], 1).unwrap();
     let torn = powers(&one, &goals, &GroupParams::default()).unwrap();
     assert!(torn.outcomes[0].achieved.x < 40.0 && torn.outcomes[1].achieved.x > 25.0);
     assert!(torn.unreachable.unwrap().contains("goal 0"));
-    // A heavier goal comes nearer.
+    // A goal of larger weight has a smaller error.
     let heavy = [Goal { weight: 100.0, ..goals[0] }, goals[1]];
     let heavy = powers(&one, &heavy, &GroupParams::default()).unwrap();
     assert!((heavy.outcomes[0].achieved.x / 40.0 - 1.0).abs() < 1e-3);
@@ -140,55 +145,56 @@ fn other_light_that_is_too_bright_is_named() {
     let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
     let solution = powers(&responses, &goals, &params).unwrap();
     assert!(solution.scale.iter().all(|x| *x == DVec3::ZERO));
-    assert_eq!(solution.outcomes[0].reach, [Reach::TooBright; 3]);
+    assert_eq!(solution.outcomes[0].status, [TargetStatus::TooBright; 3]);
     assert!(solution.unreachable.unwrap().contains("other lights alone"));
-    // Parameters name themselves.
+    // Errors name the parameter.
     for bad in [
         GroupParams { evenness: 0.0, ..GroupParams::default() },
-        GroupParams { most: vec![1.0], ..GroupParams::default() },
-        GroupParams { most: vec![1.0, f64::NAN], ..GroupParams::default() },
+        GroupParams { max_scale: vec![1.0], ..GroupParams::default() },
+        GroupParams { max_scale: vec![1.0, f64::NAN], ..GroupParams::default() },
     ] {
         assert_eq!(powers(&responses, &goals, &bad).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
 }
 
-/// Every reason why goals are missed is told in its own case.
+/// Each reason for missed goals is reported in its own case.
 #[test]
 fn every_reason_is_told() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
-    let told = |world: &World, goals: &[Goal], params: &GroupParams| {
+    let reason_for = |world: &World, goals: &[Goal], params: &GroupParams| {
         let responses = respond(world, &lamps, goals);
         powers(&responses, goals, params).unwrap().unreachable.unwrap_or_default()
     };
     let (kept, free) = (GroupParams::default(), GroupParams { colour: Colour::Free, ..GroupParams::default() });
     let floor = |target| Goal { quantity: Quantity::Outgoing, ..goal(Place::Surface(FLOOR), target) };
-    // A floor that takes all red sends none back.
+    // A floor that absorbs red reflects none of it.
     let mut redless = (**world.scene()).clone();
     redless.materials[0].base_color.x = 0.0;
     let redless = World::build(Arc::new(redless), Monitor::default().job()).unwrap();
-    let reason = told(&redless, &[floor(Vec3::splat(5.0))], &free);
+    let reason = reason_for(&redless, &[floor(Vec3::splat(5.0))], &free);
     assert!(reason.contains("in red") && reason.contains("no light of these lamps finds its way there"), "{reason}");
-    // Groups that cannot give a colour, and goals that cannot be had together, with colours kept and free.
-    let reason = told(&world, &[floor(Vec3::new(9.0, 5.0, 1.0))], &kept);
+    // Groups that cannot produce a colour, and contradictory goals, with fixed and with free colours.
+    let reason = reason_for(&world, &[floor(Vec3::new(9.0, 5.0, 1.0))], &kept);
     assert!(reason.contains("a colour that the groups do not have"), "{reason}");
     let torn = [floor(Vec3::splat(5.0)), floor(Vec3::splat(9.0))];
-    let reason = told(&world, &torn, &free);
+    let reason = reason_for(&world, &torn, &free);
     assert!(reason.contains("different things") && !reason.contains("colours"), "{reason}");
     let lux = torn.map(|goal| Goal { aspect: Aspect::Luminance, ..goal });
-    let reason = told(&world, &lux, &kept);
+    let reason = reason_for(&world, &lux, &kept);
     assert!(
         reason.contains("luminance") && reason.contains("different things") && !reason.contains("colour"),
         "{reason}"
     );
-    // A bound, and other lights (what it takes to be below them would be negative).
-    let reason = told(&world, &[floor(Vec3::splat(1e6))], &GroupParams { most: vec![1.0; 2], ..kept.clone() });
+    // A bound, and other lights (to be below them, the power would have to be negative).
+    let reason =
+        reason_for(&world, &[floor(Vec3::splat(1e6))], &GroupParams { max_scale: vec![1.0; 2], ..kept.clone() });
     assert!(reason.contains("all groups are at their largest power"), "{reason}");
     let mut bright = (**world.scene()).clone();
     bright.lights.push(PunctualLight::Point { position: Vec3::new(2.0, 1.0, 2.0), intensity: Vec3::splat(1e4) });
     let bright = World::build(Arc::new(bright), Monitor::default().job()).unwrap();
-    let reason = told(&bright, &[floor(Vec3::ONE)], &kept);
+    let reason = reason_for(&bright, &[floor(Vec3::ONE)], &kept);
     assert!(reason.contains("the other lights alone are brighter"), "{reason}");
-    // Nothing at all to be had is an error.
+    // No response at all is an error.
     let mut black = (**world.scene()).clone();
     black.materials[0].base_color = Vec3::ZERO;
     let black = World::build(Arc::new(black), Monitor::default().job()).unwrap();
@@ -198,7 +204,7 @@ fn every_reason_is_told() {
     assert!(error.message.contains("no light of any group finds its way to a goal"), "{error}");
 }
 
-/// A goal in lux is met by its luminance, whatever the colour that the room gives the light.
+/// A goal in lux is met by its luminance, whatever the colour of the light in the room.
 #[test]
 fn lux_are_luminance() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
@@ -209,14 +215,14 @@ fn lux_are_luminance() {
     let responses = respond(&world, &lamps, &[lux]);
     let solution = powers(&responses, &[lux], &GroupParams::default()).unwrap();
     let outcome = &solution.outcomes[0];
-    assert_eq!((outcome.reach, &solution.unreachable), ([Reach::Met; 3], &None));
+    assert_eq!((outcome.status, &solution.unreachable), ([TargetStatus::Met; 3], &None));
     let illuminance = std::f32::consts::PI * crate::image::colour::luminance(outcome.achieved.as_vec3());
     assert!((illuminance - 500.0).abs() < 0.1 && outcome.achieved.x > 1.05 * outcome.achieved.z, "{outcome:?}");
     let free = GroupParams { colour: Colour::Free, ..GroupParams::default() };
     assert_eq!(powers(&responses, &[lux], &free).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
-/// Two lamps over two desks: limits are kept where they can be, by as little light as it takes.
+/// Two lamps above two desks: limits are satisfied if possible, with the least light.
 #[test]
 fn limits_count_on_one_side() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
@@ -228,34 +234,34 @@ fn limits_count_on_one_side() {
         powers(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
     };
     let one = |least, sense| at(0.0, 0.0, least, sense);
-    // Lamps that are alike give both desks at least what the darker of them needs, and the brighter one more.
+    // With equal lamps, the darker desk gets its lower limit and the brighter one exceeds it.
     let both = responses.all(0).mean.x.min(responses.all(1).mean.x);
     let solution = solve(one(40.0, Sense::AtLeast), one(40.0, Sense::AtLeast));
     assert!(solution.unreachable.is_none(), "{solution:?}");
     let power = solution.scale.iter().map(|x| x.x).fold(0.0, f64::max);
     assert!((power / (40.0 / both) - 1.0).abs() < 1e-3, "{solution:?} {both}");
-    // A cap that all lamps alike would break: the power moves to the other desk's lamp.
+    // An upper limit that equal lamps would violate: power moves to the lamp of the other desk.
     let solution = solve(one(40.0, Sense::AtLeast), one(25.0, Sense::AtMost));
     let light: Vec<f64> = solution.outcomes.iter().map(|o| o.achieved.x).collect();
     assert!(light[0] > 39.99 && light[1] < 25.01 && solution.unreachable.is_none(), "{solution:?}");
-    // Where nothing is asked for, lamps stay as they are, or go down to the cap.
+    // With upper limits alone, lamps keep their power or are reduced to the limit.
     let caps = [1e3, 0.5 * responses.all(0).mean.x as f32];
     assert_eq!(solve(one(caps[0], Sense::AtMost), one(1e3, Sense::AtMost)).scale, [DVec3::ONE; 2]);
     let solution = solve(one(caps[1], Sense::AtMost), one(1e3, Sense::AtMost));
     assert!((solution.outcomes[0].achieved.x / f64::from(caps[1]) - 1.0).abs() < 1e-3, "{solution:?}");
-    // What cannot be is told with its side.
+    // An unreachable goal is reported with its side.
     let goals = [at(0.9, 0.9, 40.0, Sense::AtLeast), at(3.1, 3.1, 1.0, Sense::AtMost)];
     let torn = powers(&responses, &goals, &GroupParams::default()).unwrap();
-    assert_eq!([0, 1].map(|goal| torn.outcomes[goal].reach[0]), [Reach::TooDim, Reach::TooBright]);
+    assert_eq!([0, 1].map(|goal| torn.outcomes[goal].status[0]), [TargetStatus::TooDim, TargetStatus::TooBright]);
     assert!(torn.unreachable.unwrap().contains("at least 40.0000 cd/m²"));
-    // Luminance has one side only.
+    // A luminance goal has a single side.
     let mixed = [Sense::AtLeast, Sense::AtMost, Sense::Exactly];
     let goals = [Goal { aspect: Aspect::Luminance, sense: mixed, ..traced[0] }, traced[1]];
     assert_eq!(powers(&responses, &goals, &GroupParams::default()).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
-/// With steps the powers are levels, and the goal is missed by no more than the steps are wide; without enough of them the
-/// outcome says so.
+/// With dimming levels, the powers are levels, and the error of the goal is at most the distance between levels; with
+/// too few levels, the outcome reports the miss.
 #[test]
 fn powers_in_steps() {
     let places: Vec<[usize; 2]> = (0..16).map(|i| [1 + 4 * (i % 4), 1 + 4 * (i / 4)]).collect();
@@ -272,7 +278,7 @@ fn powers_in_steps() {
     let stepped = solve(&levels);
     assert!(stepped.scale.iter().all(|x| levels.contains(&x.x) && *x == DVec3::splat(x.x)), "{stepped:?}");
     assert!(stepped.unreachable.is_none(), "{stepped:?}");
-    // Their intervals hold those of the powers without steps, and say how far the steps are.
+    // The intervals contain the continuous powers and show the distance between levels.
     for i in 0..16 {
         let step = (stepped.scale[i] - free.scale[i]).abs();
         assert_eq!(stepped.half_width[i], free.half_width[i] + step);
@@ -283,8 +289,8 @@ fn powers_in_steps() {
     assert_eq!(powers(&responses, &goals, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
-/// Luminaires as their files describe them are lamps too: each means to a desk what the law of the cosine says, and all get
-/// the powers that light the desks as they should be.
+/// Luminaires from photometric files are lamps: their responses follow the cosine law, and the solved powers light the
+/// desks as requested.
 #[test]
 fn luminaires_are_lamps() {
     let places = [Vec3::new(0.9, 2.2, 0.9), Vec3::new(3.1, 2.2, 2.1)];
@@ -298,7 +304,7 @@ fn luminaires_are_lamps() {
     let mut scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
     scene.lights = places.map(hang).to_vec();
     scene.distributions = vec![Arc::new(Luminaire::lambertian("panel", 1000.0, [0.0; 3]))];
-    // A hand's breadth each: nearly a point.
+    // Squares of 10 cm are nearly points.
     let desks = [Vec3::new(0.9, 0.75, 0.9), Vec3::new(2.6, 0.75, 2.1)];
     let (across, down) = (Vec3::X * 0.01, Vec3::Z * 0.01);
     let aims: Vec<Goal> = desks
@@ -334,7 +340,7 @@ fn luminaires_are_lamps() {
     assert!(solution.unreachable.is_none());
 }
 
-/// Colours that are free are solved channel by channel, as the closed form does.
+/// Free colours are solved channel by channel, as in the closed form.
 #[test]
 fn free_colours_meet_a_coloured_goal() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
@@ -345,12 +351,12 @@ fn free_colours_meet_a_coloured_goal() {
     let solution = powers(&responses, &goals, &params).unwrap();
     let achieved = solution.outcomes[0].achieved;
     assert!(((achieved / target.as_dvec3()) - 1.0).abs().max_element() < 1e-6, "{achieved}");
-    // White lamps of one power cannot be coloured.
+    // White lamps with one power for all channels cannot be coloured.
     let kept = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert!(kept.unreachable.unwrap().contains("colour"));
 }
 
-/// The whole loop with many lamps: intervals of single lamps hold their truth, here the mean of many paths.
+/// The whole loop with many lamps: the intervals of single lamps contain the truth, taken from many paths.
 #[test]
 fn intervals_of_single_lamps_cover() {
     let places: Vec<[usize; 2]> = (0..64).map(|i| [2 * (i % 8), 2 * (i / 8)]).collect();

@@ -1,4 +1,4 @@
-//! The importance map against direct tracing, and reciprocity.
+//! Tests of the importance map against direct tracing, and of reciprocity.
 
 use super::*;
 use crate::image::Image;
@@ -46,8 +46,8 @@ fn lamps() -> Texture {
     Texture::new("lamps", image)
 }
 
-/// Importance times texture is what tracing the textured room finds, within the joint interval, wherever the texture
-/// lies.
+/// The map times a texture equals tracing the textured room, within the joint interval, for any placement of the
+/// texture.
 #[test]
 fn a_dot_product_stands_for_tracing() {
     let scene = coloured_room();
@@ -68,22 +68,22 @@ fn a_dot_product_stands_for_tracing() {
             let off = (response.light.mean[c] - direct.response[c]).abs();
             let allowed = 4.0 * sigma + response.band_error[c].abs();
             assert!(off < allowed, "channel {c}: {response:?} {direct:?}");
-            // A test that can fail: the joint interval is narrow.
+            // The joint interval is narrow, so that the test can fail.
             assert!(allowed < 0.1 * direct.response[c], "{allowed} {}", direct.response[c]);
         }
-        // The closed form from the map is the target over the response.
+        // In the closed form from the map, the scale is the target over the response.
         let solution = map.solve(&response, Vec3::ONE).unwrap();
         assert!((solution.scale * response.light.mean - 1.0).abs().max_element() < 1e-2);
     }
 }
 
-/// What the floor gets from an even ceiling, per area, is what the ceiling gets from an even floor: light takes the same
-/// ways back, all its reflections included.
+/// Reciprocity: the light per area that the floor gets from a uniform ceiling equals that which the ceiling gets from a
+/// uniform floor, all reflections included.
 #[test]
 fn light_takes_the_same_ways_back() {
     let mean = |emitter: usize, target: usize| {
         let mut scene = coloured_room();
-        // The floor gets a material of its own, so that either can shine.
+        // Give the floor a material of its own, so that either surface can emit.
         scene.materials.push(Material { name: "floor".into(), ..scene.materials[0].clone() });
         scene.meshes[0].material = 2;
         scene.materials[emitter].emission = Vec3::ONE;
@@ -93,7 +93,7 @@ fn light_takes_the_same_ways_back() {
         let params = Params { quantity: Quantity::Incident, target_error: 0.003, ..Params::default() };
         Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap())
     };
-    // Floor and ceiling have the same area: mesh 0 and 1, materials 2 and 1.
+    // Floor and ceiling have equal area: meshes 0 and 1, materials 2 and 1.
     let (down, up) = (mean(1, 0), mean(2, 1));
     for c in 0..3 {
         let relative = |s: &Solution| s.half_width[c] / s.scale[c] / 2.04;
@@ -103,7 +103,7 @@ fn light_takes_the_same_ways_back() {
     }
 }
 
-/// Finer cells say the same of a smooth texture, and how far they may be off falls.
+/// Finer cells give the same result for a smooth texture, with a smaller stated error.
 #[test]
 fn cells_limit_the_band() {
     let scene = coloured_room();
@@ -131,7 +131,7 @@ fn a_map_needs_texture_coordinates_and_has_the_same_bits() {
     };
     let image = trace(&scene, 1).unwrap().image().unwrap();
     assert_eq!(image.data, trace(&scene, 3).unwrap().image().unwrap().data);
-    // The middle of the ceiling means more to the floor than its corners.
+    // The centre of the ceiling contributes more to the floor than its corners.
     assert!(image.rgb(4, 4).x > 1.2 * image.rgb(0, 0).x);
     scene.meshes[1].uvs[0].clear();
     let error = trace(&scene, 1).unwrap_err();

@@ -1,15 +1,15 @@
-//! Least squares over the target's points against closed forms.
+//! Tests of least squares over the target's points against closed forms.
 
 use super::*;
 
-/// Half the side of the black floor, and of the lamps a metre above it.
+/// Half the side of the black floor, and of the lamps one metre above it.
 const FLOOR: f64 = 2.0;
 const LAMP: f64 = 0.5;
-/// Where the lamp that is solved for hangs, and another; and the radiance of that.
+/// Position of the lamp to solve for and of another lamp, and the radiance of the latter.
 const PLACES: [f64; 2] = [-0.7, 1.0];
 const OTHER: f64 = 2.0;
 
-/// A black floor under two lamps, of material 1 and 2.
+/// A black floor below two lamps of materials 1 and 2.
 fn scene() -> Scene {
     let mut scene = room(Vec3::new(1.0, 1.0, 1.0), Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
     scene.meshes.truncate(2);
@@ -26,8 +26,8 @@ fn scene() -> Scene {
     scene
 }
 
-/// Irradiance over π of a point of the floor under a lamp of radiance 1: the form factor of a rectangle parallel to the
-/// point's surface at distance 1 (Howell, configuration B-4), from its four corners.
+/// Irradiance / π at a point of the floor under a lamp of radiance 1: the form factor of a parallel rectangle at
+/// distance 1 (Howell, configuration B-4), from its four corners.
 fn response(x: f64, z: f64, lamp: f64) -> f64 {
     let corner = |a: f64, b: f64| {
         let (ra, rb) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
@@ -49,7 +49,7 @@ fn solve_with(scene: &Scene, fit: Fit, params: &Params) -> Solution {
     super::solve(scene, Vec3::ONE, &Params { fit, quantity: Quantity::Incident, ..params.clone() }).unwrap()
 }
 
-/// Without other light the answer is that of the mean, divided by `1 + CV²`.
+/// Without other light, the solution is that of the mean divided by `1 + CV²`.
 #[test]
 fn bright_points_count_more_by_the_coefficient_of_variation() {
     let mut scene = scene();
@@ -57,7 +57,7 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
     let r = |x, z| response(x, z, PLACES[0]);
     let (first, second) = (mean(r), mean(|x, z| r(x, z).powi(2)));
     let variation = second / (first * first) - 1.0;
-    // The floor is far from evenly lit: a test that can fail.
+    // The floor is far from uniformly lit, so that the test can fail.
     assert!(variation > 0.5, "{variation}");
     let params = Params { target_error: 0.004, ..Params::default() };
     let (plain, least) = (solve_with(&scene, Fit::Mean, &params), solve_with(&scene, Fit::LeastSquares, &params));
@@ -71,8 +71,8 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
     assert!((ratio * (1.0 + variation) - 1.0).abs() < 4.0 * sigma, "{ratio}, {variation}");
 }
 
-/// With other light `c = E r (t - b) / E r²`; and noise does not make it dark: few paths say the same on the average, though
-/// the mean of their squares would be far too large.
+/// With other light, `c = E r (t - b) / E r²`. Noise does not bias it: few paths have the same expected result,
+/// although the mean of their squares would be far too large.
 #[test]
 fn noise_does_not_make_the_answer_dark() {
     let scene = scene();

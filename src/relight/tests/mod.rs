@@ -8,13 +8,13 @@ use crate::error::ErrorKind;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use crate::scene::{Material, Mesh, PunctualLight, Scene};
-use glam::Vec2;
+use glam::{DVec3, Vec2};
 use std::sync::Arc;
 
 const EXACTLY: [Sense; 3] = [Sense::Exactly; 3];
 
-/// A box room of `size` metres whose six sides face inwards: floor, ceiling, then the walls. Material 0 is everything but
-/// the ceiling, which has material 1.
+/// A box room of `size` metres whose six sides face inwards: floor, ceiling, then the walls. The ceiling has material
+/// 1, everything else material 0.
 fn room(size: Vec3, walls: Vec3, ceiling: Vec3, emission: Vec3) -> Scene {
     let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32) * size;
     let side = |name: &str, material, quad: [usize; 4]| Mesh {
@@ -46,7 +46,7 @@ fn solve(scene: &Scene, target: Vec3, params: &Params) -> Result<Solution> {
     let pool = Pool::new(2).unwrap();
     let monitor = Monitor::default();
     let world = World::build(Arc::new(scene.clone()), monitor.job()).unwrap();
-    // The ceiling emits everywhere, so the floor is the target: it has no lamps to leave out.
+    // The whole ceiling emits; the floor is the target, as it has no lamps to exclude.
     let input = Input { world: &world, emitter: 1, target_triangles: &[(0, 0), (0, 1)], target };
     pool.run(|| run(&input, params, monitor.job()))
 }
@@ -55,8 +55,7 @@ fn powers(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result
     Pool::new(2).unwrap().run(|| solve_groups(responses, goals, params, Monitor::default().job()))
 }
 
-/// Between two wide parallel plates of albedo 0 and the walls black, a floor under a small ceiling: with black
-/// surroundings the floor gathers `E = π F e`, F the form factor of parallel rectangles.
+/// A floor below a small ceiling with black walls: `E = π F e`, where F is the form factor of parallel rectangles.
 #[test]
 fn a_black_room_answers_with_the_form_factor() {
     let scene = room(Vec3::new(2.0, 1.0, 2.0), Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
@@ -79,11 +78,11 @@ fn a_black_room_answers_with_the_form_factor() {
         );
         assert!(solution.half_width[c] / solution.scale[c] < 0.002);
     }
-    // 0.2 % of a middle grey's light is about 0.07 in lightness; the channels err alike.
+    // 0.2 % of a middle grey is about 0.07 in lightness; the errors of the channels are equal.
     assert!(solution.delta_e > 0.01 && solution.delta_e < 0.1, "{}", solution.delta_e);
 }
 
-/// The answer multiplies the emission so that the target is met: solve, apply, and measure again.
+/// Solve, scale the emission, and measure again: the target is met.
 #[test]
 fn a_known_emitter_is_recovered_under_other_light() {
     let truth = Vec3::new(120.0, 80.0, 40.0);
@@ -97,7 +96,7 @@ fn a_known_emitter_is_recovered_under_other_light() {
     let solution = solve(&scene, target, &Params { seed: 99, ..params }).unwrap();
     for c in 0..3 {
         let error = (solution.scale[c] - f64::from(truth[c])).abs();
-        // Two independent estimates, each with its interval.
+        // Two independent estimates, each with its own interval.
         assert!(error < 2.0 * std::f64::consts::SQRT_2 * solution.half_width[c], "{solution:?}");
     }
 }
@@ -110,25 +109,25 @@ fn what_cannot_be_met_is_said() {
         assert!(error.message.contains(reason), "{error}");
         error.kind
     };
-    // A black floor sends nothing back.
+    // A black floor reflects nothing.
     let black = room(Vec3::ONE, Vec3::ZERO, Vec3::ONE * 0.5, Vec3::ONE);
     assert_eq!(unreachable(&black, Vec3::ONE, "no light of the emission finds its way back"), ErrorKind::Unreachable);
-    // Another light is brighter than the target.
+    // Another light exceeds the target.
     let mut bright = room(Vec3::ONE, Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);
     bright.lights.push(PunctualLight::Point { position: Vec3::splat(0.5), intensity: Vec3::splat(1e3) });
     assert_eq!(unreachable(&bright, Vec3::ONE, "the other lights of the scene alone"), ErrorKind::Unreachable);
-    // A channel that walls absorb completely keeps the others' mean.
+    // A channel that the walls absorb completely gets the mean scale of the others.
     let redless = room(Vec3::ONE, Vec3::new(0.0, 0.5, 0.5), Vec3::splat(0.5), Vec3::ONE);
     let solution = solve(&redless, Vec3::ONE, &params).unwrap();
-    assert_eq!(solution.reach, [Reach::Dark, Reach::Met, Reach::Met]);
+    assert_eq!(solution.status, [TargetStatus::Dark, TargetStatus::Met, TargetStatus::Met]);
     assert!((solution.scale.x - (solution.scale.y + solution.scale.z) / 2.0).abs() < 1e-9);
-    // Bad parameters name themselves.
+    // Errors name the parameter.
     for target in [Vec3::splat(-1.0), Vec3::NAN] {
         assert!(solve(&redless, target, &params).unwrap_err().message.starts_with("target is"));
     }
 }
 
-/// A target that is a limit in a channel: the emission keeps its colour unless that breaks the limit.
+/// A channel with a limit: the emission keeps its colour unless that violates the limit.
 #[test]
 fn a_limit_binds_only_where_it_is_broken() {
     let scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::new(0.7, 0.5, 0.3), Vec3::splat(0.8), Vec3::ONE);
@@ -139,15 +138,15 @@ fn a_limit_binds_only_where_it_is_broken() {
         let sense = [sense, Sense::Exactly, Sense::Exactly];
         solve(&scene, target, &Params { seed: 99, sense, ..params.clone() }).unwrap()
     };
-    // Red was brighter than what is known of it.
+    // The true red is brighter than its limit.
     let free = least(truth * Vec3::new(0.6, 1.0, 1.0), Sense::AtLeast);
     for c in 0..3 {
         let allowed = 2.0 * (free.half_width[c] + 0.005 * 100.0);
-        assert!((free.scale[c] - 100.0).abs() < allowed && free.reach[c] == Reach::Met, "{free:?}");
+        assert!((free.scale[c] - 100.0).abs() < allowed && free.status[c] == TargetStatus::Met, "{free:?}");
     }
     assert!((free.scale.x - (free.scale.y + free.scale.z) / 2.0).abs() < 1e-9);
     assert!(free.half_width.x > 0.0 && free.error() < 0.006 && free.delta_e < 1.0, "{free:?}");
-    // It is more than the others ask for: the limit is what it gets, and the other way round.
+    // A limit that the other channels' scale violates is met exactly, on either side.
     for (factor, sense) in [(1.5, Sense::AtLeast), (0.5, Sense::AtMost)] {
         let bound = least(truth * Vec3::new(factor, 1.0, 1.0), sense);
         let exact = least(truth * Vec3::new(factor, 1.0, 1.0), Sense::Exactly);
@@ -157,14 +156,14 @@ fn a_limit_binds_only_where_it_is_broken() {
         let s = least(truth, Sense::AtMost).scale;
         (s.y + s.z) / 2.0
     });
-    // All channels are limits: the least light that keeps them.
+    // All channels have limits: the least light that satisfies them.
     let all = solve(&scene, truth, &Params { sense: [Sense::AtLeast; 3], seed: 99, ..params.clone() }).unwrap();
     assert_eq!(all.scale, least(truth, Sense::Exactly).scale);
-    // Which is none where other light is enough.
+    // No light is needed where other light suffices.
     let mut bright = scene.clone();
     bright.lights.push(PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::splat(1e3) });
     let none = solve(&bright, Vec3::splat(1e-3), &Params { sense: [Sense::AtLeast; 3], ..params }).unwrap();
-    assert_eq!((none.scale, none.reach), (DVec3::ZERO, [Reach::Met; 3]));
+    assert_eq!((none.scale, none.status), (DVec3::ZERO, [TargetStatus::Met; 3]));
 }
 
 #[test]

@@ -1,11 +1,11 @@
-//! Gradients against differences, and placements whose best is known.
+//! Tests of gradients against differences, and of placements with a known optimum.
 
 use super::*;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use std::f64::consts::PI;
 
-/// A map that is brightest at the middle, warm, and falls smoothly to the sides.
+/// A warm map with its maximum in the centre and a smooth decay to the sides.
 fn map() -> Importance {
     let cell = |i: usize, n: usize| (PI * ((i as f64 + 0.5) / n as f64 - 0.5)).cos();
     let (width, height) = (40, 32);
@@ -16,7 +16,7 @@ fn map() -> Importance {
     Importance::even(width, height, cells.collect(), DVec3::splat(0.5))
 }
 
-/// A warm lamp of 8 x 8 texels among 64 x 64.
+/// A warm lamp of 8 × 8 texels in a texture of 64 × 64.
 fn lamp(x: usize, y: usize) -> Image {
     let inside = |at: usize, from: usize| (from..from + 8).contains(&at);
     Image::from_fn(64, 64, |i, j| if inside(i, x) && inside(j, y) { [900.0, 700.0, 400.0] } else { [1.0; 3] }).unwrap()
@@ -30,7 +30,7 @@ fn search(texture: &Image, aim: Aim) -> Search {
 fn gradients_are_central_differences() {
     let texture = lamp(10, 40);
     let mut rng = Rng::new(4, &[]);
-    for aim in [Aim::Most, Aim::Least, Aim::Radiance(Vec3::new(30.0, 20.0, 10.0))] {
+    for aim in [Aim::Brightest, Aim::Darkest, Aim::Radiance(Vec3::new(30.0, 20.0, 10.0))] {
         let search = search(&texture, aim);
         for _ in 0..20 {
             let mut numbers = [0.0; 5].map(|_: f64| rng.next_f64() * 2.0 - 1.0);
@@ -57,37 +57,35 @@ fn place(texture: &Image, params: &PlaceParams) -> Placement {
     Pool::new(2).unwrap().run(|| map().place(texture, params, monitor.job()).unwrap())
 }
 
-/// One lamp comes to the middle of the surface, where it means most, from wherever it is in its texture, or to the corner,
-/// where it means least.
+/// A single lamp moves to the centre of the surface, where the importance is largest, from anywhere in its texture; or
+/// to the corner, where it is smallest.
 #[test]
 fn a_lamp_comes_to_where_it_means_most_or_least() {
     for (x, y) in [(10, 40), (50, 3)] {
         let at = DVec2::new(x as f64 + 4.0, y as f64 + 4.0) / 64.0;
-        for (aim, where_to) in [(Aim::Most, DVec2::splat(0.5)), (Aim::Least, DVec2::ZERO)] {
+        for (aim, where_to) in [(Aim::Brightest, DVec2::splat(0.5)), (Aim::Darkest, DVec2::ZERO)] {
             let found = place(&lamp(x, y), &PlaceParams { aim, ..PlaceParams::default() });
-            // The texture's point `at` is seen where `uv + offset = at`.
+            // The texture's point `at` appears where `uv + offset = at`.
             let off = at - found.pose.offset - where_to;
             let off = off - off.round();
             assert!(off.abs().max_element() < 0.01, "{aim:?}: {:?}", found.pose);
             let pose = PlaceParams::default();
-            assert!(
-                found.pose.offset.cmpge(pose.least.offset).all() && found.pose.offset.cmple(pose.most.offset).all()
-            );
+            assert!(found.pose.offset.cmpge(pose.min.offset).all() && found.pose.offset.cmple(pose.max.offset).all());
         }
     }
 }
 
-/// With scale and rotation free as well a target that is reachable is met, and its prediction is that of `respond`.
+/// With free scale and rotation, a reachable target is met, and the prediction equals that of `respond`.
 #[test]
 fn a_target_is_met_by_moving_the_lamp() {
     let texture = lamp(10, 40);
     let best = place(&texture, &PlaceParams::default()).response.light.mean;
-    let worst = place(&texture, &PlaceParams { aim: Aim::Least, ..PlaceParams::default() }).response.light.mean;
+    let worst = place(&texture, &PlaceParams { aim: Aim::Darkest, ..PlaceParams::default() }).response.light.mean;
     let target = (best * 0.4 + worst * 0.6 + 0.5).as_vec3();
     let params = PlaceParams { aim: Aim::Radiance(target), ..PlaceParams::default() };
     let free = PlaceParams {
-        least: Pose { offset: DVec2::splat(-0.5), scale: DVec2::splat(0.5), rotation: -PI },
-        most: Pose { offset: DVec2::splat(0.5), scale: DVec2::splat(2.0), rotation: PI },
+        min: Pose { offset: DVec2::splat(-0.5), scale: DVec2::splat(0.5), rotation: -PI },
+        max: Pose { offset: DVec2::splat(0.5), scale: DVec2::splat(2.0), rotation: PI },
         ..params.clone()
     };
     for params in [params, free] {
@@ -99,12 +97,12 @@ fn a_target_is_met_by_moving_the_lamp() {
         let again = map().respond(&texture, &matrix, Monitor::default().job()).unwrap();
         assert_eq!(again.light, found.response.light);
     }
-    // Bounds hold: the lamp may not move.
-    let held = PlaceParams { least: Pose::IDENTITY, most: Pose::IDENTITY, ..PlaceParams::default() };
+    // Bounds hold: the lamp must not move.
+    let held = PlaceParams { min: Pose::IDENTITY, max: Pose::IDENTITY, ..PlaceParams::default() };
     assert_eq!(place(&texture, &held).pose, Pose::IDENTITY);
 }
 
-/// A pattern with several periods, and noise in it: the multi-start finds what trying all offsets finds.
+/// A pattern with several periods and noise: the multi-start search finds the optimum over all offsets.
 #[test]
 fn many_starts_find_the_best_of_a_periodic_pattern() {
     let texture = Image::from_fn(60, 60, |x, y| {
@@ -138,8 +136,8 @@ fn placements_have_the_same_bits_and_settings_name_themselves() {
     let refused = |params: PlaceParams| map().place(&texture, &params, monitor.job()).unwrap_err().message;
     let d = PlaceParams::default;
     assert!(refused(PlaceParams { starts: 0, ..d() }).starts_with("starts"));
-    assert!(refused(PlaceParams { least: Pose { scale: DVec2::ZERO, ..d().least }, ..d() }).starts_with("scale"));
-    assert!(refused(PlaceParams { most: Pose { rotation: f64::NAN, ..d().most }, ..d() }).starts_with("rotation"));
-    assert!(refused(PlaceParams { least: d().most, most: d().least, ..d() }).starts_with("offset"));
+    assert!(refused(PlaceParams { min: Pose { scale: DVec2::ZERO, ..d().min }, ..d() }).starts_with("scale"));
+    assert!(refused(PlaceParams { max: Pose { rotation: f64::NAN, ..d().max }, ..d() }).starts_with("rotation"));
+    assert!(refused(PlaceParams { min: d().max, max: d().min, ..d() }).starts_with("offset"));
     assert!(refused(PlaceParams { aim: Aim::Radiance(-Vec3::ONE), ..d() }).starts_with("target"));
 }

@@ -1,11 +1,11 @@
-//! Every way of sampling against its density, every density against one, light both ways, and no light made.
+//! Tests of the BSDF: samples against the pdf, the integral of the pdf, reciprocity, and energy conservation.
 
 use super::*;
 use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
 use std::f32::consts::TAU;
 
-/// Roughnesses from the least that spreads to the most, and three kinds of substance of each; the last is matt.
+/// Roughnesses from the smallest non-specular one to 1, with three materials for each; the last material is diffuse.
 fn substances() -> Vec<Substance> {
     let colour = Vec3::new(0.9, 0.5, 0.2);
     let mut all = Vec::new();
@@ -36,7 +36,7 @@ fn matt(colour: Vec3) -> Substance {
     }
 }
 
-/// Seen along `wo`, the normal along the third axis.
+/// A BSDF seen from `wo`, with the normal along the third axis.
 fn seen<'a>(substance: &Substance, wo: Vec3, table: &'a AlbedoTable) -> Bsdf<'a> {
     Bsdf::new(substance, substance.f90 > 0.0, [Vec3::Z; 2], wo, Some(table))
 }
@@ -58,16 +58,16 @@ fn directions_come_with_the_density_that_is_stated() {
     for (number, substance) in substances.iter().enumerate() {
         for view in VIEWS {
             let bsdf = seen(substance, direction(view, 0.3), &table);
-            // Expected counts of bins that are even in cosine and angle, the last one for absorbed light.
+            // Expected counts of bins of equal cosine and angle; the last one counts absorbed light.
             let mut expected = vec![0.0; ROWS * COLUMNS + 1];
             const SUB: usize = 24;
             for i in 0..ROWS * SUB {
                 for j in 0..COLUMNS * SUB {
                     let cosine = (i as f32 + 0.5) / (ROWS * SUB) as f32;
                     let angle = TAU * (j as f32 + 0.5) / (COLUMNS * SUB) as f32;
-                    let density = f64::from(bsdf.eval(direction(cosine, angle)).1);
+                    let pdf = f64::from(bsdf.eval(direction(cosine, angle)).1);
                     let solid_angle = f64::from(TAU) / (ROWS * COLUMNS * SUB * SUB) as f64;
-                    expected[i / SUB * COLUMNS + j / SUB] += f64::from(n) * density * solid_angle;
+                    expected[i / SUB * COLUMNS + j / SUB] += f64::from(n) * pdf * solid_angle;
                 }
             }
             let inside: f64 = expected.iter().sum();
@@ -79,10 +79,10 @@ fn directions_come_with_the_density_that_is_stated() {
             for _ in 0..n {
                 let sample = bsdf.sample(Vec2::new(rng.next_f32(), rng.next_f32()));
                 let bin = sample.map_or(ROWS * COLUMNS, |s| {
-                    let (lobes, density) = bsdf.eval(s.direction);
-                    let Kind::Spread(stated) = s.kind else { panic!("{:?}", s.kind) };
-                    assert!((stated / density - 1.0).abs() < 1e-4, "{stated} and {density}");
-                    let weight = lobes.sum() / density;
+                    let (lobes, pdf) = bsdf.eval(s.direction);
+                    let ScatterKind::NonSpecular(stated) = s.kind else { panic!("{:?}", s.kind) };
+                    assert!((stated / pdf - 1.0).abs() < 1e-4, "{stated} and {pdf}");
+                    let weight = lobes.sum() / pdf;
                     assert!((s.weight - weight).abs().max_element() <= 1e-5, "{} and {weight}", s.weight);
                     let row = ((s.direction.z * ROWS as f32) as usize).min(ROWS - 1);
                     let angle = s.direction.y.atan2(s.direction.x).rem_euclid(TAU) / TAU;
@@ -110,7 +110,7 @@ fn light_goes_both_ways_alike() {
     }
 }
 
-/// Mean and standard error of the weights of samples: the share of light sent on.
+/// Mean and standard error of the sample weights: the directional albedo.
 fn albedo(substance: &Substance, view: f32, table: &AlbedoTable) -> (f64, f64) {
     let bsdf = seen(substance, direction(view, 0.7), table);
     let n = 40_000;
@@ -127,7 +127,7 @@ fn albedo(substance: &Substance, view: f32, table: &AlbedoTable) -> (f64, f64) {
 
 #[test]
 fn a_white_dielectric_sends_back_all_but_what_its_facets_lose() {
-    // Kelemen and Szirmay-Kalos: the diffuse layer makes up for the mean the top layer takes.
+    // Kelemen and Szirmay-Kalos: the diffuse layer compensates the mean albedo of the top layer.
     let table = AlbedoTable::new();
     for roughness in [0.0, 0.0005, 0.05, 0.2, 0.6, 1.0] {
         for view in [1.0, 0.5, 0.1] {
@@ -140,8 +140,8 @@ fn a_white_dielectric_sends_back_all_but_what_its_facets_lose() {
     assert_eq!(albedo(&matt(Vec3::ONE), 0.3, &table), (1.0, 0.0), "white without a top layer");
 }
 
-/// The white furnace of metals: never more than arrives, nothing lost by a mirror, and where the facets lie evenly the
-/// share single scattering sends back has a closed form.
+/// White furnace for metals: never more than 1, exactly 1 for a mirror, and a closed form for uniformly distributed
+/// microfacet normals.
 #[test]
 fn a_white_metal_makes_no_light_at_any_roughness() {
     let table = AlbedoTable::new();
@@ -160,7 +160,7 @@ fn a_white_metal_makes_no_light_at_any_roughness() {
                 let expected = 1.0 - cosine * ((1.0 + cosine) / cosine).ln();
                 assert!((mean - expected).abs() < 4.0 * error + 1e-4, "{what}, expected {expected}");
             }
-            // What the table of albedos says, which shares out energy between the layers.
+            // Compare with the albedo table, which divides the energy between the layers.
             let share = table.row(roughness).directional(view).element_sum();
             assert!((mean - f64::from(share)).abs() < 0.02, "{what}, table {share}");
         }

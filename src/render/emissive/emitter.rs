@@ -1,4 +1,4 @@
-//! A triangle that emits: what, from which side, and where.
+//! An emissive triangle.
 
 use crate::render::facet::Facet;
 use crate::scene::{Scene, Texture};
@@ -6,22 +6,22 @@ use glam::{DVec2, Vec2, Vec3, Vec4};
 
 pub struct Emitter {
     pub mesh: u32,
-    /// Index within its mesh, and among all triangles of the scene.
+    /// Index of the triangle within its mesh.
     pub triangle: u32,
     pub id: u32,
     pub corners: [Vec3; 3],
-    /// Of the front face, unit.
+    /// Unit normal of the front side.
     pub normal: Vec3,
     pub area: f32,
     pub double_sided: bool,
     pub(super) factor: Vec3,
     pub(super) texture: Option<usize>,
-    /// Texture coordinates of the corners, transformed as the material says.
+    /// Texture coordinates of the corners, after the material's texture transform.
     pub(super) uv: [Vec2; 3],
 }
 
 impl Emitter {
-    /// None for a triangle that emits nothing or has no area.
+    /// `None` for a triangle that does not emit or is degenerate.
     pub(super) fn new(scene: &Scene, facet: &Facet, id: u32, first: &[u32]) -> Option<Self> {
         let (mesh, triangle) = (facet.mesh, id - first[facet.mesh as usize]);
         let m = &scene.meshes[mesh as usize];
@@ -56,7 +56,7 @@ impl Emitter {
         })
     }
 
-    /// What a point emits in cd/m² per channel, and the texture coordinates it was looked up with.
+    /// Emission at a point in cd/m² per channel, and the texture coordinates of its look-up.
     pub fn emission(&self, scene: &Scene, barycentric: Vec2) -> (Vec3, Vec2) {
         let b = barycentric;
         let uv = self.uv[0] * (1.0 - b.x - b.y) + self.uv[1] * b.x + self.uv[2] * b.y;
@@ -66,7 +66,7 @@ impl Emitter {
         }
     }
 
-    /// What a texel of the emitter's texture emits.
+    /// Emission of a texel of the emitter's texture, mean of the channels.
     pub(super) fn emission_of_texel(&self, colour: Vec4) -> f32 {
         mean_channel(self.factor * colour.truncate().max(Vec3::ZERO))
     }
@@ -75,19 +75,19 @@ impl Emitter {
         self.corners[0] * (1.0 - b.x - b.y) + self.corners[1] * b.x + self.corners[2] * b.y
     }
 
-    /// Whether the side seen along `direction` (towards the emitter) emits.
+    /// Whether the side that a ray along `direction` hits emits.
     pub fn faces(&self, direction: Vec3) -> bool {
         self.double_sided || self.normal.dot(direction) < 0.0
     }
 
-    /// Corners in texels.
+    /// The corners in texel coordinates.
     pub(super) fn texels(&self, texture: &Texture) -> [DVec2; 3] {
         let size = DVec2::new(texture.image.width as f64, texture.image.height as f64);
         self.uv.map(|uv| uv.as_dvec2() * size)
     }
 }
 
-/// Brightness by which light is shared out: no channel that emits is overlooked.
+/// Mean of the channels: the brightness for sampling, positive wherever any channel is.
 pub fn mean_channel(v: Vec3) -> f32 {
     v.element_sum() / 3.0
 }

@@ -1,10 +1,10 @@
-//! Light from emissive triangles, their textures sampled in proportion to what they emit.
+//! Emissive triangles, whose textures are sampled in proportion to their emission.
 //!
-//! Emitters are cut into pieces, among which [`super::light`] chooses: a triangle of even emission is one piece, of a
-//! textured one every tile of 8 × 8 texels that emits. Within a piece a point is chosen in proportion to its emission,
-//! texel by texel: its density is its own emission over the intensity of the piece. So thousands of small lamps in one
-//! texture cost what one lamp costs, and a light never is chosen where it is dark. Emissive textures are looked up without
-//! interpolation for that. Triangles whose texture coordinates span no area (or too many texels to enumerate) are one
+//! Emitters are divided into pieces, which [`super::light`] selects: a triangle of uniform emission is one piece, and
+//! so is every emissive tile of 8 × 8 texels of a textured triangle. Within a piece a point is sampled in proportion to
+//! its emission, texel by texel; its area pdf is its emission divided by the intensity of the piece. Thousands of small
+//! lamps in one texture cost as much as one lamp, and no sample falls on a dark texel. For this, emission textures are
+//! looked up without interpolation. A triangle whose texture coordinates have no area (or span too many texels) is one
 //! piece, sampled uniformly.
 
 mod emitter;
@@ -14,7 +14,7 @@ mod tiles;
 pub use emitter::{Emitter, mean_channel};
 
 use super::facet::Facet;
-use super::light::Bounds;
+use super::light::bounds::Bounds;
 use crate::error::Result;
 use crate::image::{make_room, try_collect, try_vec, try_with_capacity};
 use crate::scene::Scene;
@@ -23,17 +23,17 @@ use polygon::uniform_in_triangle;
 use rayon::prelude::*;
 use tiles::{Tile, Tiling};
 
-/// No piece, no tiling.
+/// Marks a missing piece or tiling.
 const NONE: u32 = u32::MAX;
 
 pub struct Emitters {
     pub emitters: Vec<Emitter>,
-    /// How each emitter is divided.
+    /// The division of each emitter into pieces.
     divisions: Vec<Division>,
     tilings: Vec<Tiling>,
-    /// For every tile of every tiling the piece that it is, or `NONE` where it is dark.
+    /// The piece of every tile of every tiling; `NONE` for dark tiles.
     piece_of_tile: Vec<u32>,
-    /// The pieces: triangles of even emission, then tiles.
+    /// The pieces: first the uniform triangles, then the tiles.
     even: Vec<Even>,
     tiles: Vec<Tile>,
     /// Flux of all emitters in lumens, one-sided.
@@ -42,22 +42,22 @@ pub struct Emitters {
 
 #[derive(Clone, Copy)]
 enum Division {
-    /// One piece, or `NONE` where it is dark.
+    /// A single piece; `NONE` for a dark triangle.
     Even(u32),
-    /// By a tiling whose tiles start at an entry of `piece_of_tile`.
+    /// A tiling whose tiles start at index `first` of `piece_of_tile`.
     Tiled { tiling: u32, first: usize },
 }
 
 /// A triangle that is one piece.
 struct Even {
     emitter: u32,
-    /// Emission times area, mean of the channels: luminous intensity (cd) head-on.
+    /// Emission × area, mean of the channels: the luminous intensity (cd) along the normal.
     intensity: f32,
 }
 
 impl Emitters {
-    /// `facets` are the triangles of a scene whose indices have been checked, `first` the number of each mesh's first.
-    /// Returns the bounds of every piece as well.
+    /// `facets` are the triangles of a validated scene, `first` the id of the first triangle of each mesh. Also returns
+    /// the bounds of every piece.
     pub fn build(scene: &Scene, facets: &[Facet], first: &[u32]) -> Result<(Self, Vec<Bounds>)> {
         let numbered = facets.iter().zip(0..);
         let emitters = try_collect(numbered.filter_map(|(f, id)| Emitter::new(scene, f, id, first)))?;
@@ -78,7 +78,7 @@ impl Emitters {
         Ok((this, bounds))
     }
 
-    /// Pieces for the emitters that are not to be cut up, tilings for the others.
+    /// Adds the pieces of undivided emitters, and the tilings of the others.
     fn add_even(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) {
         for (index, emitter) in self.emitters.iter().enumerate() {
             let texture = emitter.texture.map(|t| &scene.textures[t]);
@@ -97,9 +97,9 @@ impl Emitters {
         }
     }
 
-    /// A piece for every tile that emits.
+    /// Adds a piece for every emissive tile.
     fn add_tiled(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) -> Result<()> {
-        // Rows of tiles are the units of work; those of an emitter follow each other.
+        // Parallelise over rows of tiles, in the order of their emitters.
         let mut rows = Vec::new();
         let mut count = 0;
         for (index, division) in self.divisions.iter_mut().enumerate() {
@@ -128,7 +128,7 @@ impl Emitters {
             .map(|&(index, texture, tiling, place)| tiling.tile(index as u32, &self.emitters[index], texture, place))
             .unzip_into_vecs(&mut tiles, &mut light);
 
-        // Of some only texels beside the triangle shine.
+        // Drop tiles whose emissive texels all lie outside their triangle.
         tiles.retain(|tile| tile.intensity > 0.0);
         light.retain(|bounds| bounds.intensity > 0.0);
         for (tile, piece) in tiles.iter().zip(self.even.len() as u32..) {
@@ -143,7 +143,7 @@ impl Emitters {
         Ok(())
     }
 
-    /// A point of a piece in proportion to its emission: the emitter and the barycentric coordinates.
+    /// Samples a point of a piece in proportion to its emission; returns the emitter and the barycentric coordinates.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
         let Some(tile) = piece.checked_sub(self.even.len()).map(|t| &self.tiles[t]) else {
@@ -154,7 +154,7 @@ impl Emitters {
         Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
-    /// The piece that a point of an emitter belongs to, by its texture coordinates; none where it is dark.
+    /// The piece at a point of an emitter, by its texture coordinates; `None` for dark tiles.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
         let piece = match self.divisions[emitter] {
             Division::Even(piece) => piece,
@@ -163,9 +163,9 @@ impl Emitters {
         (piece != NONE).then_some(piece as usize)
     }
 
-    /// Probability per m² with which [`Emitters::sample`] chooses a point of a piece that emits `brightness`, the mean of
-    /// the channels.
-    pub fn density(&self, piece: usize, brightness: f32) -> f32 {
+    /// Area pdf (per m²) with which [`Emitters::sample`] draws a point of a piece, whose emission (mean of the
+    /// channels) is `brightness`.
+    pub fn area_pdf(&self, piece: usize, brightness: f32) -> f32 {
         match piece.checked_sub(self.even.len()) {
             Some(tile) => brightness / self.tiles[tile].intensity,
             None => 1.0 / self.emitters[self.even[piece].emitter as usize].area,

@@ -1,19 +1,19 @@
-//! The part of a rectangle of texels inside a triangle.
+//! The intersection of a rectangle of texels with a triangle.
 
 use glam::{DVec2, Vec2};
 
-/// Rectangles of texels, from and to which they run along u and v.
+/// A rectangle in texel coordinates.
 #[derive(Clone, Copy)]
 pub struct Rectangle {
     pub low: DVec2,
     pub high: DVec2,
 }
 
-/// How a rectangle lies to a triangle.
+/// The overlap of a rectangle with a triangle.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Overlap {
     None,
-    /// Some of it is inside, or so little of it is outside that only clipping can tell.
+    /// Partly inside, or so nearly all inside that only clipping can decide.
     Part,
     Whole,
 }
@@ -23,7 +23,7 @@ impl Rectangle {
         (self.high - self.low).element_product()
     }
 
-    /// Which part of the rectangle a triangle covers, by its edges alone.
+    /// Classifies the overlap with a triangle by tests against its edges.
     pub fn overlap(&self, triangle: &[DVec2; 3]) -> Overlap {
         let [a, b, c] = *triangle;
         let side = (b - a).perp_dot(c - a).signum();
@@ -43,7 +43,7 @@ impl Rectangle {
     }
 }
 
-/// A triangle clipped to a rectangle: at most seven corners.
+/// A triangle clipped to a rectangle; it has at most seven corners.
 pub struct Polygon {
     corners: [DVec2; 8],
     len: usize,
@@ -64,7 +64,7 @@ impl Polygon {
         &self.corners[..self.len]
     }
 
-    /// Keeps the part where `inside` is not negative (Sutherland and Hodgman 1974).
+    /// Clips to the half-plane where `inside` is not negative (Sutherland and Hodgman 1974).
     fn clip(&mut self, inside: impl Fn(DVec2) -> f64) {
         let from = self.corners;
         let mut len = 0;
@@ -83,7 +83,7 @@ impl Polygon {
         self.len = len;
     }
 
-    /// Doubled areas of the triangles of a fan.
+    /// Twice the area of triangle `i` of the triangle fan.
     fn fan(&self, i: usize) -> f64 {
         let [a, b, c] = [self.corners[0], self.corners[i], self.corners[i + 1]];
         (b - a).perp_dot(c - a).abs()
@@ -93,7 +93,7 @@ impl Polygon {
         (1..self.len.saturating_sub(1)).map(|i| self.fan(i)).sum::<f64>() / 2.0
     }
 
-    /// A point uniform by area: `u` chooses the triangle of the fan, and what is left of it, with `v`, the point.
+    /// A point uniform by area: `u` selects a triangle of the fan; its remainder and `v` select the point.
     pub fn sample(&self, (u, v): (f64, f32)) -> Option<DVec2> {
         let mut target = u * 2.0 * self.area();
         let last = self.len.checked_sub(2).filter(|&l| l > 0)?;
@@ -113,7 +113,7 @@ impl Polygon {
     }
 }
 
-/// Barycentric coordinates of corners 1 and 2, uniform by area.
+/// Barycentric coordinates of corners 1 and 2 of a point uniform by area.
 pub fn uniform_in_triangle(v: Vec2) -> Vec2 {
     let root = v.x.sqrt();
     Vec2::new(root * (1.0 - v.y), root * v.y)
@@ -148,7 +148,7 @@ mod tests {
         let (side, n) = (12, 50_000);
         for triangle in &triangles {
             let polygon = Polygon::clipped(triangle, &whole);
-            // What is expected of a bin is the area of the triangle clipped to it.
+            // The expected count of a bin is proportional to the area of the triangle clipped to it.
             let bin = |i: usize| DVec2::new((i % side) as f64, (i / side) as f64) / side as f64;
             let area = |i: usize| {
                 Polygon::clipped(triangle, &Rectangle { low: bin(i), high: bin(i) + 1.0 / side as f64 }).area()

@@ -1,4 +1,4 @@
-//! Points on emitters: chosen in proportion to what they emit, with the density that is stated.
+//! Sampling of points on emitters: in proportion to emission, and with the stated pdf.
 
 use super::*;
 use crate::image::Image;
@@ -7,7 +7,7 @@ use crate::rng::Rng;
 use crate::scene::{Material, Mesh, Texture, TextureRef, Wrap};
 use glam::Vec3;
 
-/// A slanted triangle with a patchy texture, and one without any.
+/// A slanted triangle with a patchy texture, and a triangle without a texture.
 fn scene(side: usize, uvs: [Vec2; 3], wrap: Wrap) -> Scene {
     let image = Image::from_fn(side, side / 2 + 1, |x, y| {
         let lit = if (x * 5 + y * 3) % 7 < 3 { (x + 2 * y + 1) as f32 } else { 0.0 };
@@ -72,12 +72,12 @@ fn points_are_as_dense_as_the_light_they_emit() {
                 let (emitter, b) = emitters.sample(piece, (rng.next_f64(), rng.next_f32())).unwrap();
                 assert!(b.min_element() >= 0.0 && b.element_sum() < 1.0 + 1e-5);
                 let (emission, uv) = emitters.emitters[emitter].emission(&scene, b);
-                // Emission over density is the intensity of the piece: sampling is perfect.
-                let estimate = mean_channel(emission) / emitters.density(piece, mean_channel(emission));
+                // Emission / pdf equals the intensity of the piece: importance sampling is perfect.
+                let estimate = mean_channel(emission) / emitters.area_pdf(piece, mean_channel(emission));
                 let agrees = (estimate / pieces[piece].1 - 1.0).abs() < 1e-5;
                 disagreed += usize::from(!agrees || emitters.piece_at(emitter, uv) != Some(piece));
             }
-            // Only points within rounding of a texel's border may be looked up as its neighbour.
+            // Points within rounding of a texel's border may be looked up in the neighbouring texel.
             assert!(disagreed <= 5, "{disagreed} of 5000, {wrap:?}, {uvs:?}");
         }
     }
@@ -85,7 +85,7 @@ fn points_are_as_dense_as_the_light_they_emit() {
 
 #[test]
 fn chosen_points_fall_as_often_as_the_density_says() {
-    // Each emitter's barycentric coordinates in bins; what is expected of each by fine quadrature of the density.
+    // Count the samples in bins of barycentric coordinates; integrate the pdf over each bin by fine quadrature.
     let (bins, fine, samples) = (12, 40, 200_000);
     let mut rng = Rng::new(24, &[]);
     let cases: Vec<_> = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror]
@@ -99,12 +99,12 @@ fn chosen_points_fall_as_often_as_the_density_says() {
         let mut counts = vec![0.0; bins * bins];
         let mut expected = vec![0.0; bins * bins];
         let bin = |b: Vec2| {
-            // The square of which the triangle is an image without distortion of areas.
+            // The unit square maps to the triangle with constant area ratio.
             let side = |x: f32| ((x * bins as f32) as usize).min(bins - 1);
             let along = b.x + b.y;
             side(along * along) * bins + side(b.y / along.max(1e-9))
         };
-        // Pieces of the first emitter in proportion to their intensity, as a table would choose them.
+        // Select the pieces of the first emitter in proportion to their intensity.
         let own: Vec<usize> = (0..pieces.len()).filter(|&p| pieces[p].0 == 0).collect();
         let weights = own.iter().map(|&p| f64::from(pieces[p].1));
         let table = crate::render::distribution::Distribution::new(weights.into_iter()).unwrap();
@@ -121,9 +121,9 @@ fn chosen_points_fall_as_often_as_the_density_says() {
             let b = uniform_in_triangle(v);
             let uv = emitters.emitters[0].emission(&scene, b).1;
             if let Some(piece) = emitters.piece_at(0, uv) {
-                let chosen = own.iter().position(|&p| p == piece).map_or(0.0, |i| table.probability(i));
-                let density = chosen * f64::from(emitters.density(piece, brightness(&emitters, &scene, 0, b)) * area);
-                expected[bin(b)] += density * f64::from(samples) / (cells * cells) as f64;
+                let chosen = own.iter().position(|&p| p == piece).map_or(0.0, |i| table.pmf(i));
+                let pdf = chosen * f64::from(emitters.area_pdf(piece, brightness(&emitters, &scene, 0, b)) * area);
+                expected[bin(b)] += pdf * f64::from(samples) / (cells * cells) as f64;
             }
         }
         assert_follows(&expected, &counts, cases.len(), &format!("{wrap:?}, {uvs:?}"));
@@ -161,12 +161,12 @@ fn densities_of_a_piece_integrate_to_one() {
             let b = uniform_in_triangle(Vec2::new(rng.next_f32(), rng.next_f32()));
             let uv = emitter.emission(&scene, b).1;
             if let Some(piece) = emitters.piece_at(index, uv) {
-                let density = emitters.density(piece, brightness(&emitters, &scene, index, b));
-                sums[piece] += f64::from(density * emitter.area) / f64::from(n);
+                let pdf = emitters.area_pdf(piece, brightness(&emitters, &scene, index, b));
+                sums[piece] += f64::from(pdf * emitter.area) / f64::from(n);
             }
         }
     }
-    // All pieces together; single ones are small and scatter.
+    // Average over all pieces: single pieces are small and have a large variance.
     let mean = sums.iter().sum::<f64>() / sums.len() as f64;
     assert!((mean - 1.0).abs() < 0.01, "{mean}");
 }

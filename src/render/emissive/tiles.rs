@@ -1,52 +1,54 @@
-//! A triangle's part of its texture, cut into tiles of 8 × 8 texels, each with a table by which its texels are chosen.
+//! The part of a texture that a triangle covers, divided into tiles of 8 × 8 texels with a cumulative distribution
+//! each.
 //!
-//! Tiles lie on the grid of texels, repeated as the texture wraps; of those on the triangle's edge only the covered part
-//! counts. A tile's table is four cache lines, and dark tiles have none.
+//! Tiles are aligned with the triangle's first texel and continue as the texture wraps. At the edges of the triangle
+//! only the covered part of a texel counts. The table of a tile takes four cache lines; dark tiles are not stored.
 
 use super::emitter::Emitter;
 use super::polygon::{Overlap, Polygon, Rectangle};
-use crate::render::light::Bounds;
+use crate::render::light::bounds::Bounds;
 use crate::scene::Texture;
 use glam::{DMat2, DVec2, Vec2};
 
-/// Texels along the side of a tile.
+/// Side of a tile in texels.
 pub const SIDE: usize = 8;
 
-/// Beyond this many texels, and four times those of the texture, a triangle is not cut up.
+/// Largest number of texels (or four times that of the texture, if more) of a triangle that is divided. [judged, not
+/// recorded]
 const MAX_TEXELS: f64 = (1 << 26) as f64;
-/// Where single-precision texture coordinates no longer tell neighbouring texels apart.
-const FARTHEST: f64 = 8e6;
+/// Texture coordinates beyond this many texels cannot separate neighbouring texels in single precision. [rounding]
+const MAX_TEXEL_COORDINATE: f64 = 8e6;
 
-/// How a triangle is cut into tiles.
+/// The division of a triangle into tiles.
 pub struct Tiling {
-    /// The triangle's corners in texels.
+    /// The triangle's corners in texel coordinates.
     triangle: [DVec2; 3],
-    /// From the offset to the first corner, in texels, to barycentric coordinates.
+    /// From the offset to the first corner in texels to barycentric coordinates.
     to_barycentric: DMat2,
-    /// First texel, and number of tiles along u and v.
+    /// The first texel, and the number of tiles along u and v.
     start: [i64; 2],
     pub columns: usize,
     pub rows: usize,
-    /// Size of the texture in texels, as its look-up has it.
+    /// Size of the texture in texels, in the precision of its look-up.
     size: Vec2,
 }
 
-/// A tile that emits, all of it side by side in memory.
+/// An emissive tile, contiguous in memory.
 #[repr(align(64))]
 pub struct Tile {
     pub emitter: u32,
-    /// Emission times area, mean of the channels: luminous intensity (cd) head-on.
+    /// Emission × area, mean of the channels: the luminous intensity (cd) along the normal.
     pub intensity: f32,
     pub column: u32,
     pub row: u32,
-    /// Whether the triangle covers all of it.
+    /// Whether the triangle covers the whole tile.
     whole: bool,
-    /// Share of the tile's light that comes from its texels up to and including each, row by row.
+    /// Cumulative distribution of the tile's intensity over its texels, row by row.
     shares: [f32; SIDE * SIDE],
 }
 
 impl Tiling {
-    /// None where texture coordinates span no area or a single texel, or too many texels to enumerate.
+    /// `None` if the texture coordinates have no area, lie within a single texel, or span too many texels.
     pub fn new(emitter: &Emitter, texture: &Texture) -> Option<Self> {
         let triangle = emitter.texels(texture);
         let [a, b, c] = triangle;
@@ -56,7 +58,10 @@ impl Tiling {
         let texels = texture.image.width as f64 * texture.image.height as f64;
         let texels_spanned = span.element_product();
         let countable = texels_spanned > 1.0 && texels_spanned <= MAX_TEXELS.max(4.0 * texels);
-        if !(countable && low.abs().max(high.abs()).max_element() < FARTHEST && area > 1e-6 * texels_spanned) {
+        if !(countable
+            && low.abs().max(high.abs()).max_element() < MAX_TEXEL_COORDINATE
+            && area > 1e-6 * texels_spanned)
+        {
             return None;
         }
         let to_barycentric = DMat2::from_cols(b - a, c - a).inverse();
@@ -71,37 +76,37 @@ impl Tiling {
         })
     }
 
-    /// The tile, counted row by row, that the texture coordinates of a point lie in.
+    /// Index of the tile at texture coordinates, row by row.
     pub fn tile_at(&self, uv: Vec2) -> usize {
         let texel = (uv * self.size).floor();
         let tile = |texel: f32, start: i64, count: usize| {
-            // Rounding can put a point of the border one texel outside the triangle's tiles.
+            // Clamp: rounding can put a point of the border one texel outside.
             ((texel as i64 - start) / SIDE as i64).clamp(0, count as i64 - 1) as usize
         };
         tile(texel.y, self.start[1], self.rows) * self.columns + tile(texel.x, self.start[0], self.columns)
     }
 
-    /// Whether the triangle covers some of a tile that may emit: most lie between the lamps, and are seen to be dark at a
-    /// glance.
+    /// Whether the triangle covers a part of the tile and its texels may emit. Most tiles lie between the lamps; this
+    /// test rejects them cheaply.
     pub fn may_emit(&self, texture: &Texture, [column, row]: [usize; 2]) -> bool {
         let first = self.first_texel(column, row);
         rectangle(first, SIDE as f64).overlap(&self.triangle) != Overlap::None
             && !self.within(first).is_some_and(|texel| texture.is_black(texel, SIDE))
     }
 
-    /// The texture's texel that a tile starts with, if all of the tile lies within the texture.
+    /// The texel of the texture at the tile's first texel, if the whole tile lies within the texture.
     fn within(&self, first: DVec2) -> Option<[usize; 2]> {
         let last = first + (SIDE - 1) as f64;
         let within = first.min_element() >= 0.0 && last.x < f64::from(self.size.x) && last.y < f64::from(self.size.y);
         within.then_some([first.x as usize, first.y as usize])
     }
 
-    /// A tile of the emitter number `index` and the bounds of its light; of no intensity if it turns out to be dark.
+    /// A tile of emitter number `index` with the bounds of its light; of zero intensity if it is dark.
     pub fn tile(&self, index: u32, emitter: &Emitter, texture: &Texture, [column, row]: [usize; 2]) -> (Tile, Bounds) {
         let first = self.first_texel(column, row);
         let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
         let within = self.within(first);
-        // Area in m² of a texel.
+        // Area of a texel in m².
         let doubled = (self.triangle[1] - self.triangle[0]).perp_dot(self.triangle[2] - self.triangle[0]).abs();
         let scale = 2.0 * f64::from(emitter.area) / doubled;
         let mut sums = [0.0f64; SIDE * SIDE];
@@ -124,7 +129,7 @@ impl Tiling {
             *running = sum;
         }
         let intensity = if (sum as f32).is_finite() { sum as f32 } else { 0.0 };
-        // What holds all of the tile's light.
+        // Bound the emissive part of the triangle.
         let lit = Polygon::clipped(&self.triangle, &Rectangle { low, high });
         let corners = lit.corners().iter().map(|&p| emitter.point(self.barycentric(p)));
         let bounds = Bounds::of_surface(corners, emitter.normal, emitter.double_sided, intensity);
@@ -142,11 +147,11 @@ impl Tiling {
         }
     }
 
-    /// A point of a tile in proportion to its emission, in barycentric coordinates: `u` chooses the texel, and what is left
-    /// of it, with `v`, the point.
+    /// Samples a point of a tile in proportion to its emission, in barycentric coordinates: `u` selects the texel; its
+    /// remainder and `v` select the point.
     pub fn sample(&self, tile: &Tile, (u, v): (f64, f32)) -> Option<Vec2> {
         let (shares, target) = (&tile.shares, (u as f32).min(1.0 - f32::EPSILON));
-        // All at once rather than by halves: the table is in the cache, and nothing is to be predicted.
+        // Compare with all entries instead of bisecting: the table is in the cache, and no branch can be mispredicted.
         let before = shares.iter().map(|&share| u32::from(share <= target)).sum::<u32>() as usize;
         let index = before.min(SIDE * SIDE - 1);
         let texel = self.first_texel(tile.column as usize, tile.row as usize)
@@ -182,8 +187,8 @@ impl Tiling {
         let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).floor());
         let (width, height) = (texture.image.width, texture.image.height);
         let span = high - low + 1.0;
-        // More texels than the texture has: all of them.
-        let fits = span.x <= width as f64 && span.y <= height as f64 && low.abs().max_element() < FARTHEST;
+        // If the triangle spans more texels than the texture has, average the whole texture.
+        let fits = span.x <= width as f64 && span.y <= height as f64 && low.abs().max_element() < MAX_TEXEL_COORDINATE;
         let (low, columns, rows) =
             if fits { (low, span.x as usize, span.y as usize) } else { (DVec2::ZERO, width, height) };
         let mut sum = 0.0;

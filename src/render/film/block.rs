@@ -1,51 +1,52 @@
-//! Blocks of pixels whose paths share what they find (`shared`).
+//! Blocks of pixels whose paths share secondary vertices (`shared`).
 //!
-//! A block is 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the errors that its pixels have in common
-//! do not show as blocks. Which paths go together depends on the image alone.
+//! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its pixels
+//! do not show as blocks. The blocks depend on the position in the image alone.
 
-use super::Eye;
+use super::eye::Eye;
 use super::grid::{AREA, TILE};
 use crate::render::layers::{Layers, Recorder};
-use crate::render::path::Length;
+use crate::render::path::PathLength;
 use crate::render::sampler::Sampler;
-use crate::render::shared::{self, MOST, Scratch, Start};
-use crate::render::tape::{Sum, Told};
+use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
+use crate::render::tape::{LpeTape, Sum};
 use crate::render::world::World;
 use crate::rng;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Blocks of a tile.
-const BLOCKS: usize = AREA / MOST;
-/// Their longer side.
-const LONG: usize = 4;
+/// Number of blocks in a tile.
+const BLOCKS: usize = AREA / MAX_SHARED;
+/// Longer side of a block in pixels.
+const LONGER_SIDE: usize = 4;
 
 /// A pixel of a block.
-pub struct Member {
-    /// Its number in the tile.
+pub struct BlockPixel {
+    /// Index of the pixel in its tile.
     pub pixel: usize,
-    /// Its column and row.
+    /// Column and row of the pixel in the image.
     pub at: [usize; 2],
-    pub length: Length,
+    pub length: PathLength,
     seed: u64,
 }
 
-impl Member {
-    /// For the paths of a replication; `seed` is the image's.
-    pub fn new(pixel: usize, at: [usize; 2], length: Length, seed: u64, replication: u32) -> Self {
+impl BlockPixel {
+    /// A pixel for the paths of a replication; `seed` is the seed of the image.
+    pub fn new(pixel: usize, at: [usize; 2], length: PathLength, seed: u64, replication: u32) -> Self {
         Self { pixel, at, length, seed: seed_of(seed, at, replication) }
     }
 }
 
-/// The seed of a pixel's paths of a replication.
+/// The seed of a pixel's paths in a replication.
 pub fn seed_of(seed: u64, at: [usize; 2], replication: u32) -> u64 {
     rng::mix(rng::hash(seed, &at.map(|v| v as u64)) ^ u64::from(replication))
 }
 
-/// Numbers of the pixels of each block of a tile.
-pub fn blocks(replication: u32) -> [[usize; MOST]; BLOCKS] {
+/// Indices of the pixels of each block of a tile.
+pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
     let wide = replication.is_multiple_of(2);
-    let (width, height) = if wide { (LONG, MOST / LONG) } else { (MOST / LONG, LONG) };
+    let (width, height) =
+        if wide { (LONGER_SIDE, MAX_SHARED / LONGER_SIDE) } else { (MAX_SHARED / LONGER_SIDE, LONGER_SIDE) };
     let across = TILE / width;
     std::array::from_fn(|block| {
         let (left, top) = (block % across * width, block / across * height);
@@ -53,51 +54,52 @@ pub fn blocks(replication: u32) -> [[usize; MOST]; BLOCKS] {
     })
 }
 
-/// Makes the paths of one block after the other.
-pub struct Maker<'a> {
+/// Traces the paths of blocks, one block at a time.
+pub struct BlockTracer<'a> {
     starts: Vec<Start>,
     scratch: Scratch<Sum>,
-    /// For each member one who tells its light apart, if anyone does, and what is told to all of them.
-    recorders: Option<(Vec<Recorder<'a>>, Scratch<Told<'a>>)>,
+    /// A recorder for each pixel of the block, if there are layers, with the scratch memory for their replays.
+    recorders: Option<(Vec<Recorder<'a>>, Scratch<LpeTape<'a>>)>,
 }
 
-impl<'a> Maker<'a> {
+impl<'a> BlockTracer<'a> {
     pub fn new(layers: Option<&'a Layers>) -> Self {
         let recorders = layers.map(|l| (l.recorders(), l.scratch()));
-        Self { starts: Vec::with_capacity(MOST), scratch: Scratch::default(), recorders }
+        Self { starts: Vec::with_capacity(MAX_SHARED), scratch: Scratch::default(), recorders }
     }
 
-    /// Who tells the light of each member apart.
+    /// The recorders of the pixels of the block.
     pub fn recorders(&mut self) -> Option<&mut [Recorder<'a>]> {
         self.recorders.as_mut().map(|(recorders, _)| &mut recorders[..])
     }
 
-    /// Sums of the paths of each member with indices in a range, all of one replication; each recorder is told of those of
-    /// its member. Those that are no finite numbers are left out, and counted by `discarded`, which has the number of the member.
+    /// Sums of the radiance of each pixel's paths, for a range of path indices of one replication. Each recorder
+    /// records the paths of its pixel. Paths with a radiance that is not finite are dropped; `discarded` is called with
+    /// the index of their pixel in `members`.
     pub fn paths(
         &mut self,
         world: &World,
         eye: &Eye,
-        members: &[Member],
+        members: &[BlockPixel],
         indices: Range<u32>,
         mut discarded: impl FnMut(usize),
-    ) -> [DVec3; MOST] {
-        let mut sums = [DVec3::ZERO; MOST];
+    ) -> [DVec3; MAX_SHARED] {
+        let mut sums = [DVec3::ZERO; MAX_SHARED];
         for index in indices {
             self.starts.clear();
             self.starts.extend(members.iter().map(|m| eye.start(world, m.at, m.length, Sampler::new(m.seed, index))));
             let radiances = match &mut self.recorders {
                 None => {
-                    let mut witnesses = [Sum(Vec3::ZERO); MOST];
-                    shared::trace(world, &mut self.starts, &mut witnesses[..members.len()], &mut self.scratch);
-                    witnesses.map(|w| w.0)
+                    let mut observers = [Sum(Vec3::ZERO); MAX_SHARED];
+                    shared::trace(world, &mut self.starts, &mut observers[..members.len()], &mut self.scratch);
+                    observers.map(|w| w.0)
                 }
                 Some((recorders, scratch)) => {
                     let recorders = &mut recorders[..members.len()];
                     recorders.iter_mut().for_each(Recorder::start);
                     shared::trace(world, &mut self.starts, recorders, scratch);
-                    let mut radiances = [Vec3::ZERO; MOST];
-                    radiances.iter_mut().zip(recorders).for_each(|(radiance, r)| *radiance = r.finish());
+                    let mut radiances = [Vec3::ZERO; MAX_SHARED];
+                    radiances.iter_mut().zip(recorders).for_each(|(radiance, r)| *radiance = r.end_path());
                     radiances
                 }
             };

@@ -1,14 +1,17 @@
-//! Tiles of an image: the order in which pixels are kept.
+//! The tiles of an image, which define the storage order of pixels.
 
 use crate::error::Result;
 use crate::image::try_collect;
 
-/// Side of a tile in pixels: the unit of work, and of the decision where more paths go.
+/// Side of a tile in pixels: the unit of work and of adaptive sampling.
 pub const TILE: usize = 8;
-/// Pixels of a tile.
+/// Number of pixels in a tile.
 pub const AREA: usize = TILE * TILE;
 
-/// An image cut into tiles, row by row; those at the right and lower border stick out of it.
+/// Largest number of pixels in the coarsest image. [judged, not recorded]
+const COARSE_PIXELS: usize = 1024;
+
+/// An image divided into tiles, row by row; the last tiles may extend beyond its right and lower borders.
 #[derive(Clone, Copy)]
 pub struct Grid {
     pub width: usize,
@@ -33,26 +36,26 @@ impl Grid {
         (tile % self.across() * TILE, tile / self.across() * TILE)
     }
 
-    /// Column and row of a pixel of a tile, if the image has it.
+    /// Column and row of a pixel of a tile; `None` outside the image.
     pub fn place(&self, tile: usize, pixel: usize) -> Option<(usize, usize)> {
         let (left, top) = self.corner(tile);
         let (x, y) = (left + pixel % TILE, top + pixel / TILE);
         (x < self.width && y < self.height).then_some((x, y))
     }
 
-    /// The tile of a pixel and its number in it.
+    /// The tile of a pixel, and the index of the pixel within it.
     pub fn locate(&self, x: usize, y: usize) -> (usize, usize) {
         (y / TILE * self.across() + x / TILE, y % TILE * TILE + x % TILE)
     }
 
-    /// How many pixels of a tile the image has.
+    /// Number of pixels of a tile within the image.
     pub fn area(&self, tile: usize) -> usize {
         let part = |at: usize, size: usize| TILE.min(size - at * TILE);
         part(tile % self.across(), self.width) * part(tile / self.across(), self.height)
     }
 
-    /// For values of the tiles, for each the mean of its own and those around it, or its own if that is larger.
-    pub fn heeding_neighbours(&self, values: &[f64]) -> Result<Vec<f64>> {
+    /// For each tile the mean over its 3 × 3 neighbourhood, or its own value if that is larger.
+    pub fn max_with_neighbourhood_mean(&self, values: &[f64]) -> Result<Vec<f64>> {
         let (across, down) = (self.across(), self.down());
         let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
         let at = |tile: usize| {
@@ -63,6 +66,15 @@ impl Grid {
         };
         try_collect((0..values.len()).map(at))
     }
+}
+
+/// Distance between the pixels of the coarsest image: a power of two.
+pub fn coarse_stride(width: usize, height: usize) -> usize {
+    let mut stride = 1;
+    while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {
+        stride *= 2;
+    }
+    stride
 }
 
 #[cfg(test)]
@@ -91,7 +103,7 @@ mod tests {
         let grid = Grid { width: 4 * TILE, height: 3 * TILE };
         let mut values = vec![0.0; grid.tiles()];
         values[0] = 12.0;
-        let heeded = grid.heeding_neighbours(&values).unwrap();
+        let heeded = grid.max_with_neighbourhood_mean(&values).unwrap();
         assert_eq!(heeded[..6], [12.0, 2.0, 0.0, 0.0, 2.0, 12.0 / 9.0]);
         assert!(heeded[6..].iter().all(|&v| v == 0.0));
     }

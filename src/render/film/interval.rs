@@ -1,98 +1,31 @@
-//! How far off a pixel may be: intervals that hold the truth in 95 of 100 pixels.
+//! Confidence intervals of pixels, which contain the true radiance of 95 % of the pixels.
 //!
-//! The scatter of a pixel's own four replications is a poor witness. It has three degrees of freedom, and worse, it is
-//! small just where a bright path has not been found yet, where the mean is too small as well: in rooms, mean ± 1.96
-//! standard errors holds the truth in 66 to 83 % of the pixels, and with Student's factor in 78 to 93 %. The scatter of the
-//! neighbours knows nothing of the pixel's own luck, or little: those of its own block (`block`) share in some of it. Binomial
-//! weights over 7 × 7 pixels give 93 to 97 % from 8 paths on; `benches/error_control.rs` measures it.
+//! The variance among a pixel's own four replications is a poor estimate. It has three degrees of freedom, and it is
+//! correlated with the mean: both are too small where no bright path has been found yet. In rooms, mean ± 1.96 standard
+//! errors contains the truth for 66 to 83 % of the pixels, and with Student's factor for 78 to 93 %. The variances of
+//! the neighbours are almost independent of the pixel's mean; only pixels of its own block (`block`) share some paths.
+//! Their means with binomial weights over 7 × 7 pixels give a coverage of 93 to 97 % from 8 paths on;
+//! `benches/error_control.rs` measures it.
 
-use super::super::Film;
+use super::pooling::pooled;
 use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use crate::render::output::Film;
 
-/// Half of the interval around its mean that holds 95 % of a normal distribution, in standard deviations.
+/// Half-width in standard deviations of the interval that contains 95 % of a normal distribution. [convention]
 pub const NORMAL_95: f64 = 1.959_964;
-/// Weights of the pixels at a distance of 0, 1, 2, 3 along an axis.
-const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 
 impl Film {
-    /// Half the width of the interval around each pixel of the image that holds the true radiance with a probability of
-    /// 95 %, per channel, in cd/m²; infinite where a pixel has less than two paths. The true share was measured to lie
-    /// between 93 and 97 % of the pixels of rooms. It is less where light comes along paths so rare that no pixel around has
-    /// found any: caustics of small lamps.
+    /// Half-width of the 95 % confidence interval of each pixel's radiance, per channel, in cd/m²; infinite for pixels
+    /// of fewer than two paths. The measured coverage is 93 to 97 % of the pixels of rooms. It is lower where light
+    /// comes along paths so rare that no pixel nearby has found one, such as caustics of small lamps.
     pub fn interval(&self, job: Job) -> Result<Image> {
         let mut out = pooled(&self.variance, job)?;
         exec::for_rows(&mut out.data, out.width * out.channels, job, |_, row| {
             row.iter_mut().for_each(|v| *v = NORMAL_95 as f32 * v.sqrt());
         })?;
         Ok(out)
-    }
-}
-
-/// Weighed means of the variances of the 7 × 7 pixels around each, as far as these are finite; infinite where it is.
-pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
-    let (width, height, channels) = (variance.width, variance.height, variance.channels);
-    let mut along = Image::new(width, height, channels)?;
-    exec::for_rows(&mut along.data, width * channels, job, |y, row| {
-        for (x, out) in row.chunks_exact_mut(channels).enumerate() {
-            mean_around(x, width, out, |x| variance.pixel(x, y));
-        }
-    })?;
-    let mut pooled = Image::new(width, height, channels)?;
-    exec::for_rows(&mut pooled.data, width * channels, job, |y, row| {
-        for (x, out) in row.chunks_exact_mut(channels).enumerate() {
-            mean_around(y, height, out, |y| along.pixel(x, y));
-            for (out, own) in out.iter_mut().zip(variance.pixel(x, y)) {
-                *out = if own.is_finite() { *out } else { *own };
-            }
-        }
-    })?;
-    Ok(pooled)
-}
-
-/// Weighed means of the finite values around a place on a line of `n`, per channel; infinite if there are none.
-fn mean_around<'a>(at: usize, n: usize, out: &mut [f32], value: impl Fn(usize) -> &'a [f32]) {
-    let reach = WEIGHTS.len() - 1;
-    for (channel, out) in out.iter_mut().enumerate() {
-        let (mut sum, mut weight) = (0.0, 0.0);
-        for i in at.saturating_sub(reach)..(at + reach + 1).min(n) {
-            let v = value(i)[channel];
-            if v.is_finite() {
-                sum += WEIGHTS[i.abs_diff(at)] * v;
-                weight += WEIGHTS[i.abs_diff(at)];
-            }
-        }
-        *out = if weight > 0.0 { sum / weight } else { f32::INFINITY };
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::job::Monitor;
-
-    #[test]
-    fn pooling_keeps_what_is_even_and_forgives_what_is_unknown() {
-        let monitor = Monitor::default();
-        let even = Image::from_fn(9, 5, |x, y| if (x, y) == (4, 2) { [f32::INFINITY, 2.0] } else { [3.0, 2.0] });
-        let pooled = pooled(&even.unwrap(), monitor.job()).unwrap();
-        for (i, p) in pooled.data.chunks(2).enumerate() {
-            assert!((p[1] - 2.0).abs() < 1e-6 && (i == 2 * 9 + 4 || (p[0] - 3.0).abs() < 1e-6), "{i}: {p:?}");
-        }
-        assert_eq!(pooled.pixel(4, 2)[0], f32::INFINITY);
-    }
-
-    #[test]
-    fn one_pixel_spreads_by_its_weights() {
-        let monitor = Monitor::default();
-        let dot = Image::from_fn(15, 15, |x, y| [f32::from(u8::from((x, y) == (7, 7)))]).unwrap();
-        let pooled = pooled(&dot, monitor.job()).unwrap();
-        let weight = |d: usize| WEIGHTS.get(d).copied().unwrap_or(0.0) / 64.0;
-        for (i, v) in pooled.data.iter().enumerate() {
-            let expected = weight((i % 15).abs_diff(7)) * weight((i / 15).abs_diff(7));
-            assert!((v - expected).abs() < 1e-7, "{i}");
-        }
     }
 }

@@ -1,31 +1,32 @@
-//! One pixel's estimate: four replications of a point sequence, and what their scatter says.
+//! The estimate of one pixel: four replications of a point sequence, whose differences give its error.
 //!
-//! Owen scrambling makes the points of one sequence dependent on each other, so their scatter says nothing of the error of
-//! their mean. Independent scramblings of the sequence do (Owen 1997): the paths of a pixel are dealt to four of them in
-//! turn. Each goes on from pass to pass, so that it stays stratified at every power of two. Fewer replications leave more
-//! of the stratification, more of them make the variance of a single pixel surer; `interval` pools it over neighbours.
+//! Owen scrambling makes the points of one sequence dependent: their variance does not give the error of their mean,
+//! but the variance among independent scramblings does (Owen 1997). The paths of a pixel are dealt in turn to four
+//! independently scrambled replications. Each replication continues from pass to pass, which preserves its
+//! stratification at every power of two. Fewer replications would preserve more stratification; more of them would make
+//! the variance of a single pixel more accurate. `interval` averages the variance over neighbouring pixels.
 
 use glam::{DVec3, Vec3};
 
-/// Independent scramblings per pixel.
+/// Number of independent scramblings per pixel. [judged, not recorded]
 pub const REPLICATIONS: u32 = 4;
 
 /// Sums of the paths so far.
 #[derive(Clone, Copy, Default)]
 pub struct Pixel {
-    /// Of each replication. In f32, but added to in slices that were summed in f64.
+    /// Sum of each replication: in f32, but added to in slices summed in f64.
     sums: [Vec3; REPLICATIONS as usize],
-    /// Paths of all replications.
+    /// Number of paths of all replications.
     count: u32,
 }
 
-/// How many of a pixel's first `count` paths belong to a replication.
-pub fn share(count: u32, replication: u32) -> u32 {
+/// Number of a pixel's first `count` paths that belong to a replication.
+pub fn paths_of_replication(count: u32, replication: u32) -> u32 {
     (count + REPLICATIONS - 1 - replication) / REPLICATIONS
 }
 
 impl Pixel {
-    /// Of sums made elsewhere of `count` paths, those of each replication.
+    /// A pixel of `count` paths from the sums of its replications.
     pub fn of_sums(sums: [DVec3; REPLICATIONS as usize], count: u32) -> Self {
         Self { sums: sums.map(|s| s.as_vec3()), count }
     }
@@ -34,10 +35,11 @@ impl Pixel {
         self.count
     }
 
-    /// Adds paths until there are `count` of them; `path(replication, indices)` sums those with indices in a range.
+    /// Adds paths up to a total of `count`; `path(replication, indices)` returns the sum of the paths of an index
+    /// range.
     pub fn extend(&mut self, count: u32, mut path: impl FnMut(u32, std::ops::Range<u32>) -> DVec3) {
         for (replication, sum) in (0..REPLICATIONS).zip(&mut self.sums) {
-            let indices = share(self.count, replication)..share(count, replication);
+            let indices = paths_of_replication(self.count, replication)..paths_of_replication(count, replication);
             if !indices.is_empty() {
                 *sum += path(replication, indices).as_vec3();
             }
@@ -45,12 +47,12 @@ impl Pixel {
         self.count = count;
     }
 
-    /// Adds the sum of a replication's paths up to `count` of all.
+    /// Adds the sum of a replication's paths.
     pub fn add(&mut self, replication: u32, sum: DVec3) {
         self.sums[replication as usize] += sum.as_vec3();
     }
 
-    /// All replications have their paths up to `count`.
+    /// Sets the total number of paths, after all replications have been added.
     pub fn set_count(&mut self, count: u32) {
         self.count = count;
     }
@@ -60,22 +62,22 @@ impl Pixel {
         self.sums.iter().map(|s| s.as_dvec3()).sum::<DVec3>() / f64::from(self.count.max(1))
     }
 
-    /// Means of every other replication and of those between: independent of each other where there are two paths.
+    /// Means of the even and of the odd replications: independent if the pixel has at least two paths.
     pub fn halves(&self) -> [DVec3; 2] {
         [0, 1].map(|first| {
             let of = || (0..REPLICATIONS).zip(&self.sums).filter(|(replication, _)| replication % 2 == first);
-            match of().map(|(replication, _)| share(self.count, replication)).sum() {
+            match of().map(|(replication, _)| paths_of_replication(self.count, replication)).sum() {
                 0 => self.mean(),
                 paths => of().map(|(_, s)| s.as_dvec3()).sum::<DVec3>() / f64::from(paths),
             }
         })
     }
 
-    /// What it shows but for the luck of a single bright path: the mean of the replications between the brightest and the
-    /// darkest, averaged over the channels.
-    pub fn middling(&self) -> f64 {
+    /// Mean of the replications without the brightest and the darkest, averaged over the channels: robust against a
+    /// single bright path.
+    pub fn trimmed_mean(&self) -> f64 {
         let mut means: [f64; REPLICATIONS as usize] = std::array::from_fn(|i| {
-            let paths = share(self.count, i as u32).max(1);
+            let paths = paths_of_replication(self.count, i as u32).max(1);
             f64::from(self.sums[i].element_sum()) / 3.0 / f64::from(paths)
         });
         means.sort_unstable_by(f64::total_cmp);
@@ -83,7 +85,7 @@ impl Pixel {
         middle.iter().sum::<f64>() / middle.len() as f64
     }
 
-    /// Unbiased estimate of the variance of the mean; infinite below two paths, which have no scatter.
+    /// Unbiased estimate of the variance of the mean; infinite below two paths.
     pub fn variance(&self) -> DVec3 {
         if self.count < 2 {
             return DVec3::INFINITY;
@@ -91,9 +93,9 @@ impl Pixel {
         let mean = self.mean();
         let (mut squares, mut used) = (DVec3::ZERO, 0u32);
         for (replication, sum) in (0..REPLICATIONS).zip(&self.sums) {
-            let paths = share(self.count, replication);
+            let paths = paths_of_replication(self.count, replication);
             if paths > 0 {
-                // Weighed as if a replication's variance fell with its paths; they differ by one path at most.
+                // Weight by the number of paths, as if the variance of a replication were inversely proportional to it.
                 let distance = sum.as_dvec3() / f64::from(paths) - mean;
                 squares += distance * distance * f64::from(paths);
                 used += 1;
@@ -120,7 +122,7 @@ mod tests {
             assert_eq!((pixel.count(), pixel.mean()), (count, DVec3::ONE));
             assert_eq!(pixel.halves(), [DVec3::ONE; 2]);
         }
-        assert_eq!(pixel.middling(), 1.0);
+        assert_eq!(pixel.trimmed_mean(), 1.0);
         seen.sort_unstable();
         assert!(seen.iter().copied().eq(0..64));
         assert_eq!(pixel.variance(), DVec3::ZERO);
@@ -139,7 +141,7 @@ mod tests {
                 sum += pixel.variance().x;
             }
             let ratio = sum / n as f64 * 12.0 * f64::from(count);
-            // The relative standard error of one variance is below 1.5.
+            // The relative standard deviation of one variance estimate is below 1.5.
             assert!((ratio - 1.0).abs() < 5.0 * 1.5 / (n as f64).sqrt(), "{count} paths: {ratio}");
         }
         assert_eq!(Pixel::default().variance(), DVec3::INFINITY);

@@ -1,47 +1,47 @@
-//! Sums over some paths of some pixels, which add up with those of other paths and pixels to an image.
+//! Sums over some paths of some pixels, which add up with the sums of other paths and pixels to an image.
 //!
-//! The path of a number in a pixel is the same one whoever makes it, as are its replication and its place in the point
-//! sequence. Its light is added in f64: a sum of so few numbers in f32 loses at most its last bits, so that it hardly ever
-//! matters for an image in f32 in which order, or in how many parts, it was added up.
+//! The path of a given index in a pixel is the same in every part, as are its replication and its position in the point
+//! sequence. The sums are in f64: for an f32 image, the order and the partition of the additions hardly ever show.
 
-use super::Eye;
-use super::block::{Maker, Member, blocks};
+use super::block::{BlockPixel, BlockTracer, blocks};
+use super::eye::Eye;
 use super::grid::{AREA, Grid, TILE};
-use super::pixel::{REPLICATIONS, share};
-use super::survey::Survey;
+use super::pixel::{REPLICATIONS, paths_of_replication};
+use super::prepass::Prepass;
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::layers::Layers;
+use crate::render::params::Params;
 use crate::render::parts::Part;
-use crate::render::path::Length;
-use crate::render::{Params, World};
+use crate::render::path::PathLength;
+use crate::render::world::World;
 use crate::scene::Camera;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Numbers of a pixel for its light: three for each replication.
+/// Numbers per pixel for the radiance: three for each replication.
 const LIGHT: usize = 3 * REPLICATIONS as usize;
-/// Paths of a pixel between two looks for a cancel request.
+/// Paths of a pixel between two checks for cancellation. [convention]
 const SLICE: u32 = 16;
 
 /// The sums of a part.
 pub struct Sums {
     part: Part,
-    /// The tiles of the image that the part touches.
+    /// First pixel of the tiles that the part touches.
     corner: [usize; 2],
     grid: Grid,
-    /// Numbers of a pixel: those of its light, then those of the layers.
+    /// Numbers per pixel: radiance, then layers.
     width: usize,
-    /// Tile by tile.
+    /// Pixel after pixel, in the order of tiles.
     numbers: Vec<f64>,
-    /// Paths that were left out because their radiance was no finite number.
+    /// Number of paths dropped because their radiance was not finite.
     discarded: u64,
 }
 
 impl Sums {
-    /// Of no paths yet.
+    /// Sums without any paths.
     pub fn new(part: &Part, layers: Option<&Layers>) -> Result<Self> {
         let corner = [part.x / TILE * TILE, part.y / TILE * TILE];
         let grid = Grid { width: part.x + part.width - corner[0], height: part.y + part.height - corner[1] };
@@ -50,31 +50,36 @@ impl Sums {
         Ok(Self { part: *part, corner, grid, width, numbers, discarded: 0 })
     }
 
-    /// Of the paths of a part.
+    /// Sums of the paths of a part.
     pub fn trace(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Self> {
         let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
         let mut sums = Self::new(part, layers.as_ref())?;
         let eye = Eye::new(world, camera, params);
-        let survey = Survey::new(world, &eye, params, job.part(0.0, 0.01))?;
+        let prepass = Prepass::new(world, &eye, params, job.part(0.0, 0.01))?;
         let discarded = AtomicU64::new(0);
         let Self { corner, grid, width, numbers, .. } = &mut sums;
         exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {
             let (left, top) = grid.corner(tile);
-            let length = Length { most: eye.most, worth: survey.worth([corner[0] + left, corner[1] + top]) };
-            let mut maker = Maker::new(layers.as_ref());
-            // What neighbours in another part bring is not wanted here; what they find is.
+            let length = PathLength {
+                max_bounces: eye.max_bounces,
+                roulette_weight: prepass.weight([corner[0] + left, corner[1] + top]),
+            };
+            let mut tracer = BlockTracer::new(layers.as_ref());
+            // Drop the layers of block neighbours in other parts; only their secondary vertices are needed.
             let mut others_of_neighbours = vec![0.0; *width - LIGHT];
             for replication in 0..REPLICATIONS {
                 for block in blocks(replication) {
                     let at = |i: usize| [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
                     let is_there = |[x, y]: [usize; 2]| x < params.width && y < params.height;
                     let there = block.iter().map(|&i| (i, at(i))).filter(|(_, at)| is_there(*at));
-                    let members: Vec<Member> =
-                        there.map(|(i, at)| Member::new(i, at, length, params.seed, replication)).collect();
+                    let members: Vec<BlockPixel> =
+                        there.map(|(i, at)| BlockPixel::new(i, at, length, params.seed, replication)).collect();
                     if !members.iter().any(|m| part.has(m.at)) {
                         continue;
                     }
-                    for index in share(part.first, replication)..share(part.first + part.samples, replication) {
+                    for index in paths_of_replication(part.first, replication)
+                        ..paths_of_replication(part.first + part.samples, replication)
+                    {
                         if index % SLICE == 0 && job.is_cancelled() {
                             return;
                         }
@@ -83,12 +88,12 @@ impl Sums {
                                 discarded.fetch_add(1, Ordering::Relaxed);
                             }
                         };
-                        let sums = maker.paths(world, &eye, &members, index..index + 1, discard);
+                        let sums = tracer.paths(world, &eye, &members, index..index + 1, discard);
                         for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                             let numbers = &mut numbers[member.pixel * *width..][..*width];
                             let (light, others) = numbers.split_at_mut(LIGHT);
                             let is_wanted = part.has(member.at);
-                            if let Some(recorders) = maker.recorders() {
+                            if let Some(recorders) = tracer.recorders() {
                                 recorders[k].add_to(if is_wanted { others } else { &mut others_of_neighbours });
                             }
                             if is_wanted {
@@ -105,7 +110,7 @@ impl Sums {
         Ok(sums)
     }
 
-    /// Adds the sums of a part within this one.
+    /// Adds the sums of a part that lies within this one.
     pub fn join(&mut self, other: &Self, layers: Option<&Layers>, job: Job) -> Result<()> {
         let Self { corner, grid, width, numbers, .. } = self;
         exec::for_rows(numbers, AREA * *width, job, |tile, numbers| {
@@ -138,12 +143,12 @@ impl Sums {
         self.discarded = discarded;
     }
 
-    /// How many numbers there are for a pixel.
+    /// Numbers per pixel.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// The sums of each replication, the first path's first, and those of the layers.
+    /// The sums of each replication, beginning with the replication of the first path, and the sums of the layers.
     pub fn pixel(&self, x: usize, y: usize) -> ([DVec3; REPLICATIONS as usize], &[f64]) {
         let (light, others) = self.numbers([x, y]).split_at(LIGHT);
         let first = self.part.first as usize;

@@ -1,16 +1,17 @@
-//! Every light of a scene as one distribution: which light, which point of it, and with what density.
+//! Light sampling: the distribution over all lights of a scene, the points on them, and their pdf.
 //!
-//! Lights that are somewhere (pieces of surfaces, points and spots) are chosen by what they can mean to the receiver, by way
-//! of a [`LightTree`]. Those infinitely far away (directional lights, the environment) are groups of their own: half of
-//! the choices go to the groups by their power, half evenly, for power says nothing about walls, and no group may starve.
+//! A [`LightTree`] selects among lights at finite distance (pieces of surfaces, points and spots) by their importance
+//! for the receiver. Directional lights and the environment, infinitely far away, are groups of their own. The
+//! selection probability of a group is half by its power and half uniform: power ignores occlusion by walls, and no
+//! group may starve.
 
-mod bounds;
+pub(super) mod bounds;
 mod punctual;
 mod tree;
 
 pub use bounds::{Bounds, Receiver};
 
-use super::LightSource;
+use super::contribution::LightSource;
 use super::distribution::Distribution;
 use super::emissive::{Emitters, mean_channel};
 use super::environment::{self, EnvironmentSampler};
@@ -24,41 +25,43 @@ use tree::LightTree;
 pub struct Lights {
     pub emitters: Emitters,
     punctual: Vec<Punctual>,
-    /// Over the pieces of emitters, then the near punctual lights.
+    /// Over the pieces of emitters, followed by the near punctual lights.
     tree: LightTree,
     pieces: usize,
-    /// Which of the punctual lights the leaves after the pieces are.
+    /// The punctual lights at the leaves after the pieces.
     near: Vec<u32>,
-    /// Over all punctual lights, of weight 0 where they are near.
+    /// Over all punctual lights; near ones have zero weight.
     directional: Distribution,
     environment: Option<EnvironmentSampler>,
-    /// Probabilities of the groups: near, directional, environment.
+    /// Selection probabilities of the groups: near lights, directional lights, environment.
     groups: [f64; 3],
 }
 
-/// A light chosen for a point to be lit.
+/// A light sample at a receiver.
 pub struct LightSample {
     pub source: LightSource,
-    /// Unit direction from the point to the light.
+    /// Unit direction from the receiver to the light.
     pub direction: Vec3,
-    /// Where the light is; none where it is infinitely far.
+    /// The sampled position; `None` if infinitely far away.
     pub end: Option<LightEnd>,
-    /// Radiance in cd/m², intensity in cd, or illuminance in lux, by the kind of light.
+    /// Radiance in cd/m², intensity in cd, or illuminance in lux, depending on the light.
     pub emission: Vec3,
-    /// What the emission is to be divided by for an estimate of the illuminance on a surface that faces it.
-    pub density: f32,
-    /// The density per steradian that competes with scattering; none for lights that only sampling can find.
-    pub solid_angle_density: Option<f32>,
+    /// Emission / pdf estimates the illuminance of a surface perpendicular to the light: the solid-angle pdf for
+    /// surfaces and the environment, pmf × squared distance for near punctual lights, the pmf for directional ones.
+    pub pdf: f32,
+    /// Solid-angle pdf for MIS against BSDF samples; `None` for punctual lights, which no BSDF sample can hit.
+    pub mis_pdf: Option<f32>,
 }
 
 pub enum LightEnd {
     Point(Vec3),
-    /// An emitter and the barycentric coordinates of the point on it.
+    /// Index of an emitter, and the barycentric coordinates of the point on it.
     Emitter(usize, Vec2),
 }
 
 impl Lights {
-    /// `pieces` are the bounds of the emitters' pieces; positions are relative to `centre`; `radius` is that of the scene.
+    /// `pieces` are the bounds of the emitters' pieces. Positions are relative to `centre`; `radius` is the radius of
+    /// the scene.
     pub fn build(scene: &Scene, emitters: Emitters, pieces: Vec<Bounds>, centre: DVec3, radius: f32) -> Result<Self> {
         let count = pieces.len();
         let mut bounds = pieces;
@@ -81,7 +84,7 @@ impl Lights {
             Some((sampler, mean)) => (Some(sampler), mean),
             None => (None, 0.0),
         };
-        // What enters a sphere around the scene.
+        // Take the flux through a sphere around the scene as the environment's power.
         let r2 = f64::from(radius).powi(2).max(f64::MIN_POSITIVE);
         let powers = [near_power, directional.total(), mean * PI * 4.0 * PI * r2];
         let present = powers.iter().filter(|&&p| p > 0.0).count().max(1) as f64;
@@ -99,34 +102,33 @@ impl Lights {
         })
     }
 
-    /// Chooses a light for a point by a point of the unit square: `u` chooses which, and what is left of it, with `v`,
-    /// where on it.
+    /// Samples a light for a receiver: `u` selects the light; its remainder and `v` select the point on it.
     #[inline]
     pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {
         let [near, directional, environment] = self.groups;
         let within = |start: f64, share: f64| ((u - start) / share).clamp(0.0, 1.0 - f64::EPSILON);
         if u < near {
-            let (light, probability, rest) = self.tree.sample(receiver, within(0.0, near))?;
-            let probability = probability * near as f32;
+            let (light, pmf, rest) = self.tree.sample(receiver, within(0.0, near))?;
+            let pmf = pmf * near as f32;
             match light.checked_sub(self.pieces) {
-                None => self.sample_surface(scene, receiver, light, probability, (rest, v)),
-                Some(i) => self.sample_punctual(receiver, self.near[i], probability),
+                None => self.sample_surface(scene, receiver, light, pmf, (rest, v)),
+                Some(i) => self.sample_punctual(receiver, self.near[i], pmf),
             }
         } else if u < near + directional {
             let index = self.directional.sample(within(near, directional)).0;
-            let probability = directional * self.directional.probability(index);
-            self.sample_punctual(receiver, index as u32, probability as f32)
+            let pmf = directional * self.directional.pmf(index);
+            self.sample_punctual(receiver, index as u32, pmf as f32)
         } else if environment > 0.0 {
-            let (direction, density) = self.environment.as_ref()?.sample(within(near + directional, environment), v);
-            let density = density * environment as f32;
+            let (direction, pdf) = self.environment.as_ref()?.sample(within(near + directional, environment), v);
+            let pdf = pdf * environment as f32;
             let emission = environment::radiance(scene.environment.as_ref()?, direction);
             Some(LightSample {
                 source: LightSource::Environment,
                 direction,
                 end: None,
                 emission,
-                density,
-                solid_angle_density: Some(density),
+                pdf,
+                mis_pdf: Some(pdf),
             })
         } else {
             None
@@ -138,7 +140,7 @@ impl Lights {
         scene: &Scene,
         receiver: &Receiver,
         piece: usize,
-        probability: f32,
+        pmf: f32,
         at: (f64, f32),
     ) -> Option<LightSample> {
         let (index, barycentric) = self.emitters.sample(piece, at)?;
@@ -150,9 +152,9 @@ impl Lights {
             return None;
         }
         let (emission, uv) = emitter.emission(scene, barycentric);
-        let density = probability * self.emitters.density(piece, mean_channel(emission));
-        let density = to_solid_angle(density, emitter.normal.dot(direction), distance);
-        if !(density.is_finite() && density > 0.0) {
+        let pdf = pmf * self.emitters.area_pdf(piece, mean_channel(emission));
+        let pdf = to_solid_angle(pdf, emitter.normal.dot(direction), distance);
+        if !(pdf.is_finite() && pdf > 0.0) {
             return None;
         }
         Some(LightSample {
@@ -160,36 +162,36 @@ impl Lights {
             direction,
             end: Some(LightEnd::Emitter(index, barycentric)),
             emission,
-            density,
-            solid_angle_density: Some(density),
+            pdf,
+            mis_pdf: Some(pdf),
         })
     }
 
-    fn sample_punctual(&self, receiver: &Receiver, index: u32, probability: f32) -> Option<LightSample> {
-        let (direction, end, emission, density) = match &self.punctual[index as usize] {
+    fn sample_punctual(&self, receiver: &Receiver, index: u32, pmf: f32) -> Option<LightSample> {
+        let (direction, end, emission, pdf) = match &self.punctual[index as usize] {
             Punctual::Near { position, intensity, shape } => {
                 let offset = position - receiver.position;
                 let distance = offset.length();
                 let direction = offset / distance;
                 let factor = shape.factor(-direction);
-                (direction, Some(LightEnd::Point(*position)), intensity * factor, probability * distance * distance)
+                (direction, Some(LightEnd::Point(*position)), intensity * factor, pmf * distance * distance)
             }
-            Punctual::Far { towards, illuminance } => (*towards, None, *illuminance, probability),
+            Punctual::Far { towards, illuminance } => (*towards, None, *illuminance, pmf),
         };
-        let lights = density > 0.0 && direction.is_finite() && direction != Vec3::ZERO && emission != Vec3::ZERO;
+        let lights = pdf > 0.0 && direction.is_finite() && direction != Vec3::ZERO && emission != Vec3::ZERO;
         lights.then_some(LightSample {
             source: LightSource::Punctual(index),
             direction,
             end,
             emission,
-            density,
-            solid_angle_density: None,
+            pdf,
+            mis_pdf: None,
         })
     }
 
-    /// Density per steradian with which [`Lights::sample`] chooses a point of an emitter seen along a unit direction, its
-    /// emission and its texture coordinates being what [`super::emissive::Emitter::emission`] gives.
-    pub fn surface_density(
+    /// Solid-angle pdf with which [`Lights::sample`] draws a point of an emitter along a unit direction. Its emission
+    /// and texture coordinates are those of [`super::emissive::Emitter::emission`].
+    pub fn surface_pdf(
         &self,
         receiver: &Receiver,
         emitter: usize,
@@ -198,20 +200,20 @@ impl Lights {
         distance: f32,
     ) -> f32 {
         let Some(piece) = self.emitters.piece_at(emitter, uv) else { return 0.0 };
-        let probability = self.tree.probability(receiver, piece) * self.groups[0] as f32;
-        let density = probability * self.emitters.density(piece, mean_channel(emission));
-        to_solid_angle(density, self.emitters.emitters[emitter].normal.dot(direction), distance)
+        let pmf = self.tree.pmf(receiver, piece) * self.groups[0] as f32;
+        let pdf = pmf * self.emitters.area_pdf(piece, mean_channel(emission));
+        to_solid_angle(pdf, self.emitters.emitters[emitter].normal.dot(direction), distance)
     }
 
-    /// Density per steradian with which [`Lights::sample`] chooses a direction of the environment.
-    pub fn environment_density(&self, direction: Vec3) -> f32 {
-        self.environment.as_ref().map_or(0.0, |e| e.density(direction) * self.groups[2] as f32)
+    /// Solid-angle pdf with which [`Lights::sample`] draws a direction of the environment.
+    pub fn environment_pdf(&self, direction: Vec3) -> f32 {
+        self.environment.as_ref().map_or(0.0, |e| e.pdf(direction) * self.groups[2] as f32)
     }
 }
 
-/// From a density per m² to one per steradian.
-fn to_solid_angle(density: f32, cosine: f32, distance: f32) -> f32 {
-    density * distance * distance / cosine.abs()
+/// Converts an area pdf to a solid-angle pdf.
+fn to_solid_angle(pdf: f32, cosine: f32, distance: f32) -> f32 {
+    pdf * distance * distance / cosine.abs()
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Lights without a surface: points, spots and directions (`KHR_lights_punctual`), and luminaires that were measured.
+//! Punctual lights: points, spots, directional lights (`KHR_lights_punctual`) and measured luminaires.
 
 use super::bounds::Bounds;
 use crate::photometry::Luminaire;
@@ -8,28 +8,28 @@ use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// A light as it is sampled, what does not change worked out.
+/// A punctual light prepared for sampling.
 pub enum Punctual {
     Near {
         position: Vec3,
         intensity: Vec3,
         shape: Shape,
     },
-    /// From infinitely far away, towards the light.
+    /// Infinitely far away; `towards` is the unit direction to the light.
     Far {
         towards: Vec3,
         illuminance: Vec3,
     },
 }
 
-/// How the intensity depends on the direction.
+/// Dependence of the intensity on the direction.
 pub enum Shape {
     Even,
     Cone(Cone),
     Measured(Measured),
 }
 
-/// The intensity of a luminaire, about its axes.
+/// A measured luminous intensity distribution with its axes.
 pub struct Measured {
     axis: Vec3,
     c0: Vec3,
@@ -37,7 +37,7 @@ pub struct Measured {
     luminaire: Arc<Luminaire>,
 }
 
-/// glTF's cone: the square of `(cosine - outer) * scale`, clamped to 1.
+/// glTF's spot cone: the square of `(cosine - outer) * scale`, clamped to [0, 1].
 pub struct Cone {
     axis: Vec3,
     outer: f32,
@@ -69,7 +69,7 @@ impl Punctual {
         }
     }
 
-    /// Bounds of a light at a place that emits; none for others.
+    /// Bounds of an emissive light at a finite distance; `None` for others.
     pub fn bounds(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Option<Bounds> {
         let bounds = match *light {
             PunctualLight::Point { position, intensity } => {
@@ -77,22 +77,23 @@ impl Punctual {
             }
             PunctualLight::Spot { position, direction, intensity, outer_angle, .. } => {
                 let axis = direction.normalize_or(Vec3::Y);
-                // A little wider, for rounding.
+                // Widen the cone slightly, against rounding.
                 Bounds::of_cone(position, axis, outer_angle + 0.01, mean_channel(intensity.max(Vec3::ZERO)))
             }
             PunctualLight::Directional { .. } => return None,
             PunctualLight::Luminaire { position, axis, colour, distribution, .. } => {
                 let luminaire = &*distributions[distribution];
-                // In full as far as there is any, and a little farther for rounding.
-                let reach = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
+                // Assume full intensity up to the widest angle of the distribution, and slightly beyond it against
+                // rounding.
+                let cone_angle = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
                 let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
-                Bounds::of_cone(position, axis, reach, peak * mean_channel(colour.max(Vec3::ZERO)))
+                Bounds::of_cone(position, axis, cone_angle, peak * mean_channel(colour.max(Vec3::ZERO)))
             }
         };
         (bounds.intensity > 0.0).then_some(bounds)
     }
 
-    /// Luminous flux in lumens, of directional lights that which enters a sphere around the scene.
+    /// Luminous flux in lumens; for directional lights the flux through a sphere around the scene.
     pub fn flux(light: &PunctualLight, distributions: &[Arc<Luminaire>], radius: f32) -> f64 {
         let (solid_angle_or_area, strength) = match *light {
             PunctualLight::Point { intensity, .. } => (4.0 * std::f64::consts::PI, intensity),
@@ -108,7 +109,7 @@ impl Punctual {
     }
 }
 
-/// The light with its place relative to a centre.
+/// The light with its position relative to a centre.
 pub fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
     let mut light = *light;
     match &mut light {
@@ -123,7 +124,7 @@ pub fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
 }
 
 impl Shape {
-    /// What the intensity is multiplied with along a unit direction: a share of it, or candelas.
+    /// Factor on the intensity in a unit direction: a share, or the candelas of a measured luminaire.
     pub fn factor(&self, direction: Vec3) -> f32 {
         match self {
             Self::Even => 1.0,
@@ -143,7 +144,7 @@ impl Measured {
 }
 
 impl Cone {
-    /// Share of the intensity on the axis that goes along a unit direction.
+    /// Intensity in a unit direction relative to the intensity on the axis.
     pub fn share(&self, direction: Vec3) -> f32 {
         let x = ((direction.dot(self.axis) - self.outer) * self.scale).clamp(0.0, 1.0);
         x * x

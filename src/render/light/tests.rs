@@ -1,4 +1,4 @@
-//! Light sampling: frequencies against stated probabilities, and estimates against closed forms.
+//! Light sampling: observed frequencies against stated probabilities, and estimates against closed forms.
 
 use super::*;
 use crate::exec::Pool;
@@ -24,7 +24,7 @@ fn within(rng: &mut Rng, side: f32) -> Vec3 {
     (Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) - 0.5) * side
 }
 
-/// Triangles of all sizes, one- and two-sided, points and cones, `offset` from the origin.
+/// Triangles of all sizes, one-sided and two-sided, points and cones, at `offset` from the origin.
 fn lights(count: usize, offset: Vec3, rng: &mut Rng) -> Vec<(Bounds, [Vec3; 3])> {
     let mut light = |i: usize| {
         let intensity = 10f32.powf(4.0 * rng.next_f32() - 2.0);
@@ -60,19 +60,20 @@ fn lights_are_chosen_as_often_as_the_tree_states() {
         let lights = lights(count, Vec3::ZERO, &mut rng);
         let tree = tree(&lights);
         for receiver in receivers(8, Vec3::ZERO, &mut rng) {
-            let stated: Vec<f64> = (0..count).map(|l| f64::from(tree.probability(&receiver, l))).collect();
+            let stated: Vec<f64> = (0..count).map(|l| f64::from(tree.pmf(&receiver, l))).collect();
             let total: f64 = stated.iter().sum();
             assert!(total < 1.0 + 1e-5);
             let mut counts = vec![0.0; count + 1];
             for i in 0..n {
-                // Stratified: chi-squared is then below its limit all the more, unless something is wrong.
+                // Stratify the samples: chi-squared then stays even further below its limit, unless the sampling is
+                // wrong.
                 match tree.sample(&receiver, (f64::from(i) + rng.next_f64()) / f64::from(n)) {
                     None => counts[count] += 1.0,
-                    Some((light, probability, rest)) => {
+                    Some((light, pmf, rest)) => {
                         counts[light] += 1.0;
                         assert!((0.0..1.0).contains(&rest));
-                        // The product is taken upwards there and downwards here.
-                        assert!((f64::from(probability) / stated[light] - 1.0).abs() < 1e-5);
+                        // The two pmfs multiply the same factors in opposite order.
+                        assert!((f64::from(pmf) / stated[light] - 1.0).abs() < 1e-5);
                     }
                 }
             }
@@ -85,7 +86,8 @@ fn lights_are_chosen_as_often_as_the_tree_states() {
 
 #[test]
 fn the_way_down_the_tree_has_a_way_back() {
-    // A light's numbers are an interval as long as its probability, and the rest says where in it a number lies.
+    // The random numbers that select a light form an interval of the length of its pmf; the remainder is the position
+    // in it.
     let mut rng = Rng::new(44, &[]);
     for count in [2, 9, 300] {
         let tree = tree(&lights(count, Vec3::ZERO, &mut rng));
@@ -93,8 +95,8 @@ fn the_way_down_the_tree_has_a_way_back() {
             let mut starts = vec![None; count];
             for _ in 0..5000 {
                 let u = rng.next_f64();
-                let Some((light, probability, rest)) = tree.sample(&receiver, u) else { continue };
-                let start = u - rest * f64::from(probability);
+                let Some((light, pmf, rest)) = tree.sample(&receiver, u) else { continue };
+                let start = u - rest * f64::from(pmf);
                 let first = *starts[light].get_or_insert(start);
                 assert!((start - first).abs() < 1e-6, "light {light} of {count}: {start} and {first}");
             }
@@ -104,7 +106,7 @@ fn the_way_down_the_tree_has_a_way_back() {
 
 #[test]
 fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
-    // Without a place to be chosen on, a punctual light has a density that is a probability times a squared distance.
+    // The pdf of a punctual light is its pmf × the squared distance.
     let mut scene =
         over_floor(vec![Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)], vec![matt(0.0, 3.0)]);
     let intensity = |i: usize| Vec3::splat(1.0 + i as f32);
@@ -133,7 +135,7 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
     scene.environment = Some(Environment::Constant(Vec3::splat(0.5)));
     let world = world(scene);
     let receiver = Receiver { position: Vec3::new(0.1, 0.0, 0.0), normal: Vec3::Y };
-    // The punctual lights, the surface, the environment, and choices that come to nothing.
+    // Count the punctual lights, the surface, the environment, and samples without a light.
     let (mut counts, mut stated) = ([0.0; 9], [0.0; 9]);
     let (mut surface, n) = (0.0, 100_000);
     let mut rng = Rng::new(45, &[]);
@@ -150,31 +152,31 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
                     _ => 1.0,
                 };
                 counts[index as usize] += 1.0;
-                stated[index as usize] = f64::from(sample.density / distance2) * f64::from(n);
+                stated[index as usize] = f64::from(sample.pdf / distance2) * f64::from(n);
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
-                // The mean of the reciprocal density is the solid angle over the probability of finding it.
-                surface += f64::from(1.0 / sample.density) / f64::from(n);
+                // The mean of 1 / pdf is the solid angle divided by the probability of a valid sample.
+                surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
                 counts[7] += 1.0;
-                stated[7] = f64::from(sample.density * 4.0 * std::f32::consts::PI) * f64::from(n);
+                stated[7] = f64::from(sample.pdf * 4.0 * std::f32::consts::PI) * f64::from(n);
             }
         }
     }
     assert!(counts[..8].iter().all(|&c| c > 100.0), "{counts:?}");
-    // The lamp is all of the tree that is no point: what remains after the others and what comes to nothing.
+    // The lamp's selection probability is unknown: use the remainder after the others and the invalid samples.
     stated[8] = counts[8];
     stated[6] = f64::from(n) - stated.iter().sum::<f64>();
     assert_follows(&stated, &counts, 1, "kinds of lights");
-    // A square of 1 m² at 2 m, a little off the middle, seen from below; found or not, as if by the toss of a coin.
+    // A square of 1 m² at 2 m, slightly off centre, seen from below; a valid sample is a Bernoulli trial.
     let (expected, share) = (solid_angle_of_lamp(), counts[6] / f64::from(n));
     let error = expected * ((1.0 - share) / (share * f64::from(n))).sqrt();
     assert!((surface - expected).abs() < 4.0 * error + 1e-3 * expected, "{surface} ± {error}, expected {expected}");
 }
 
-/// Of the square of 1 × 1 m at a height of 2 m, seen from 10 cm off its middle: four rectangles (Khadjavi 1968).
+/// Solid angle of a square of 1 × 1 m at a height of 2 m, 10 cm off its centre: four rectangles (Khadjavi 1968).
 fn solid_angle_of_lamp() -> f64 {
     let corner = |a: f64, b: f64, d: f64| (a * b / (d * (a * a + b * b + d * d).sqrt())).atan();
     2.0 * (corner(0.4, 0.5, 2.0) + corner(0.6, 0.5, 2.0))
@@ -194,11 +196,11 @@ fn no_light_that_can_arrive_has_probability_0() {
                 let towards = a + (b - a) * u + (c - a) * v - receiver.position;
                 let off_axis = bounds.axis.angle_between(-towards);
                 let shines = bounds.axis == Vec3::ZERO
-                    || off_axis < bounds.reach
-                    || (bounds.two_sided && std::f32::consts::PI - off_axis < bounds.reach);
+                    || off_axis < bounds.cone_angle
+                    || (bounds.two_sided && std::f32::consts::PI - off_axis < bounds.cone_angle);
                 if shines && towards.dot(receiver.normal) > 0.0 {
                     arriving += 1;
-                    assert!(tree.probability(&receiver, index) > 0.0, "{bounds:?} to {receiver:?}");
+                    assert!(tree.pmf(&receiver, index) > 0.0, "{bounds:?} to {receiver:?}");
                 }
             }
         }
@@ -208,7 +210,7 @@ fn no_light_that_can_arrive_has_probability_0() {
 
 #[test]
 fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
-    // A ceiling of 40 × 40 lamps, 3 m above.
+    // A ceiling of 40 × 40 lamps at a height of 3 m.
     let lamp = |i: usize| {
         let corner = Vec3::new((i % 40) as f32, 3.0, (i / 40) as f32);
         Bounds::of_surface([corner, corner + Vec3::new(0.1, 0.0, 0.1)], Vec3::NEG_Y, false, 1.0)
@@ -219,9 +221,9 @@ fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
     let near = |normal: Vec3| -> f32 {
         let receiver = Receiver { position, normal };
         let around = (0..1600).filter(|&i| (bounds[i].low - position).length() < 9.0);
-        around.map(|i| tree.probability(&receiver, i)).sum()
+        around.map(|i| tree.pmf(&receiver, i)).sum()
     };
-    // E = ∫ h² / (h² + r²)² dA: the share within r = √72 of 3 m is 72 / 81.
+    // E = ∫ h² / (h² + r²)² dA: the share within r = √72 of h = 3 m is 72 / 81.
     assert!((near(Vec3::Y) - 72.0 / 81.0).abs() < 0.05, "{}", near(Vec3::Y));
     assert_eq!(near(Vec3::NEG_Y), 0.0);
     let from_above = Receiver { position: position + Vec3::Y * 4.0, normal: Vec3::NEG_Y };
@@ -250,13 +252,13 @@ fn lights_all_in_one_place_or_of_all_sizes_make_a_tree() {
     for lights in [same, growing] {
         let tree = LightTree::build(&lights).unwrap();
         let receiver = Receiver { position: Vec3::NEG_X, normal: Vec3::X };
-        let sum: f32 = (0..lights.len()).map(|l| tree.probability(&receiver, l)).sum();
+        let sum: f32 = (0..lights.len()).map(|l| tree.pmf(&receiver, l)).sum();
         assert!((sum - 1.0).abs() < 1e-3, "{sum}");
     }
     let halves = [1.0, 3.0].map(|intensity| Bounds::of_point(Vec3::ONE, intensity));
     let tree = LightTree::build(&halves).unwrap();
     let receiver = Receiver { position: Vec3::NEG_X, normal: Vec3::X };
-    assert_eq!([0, 1].map(|l| tree.probability(&receiver, l)), [0.25, 0.75]);
+    assert_eq!([0, 1].map(|l| tree.pmf(&receiver, l)), [0.25, 0.75]);
     assert_eq!(tree.sample(&receiver, 0.5), Some((1, 0.75, 1.0 / 3.0)));
     let none = LightTree::build(&[]).unwrap();
     assert!(none.sample(&Receiver { position: Vec3::ZERO, normal: Vec3::X }, 0.5).is_none());
@@ -266,7 +268,7 @@ fn matt(albedo: f32, emission: f32) -> Material {
     Material { emission: Vec3::splat(emission), double_sided: false, ..Material::diffuse("", Vec3::splat(albedo)) }
 }
 
-/// A black floor of 2 × 2 mm around the origin, facing up, and others.
+/// A black floor of 2 × 2 mm around the origin, facing up, with other meshes.
 fn over_floor(meshes: Vec<Mesh>, materials: Vec<Material>) -> Scene {
     let floor = Mesh::parallelogram(Vec3::new(-1e-3, 0.0, -1e-3), Vec3::Z * 2e-3, Vec3::X * 2e-3, 0);
     let meshes = std::iter::once(floor).chain(meshes).collect();
@@ -303,7 +305,7 @@ fn measure(scene: Scene) -> (f64, f64) {
     (mean, (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt())
 }
 
-/// `slack` is relative: what the closed form and the geometry differ by.
+/// `slack` is the relative difference between the closed form and the geometry.
 fn assert_close((mean, error): (f64, f64), expected: f64, slack: f64, what: &str) {
     assert!((mean - expected).abs() < 4.0 * error + slack * expected, "{what}: {mean} ± {error}, expected {expected}");
 }
@@ -314,7 +316,7 @@ fn lambert(corners: &[Vec3]) -> f64 {
         let a = corners[i].as_dvec3().normalize();
         let b = corners[(i + 1) % corners.len()].as_dvec3().normalize();
         let across = a.cross(b);
-        // The angle by its tangent: cosines of small angles are too close to 1.
+        // Compute the angle by its tangent: the cosine of a small angle is too close to 1.
         across.length().atan2(a.dot(b)) * across.normalize_or_zero().y
     };
     (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
@@ -322,7 +324,8 @@ fn lambert(corners: &[Vec3]) -> f64 {
 
 #[test]
 fn many_triangles_light_as_their_closed_forms_add_up_to() {
-    // One triangle in each of 16 × 8 solid angles, so that none hides another; distances, sizes and powers vary widely.
+    // One triangle in each of 16 × 8 solid angles, so that none occludes another; distances, sizes and powers vary
+    // widely.
     let mut rng = Rng::new(51, &[]);
     for (near, far) in [(1.0, 1.0), (0.5, 200.0)] {
         let (mut meshes, mut materials, mut expected) = (Vec::new(), Vec::new(), 0.0);
@@ -336,7 +339,7 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
             let distance = near * (far / near as f32).powf(rng.next_f32());
             corners = corners.map(|c| c * distance * (0.9 + 0.2 * rng.next_f32()));
             let faces = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(corners[0]) < 0.0;
-            // Every third is two-sided; of the others only those that face the floor light it.
+            // Every third triangle is two-sided; of the others, only triangles that face the floor light it.
             let emission = 10f32.powf(2.0 * rng.next_f32());
             let double_sided = i % 3 == 0;
             expected += if faces || double_sided { lambert(&corners) * f64::from(emission) } else { 0.0 };
@@ -347,21 +350,21 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
         }
         let measured = measure(over_floor(meshes, materials));
         assert_close(measured, expected, 1e-5, "triangles");
-        // Clusters hold lights that face away as well, half of all, so that some choices come to nothing; measured 1.5 %.
+        // Half of the lights of a cluster face away, so that some samples are invalid; the measured error is 1.5 %.
         assert!(measured.1 < 0.02 * expected, "{measured:?}");
     }
 }
 
 #[test]
 fn discs_and_spheres_light_by_their_form_factors() {
-    // A disc overhead of half its height: r² / (r² + h²); 720 corners fall short of its area by 1e-5.
+    // A disc overhead with a radius of half its height: r² / (r² + h²); the area of 720 corners is 1e-5 too small.
     let rim = |i: usize| Vec3::new((TAU * i as f32 / 720.0).cos(), 2.0, (TAU * i as f32 / 720.0).sin());
     let mut disc = Mesh { material: 1, positions: (0..720).map(rim).collect(), ..Mesh::default() };
     disc.triangles = (1..719).map(|i| [0, i, i + 1]).collect();
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere overhead: r² / d²; facets as flat as these fall short of it by less than 1 %.
+    // A sphere overhead: r² / d²; the facets make it less than 1 % too small.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);
@@ -376,7 +379,7 @@ fn discs_and_spheres_light_by_their_form_factors() {
                 let first = sphere.positions.len() as u32;
                 sphere.positions.extend(t);
                 sphere.triangles.push([first, first + 1, first + 2]);
-                // Of a convex body all is seen that faces the receiver.
+                // All faces of a convex body that face the receiver are visible.
                 exact += if normal.dot(t[0]) < 0.0 && normal.length() > 1e-6 { lambert(&t) } else { 0.0 };
             }
         }
@@ -398,7 +401,7 @@ fn textured_lamps_light_as_the_polygons_of_their_texels() {
             let texel = Vec2::new(width / 37.0, width / 23.0);
             let place = corner + Vec3::new(x as f32 * texel.x, 0.0, y as f32 * texel.y);
             let emission = f64::from(image.pixel(x, y)[0]) * 1e6;
-            // Far smaller than far away, the closed form cancels; then it is the solid angle.
+            // For triangles far smaller than their distance the closed form cancels; use the solid angle instead.
             expected += emission
                 * if width < 0.1 {
                     f64::from(texel.x) * f64::from(texel.y)
@@ -432,7 +435,7 @@ fn lamps_without_area_or_power_are_none_and_extreme_ones_are_exact() {
         let measured = measure(over_floor(vec![up(1.0)], vec![matt(0.0, emission)]));
         assert_close(measured, one * f64::from(emission), 1e-5, "intensity");
     }
-    // A dim lamp beside one 1e12 times as bright, which faces away from the floor.
+    // A dim lamp beside a lamp 1e12 times as bright that faces away from the floor.
     let away = Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::Z, Vec3::X, 2);
     let measured = measure(over_floor(vec![up(1.0), away], vec![matt(0.0, 1.0), matt(0.0, 1e12)]));
     assert_close(measured, one, 1e-5, "beside");
@@ -491,19 +494,19 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
                 let emitter = &world.lights().emitters.emitters[index];
                 let distance = emitter.point(b).distance(receiver.position);
                 let emission = emitter.emission(world.scene(), b);
-                world.lights().surface_density(&receiver, index, emission, sample.direction, distance)
+                world.lights().surface_pdf(&receiver, index, emission, sample.direction, distance)
             }
-            _ => world.lights().environment_density(sample.direction),
+            _ => world.lights().environment_pdf(sample.direction),
         };
-        disagreed += usize::from((stated / sample.density - 1.0).abs() > 1e-4);
+        disagreed += usize::from((stated / sample.pdf - 1.0).abs() > 1e-4);
     }
-    // Only points within rounding of a tile's border.
+    // Only points within rounding of a tile's border may disagree.
     assert!(surfaces > 5000 && disagreed <= 5, "{disagreed} of {surfaces}");
 }
 
 #[test]
 fn light_goes_from_one_surface_to_another_as_it_comes_back() {
-    // Between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
+    // Reciprocity between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
     let quads = || {
         vec![
             Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
@@ -553,6 +556,6 @@ fn the_floor_of_a_hall_with_thousands_of_lamps_sees_them_all() {
     }
     let measured = measure(over_floor(vec![lamps], vec![matt(0.0, 1000.0)]));
     assert_close(measured, expected, 1e-5, "hall");
-    // Chosen by power alone, the few lamps overhead would be found once in hundreds of samples.
+    // Selection by power alone would find the few lamps overhead once in hundreds of samples.
     assert!(measured.1 < 0.005 * expected, "{measured:?}");
 }

@@ -1,47 +1,48 @@
-//! A tree over lights, descended by their importance to a receiver with a single random number.
+//! A light tree, traversed by importance for a receiver with a single random number.
 //!
-//! Nodes have up to eight children, which are weighed together: wide nodes need few steps, and fewer of the choices rest on
-//! the coarse bounds of large clusters. Clusters are split where intensity, extent and spread of directions say
-//! (the surface area orientation heuristic of Conty Estevez and Kulla 2018, section 4.4, with the squared diagonal for the
-//! area, which lamps in one line have as well, and the length of the mean direction for the solid angle).
+//! Nodes have up to eight children, evaluated together: wide nodes need fewer steps and rely less on the coarse bounds
+//! of large clusters. Splits minimise the surface area orientation heuristic of Conty Estevez and Kulla (2018, section
+//! 4.4), with the squared diagonal for the area (which is positive also for lamps in one line) and the length of the
+//! mean direction for the solid angle.
 
 use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use glam::{Vec3, Vec3A};
 
-/// Bins in which a split is looked for along each axis.
+/// Candidate splits per axis are the borders of this many bins. [convention]
 const BINS: usize = 12;
-/// Splits deeper than this halve the number of lights, whatever the heuristic says.
+/// Below this depth, splits halve the number of lights, regardless of the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Clusters smaller than this are split on one thread.
+/// Smallest cluster that is split in parallel. [judged, not recorded]
 const PARALLEL_FROM: usize = 1024;
-/// No node above, no child.
+/// Marks a missing parent or child.
 const NONE: u32 = u32::MAX;
-/// Marks children that are lights.
+/// Flag of children that are lights.
 const LIGHT: u32 = 1 << 31;
 
 pub struct LightTree {
-    /// Probabilities that are the same for every receiver, in place of nodes: of one light, or of several within one box,
-    /// as the two triangles of a rectangle. Positive; there are at most as many as a node has children.
+    /// Pmf of few lights whose importance does not depend on the receiver: a single light, or lights in one box such as
+    /// the two triangles of a rectangle. All positive; at most as many as a node has children. The tree then has no
+    /// nodes.
     fixed: Vec<f64>,
     nodes: Vec<Node>,
-    /// For every light the place that holds it: eight times its node plus its lane.
-    places: Vec<u32>,
-    /// Squared; see [`BoundsLanes::importance`].
+    /// For every light its slot: eight times the node plus the lane.
+    slots: Vec<u32>,
+    /// Squared smallest distance; see [`BoundsLanes::importance`].
     nearest: f32,
 }
 
 #[derive(Clone)]
 struct Node {
     bounds: BoundsLanes,
-    /// Nodes, or lights where marked.
+    /// Indices of nodes, or of lights with the flag `LIGHT`.
     children: [u32; LANES],
-    /// The place in the node above.
+    /// The slot in the parent node.
     parent: u32,
 }
 
-/// A light to be put into the tree.
+/// A light during construction.
 struct Item {
     bounds: Bounds,
     extent: Extent,
@@ -49,20 +50,20 @@ struct Item {
     light: u32,
 }
 
-/// A cluster of several lights, divided in two. In the list of all clusters it stands at the number of its second part's
-/// first light, which is that of no other cluster.
+/// A cluster of several lights, divided in two. Its index in the list of clusters is the index of the first light of
+/// its second part, which is unique.
 #[derive(Clone, Copy, Default)]
-struct Halved {
-    /// What there is to gain by dividing it.
+struct Cluster {
+    /// Cost of the cluster before the split.
     cost: f32,
-    /// Where the two parts stand in the list; of a part that is a light its number, marked.
+    /// Indices of the two parts in the list; for a part of a single light the index of the light with the flag `LIGHT`.
     parts: [u32; 2],
 }
 
 impl LightTree {
-    /// Over fewer than 2^31 lights, each of some intensity.
+    /// For fewer than 2^31 lights, each of positive intensity.
     pub fn build(lights: &[Bounds]) -> Result<Self> {
-        let mut tree = Self { fixed: Vec::new(), nodes: Vec::new(), places: Vec::new(), nearest: f32::MIN_POSITIVE };
+        let mut tree = Self { fixed: Vec::new(), nodes: Vec::new(), slots: Vec::new(), nearest: f32::MIN_POSITIVE };
         if lights.len() <= LANES && lights.windows(2).all(|pair| pair[0].differs_only_in_intensity(&pair[1])) {
             let sum: f64 = lights.iter().map(|b| f64::from(b.intensity)).sum();
             tree.fixed = lights.iter().map(|b| f64::from(b.intensity) / sum).collect();
@@ -75,38 +76,38 @@ impl LightTree {
             light,
         };
         let mut items = try_collect(lights.iter().zip(0..).map(item))?;
-        let mut halved = try_vec(lights.len(), Halved::default())?;
-        let root = halve(&mut items, &mut halved, 0, 0);
-        tree.places = try_vec(lights.len(), NONE)?;
-        // Intensities relative to their sum and distances to the scene's size keep importances far from overflow.
+        let mut clusters = try_vec(lights.len(), Cluster::default())?;
+        let root = divide(&mut items, &mut clusters, 0, 0);
+        tree.slots = try_vec(lights.len(), NONE)?;
+        // Scale intensities by their sum and distances by the scene, so that importances cannot overflow.
         let whole = Bounds::union(lights);
         tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
-        tree.add(&items, &halved, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
+        tree.add(&items, &clusters, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
         Ok(tree)
     }
 
-    /// Lays a cluster out, each node before the nodes under it. Returns what it is as a child, and its bounds.
-    fn add(&mut self, items: &[Item], halved: &[Halved], cluster: u32, place: u32, scale: f32) -> (u32, Bounds) {
+    /// Appends the nodes of a cluster, parents before children. Returns the cluster as a child with its bounds.
+    fn add(&mut self, items: &[Item], clusters: &[Cluster], cluster: u32, slot: u32, scale: f32) -> (u32, Bounds) {
         if cluster & LIGHT != 0 {
             let item = &items[(cluster & !LIGHT) as usize];
-            self.places[item.light as usize] = place;
+            self.slots[item.light as usize] = slot;
             return (LIGHT | item.light, item.bounds);
         }
-        // The parts with the most to gain are divided until there are eight, or each is a light.
+        // Divide the most expensive part until there are eight parts or only lights.
         let mut parts = vec![cluster];
         while parts.len() < LANES {
             let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
-            let cost = |i: usize| halved[parts[i] as usize].cost;
-            let Some(most) = divisible.max_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
-            let two = halved[parts[most] as usize].parts;
-            parts.splice(most..=most, two);
+            let cost = |i: usize| clusters[parts[i] as usize].cost;
+            let Some(costliest) = divisible.max_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
+            let two = clusters[parts[costliest] as usize].parts;
+            parts.splice(costliest..=costliest, two);
         }
         let index = self.nodes.len();
         let mut children = [NONE; LANES];
-        self.nodes.push(Node { bounds: BoundsLanes::new([], scale), children, parent: place });
+        self.nodes.push(Node { bounds: BoundsLanes::new([], scale), children, parent: slot });
         let mut bounds = Vec::with_capacity(LANES);
         for (lane, part) in parts.into_iter().enumerate() {
-            let (child, of_child) = self.add(items, halved, part, (index * LANES + lane) as u32, scale);
+            let (child, of_child) = self.add(items, clusters, part, (index * LANES + lane) as u32, scale);
             children[lane] = child;
             bounds.push(of_child);
         }
@@ -115,10 +116,10 @@ impl LightTree {
         (index as u32, Bounds::union(&bounds))
     }
 
-    /// A light by its importance, the probability of the choice, and where within its share `u` fell, in `[0, 1)`.
+    /// Samples a light by importance; returns its pmf and the position of `u` within its share, in `[0, 1)`.
     #[inline]
     pub fn sample(&self, receiver: &Receiver, u: f64) -> Option<(usize, f32, f64)> {
-        let (mut probability, mut u) = (1.0, u);
+        let (mut pmf, mut u) = (1.0, u);
         for (light, &share) in self.fixed.iter().enumerate() {
             if u < share || light + 1 == self.fixed.len() {
                 return Some((light, share as f32, (u / share).min(1.0 - f64::EPSILON)));
@@ -132,7 +133,7 @@ impl LightTree {
             if !(sum > 0.0) {
                 return None;
             }
-            // The lane where the running sum passes the target.
+            // Find the lane in which the cumulative importance passes the target.
             let target = u * f64::from(sum);
             let (mut lane, mut below, mut running) = (0, 0.0, 0.0);
             for (i, &share) in importance.iter().enumerate() {
@@ -143,40 +144,40 @@ impl LightTree {
             }
             let share = importance[lane];
             u = ((target - below) / f64::from(share)).clamp(0.0, 1.0 - f64::EPSILON);
-            probability *= share / sum;
+            pmf *= share / sum;
             match node.children[lane] {
                 NONE => return None,
-                child if child & LIGHT != 0 => return Some(((child & !LIGHT) as usize, probability, u)),
+                child if child & LIGHT != 0 => return Some(((child & !LIGHT) as usize, pmf, u)),
                 child => node = &self.nodes[child as usize],
             }
         }
     }
 
-    /// The probability with which [`LightTree::sample`] chooses a light.
-    pub fn probability(&self, receiver: &Receiver, light: usize) -> f32 {
+    /// Pmf with which [`LightTree::sample`] selects a light.
+    pub fn pmf(&self, receiver: &Receiver, light: usize) -> f32 {
         if let Some(&share) = self.fixed.get(light) {
             return share as f32;
         }
-        let mut probability = 1.0;
-        let mut place = self.places[light];
-        while place != NONE {
-            let node = &self.nodes[place as usize / LANES];
+        let mut pmf = 1.0;
+        let mut slot = self.slots[light];
+        while slot != NONE {
+            let node = &self.nodes[slot as usize / LANES];
             let importance = node.bounds.importance(receiver, self.nearest);
             let sum: f32 = importance.iter().sum();
-            let share = importance[place as usize % LANES];
+            let share = importance[slot as usize % LANES];
             if !(share > 0.0) {
                 return 0.0;
             }
-            probability *= share / sum;
-            place = node.parent;
+            pmf *= share / sum;
+            slot = node.parent;
         }
-        probability
+        pmf
     }
 }
 
-/// Divides a cluster down to its lights, in parallel, and returns where it stands in the list, of which `halved` are the
-/// places from its `first` light on.
-fn halve(items: &mut [Item], halved: &mut [Halved], first: usize, depth: u32) -> u32 {
+/// Divides a cluster down to its lights, in parallel; returns its index in the list. `clusters` is the part of the list
+/// from index `first` on.
+fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;
     }
@@ -184,20 +185,20 @@ fn halve(items: &mut [Item], halved: &mut [Halved], first: usize, depth: u32) ->
     let at = if depth < MAX_HEURISTIC_DEPTH { split(items) } else { items.len() / 2 };
     let in_parallel = items.len() >= PARALLEL_FROM;
     let (left, right) = items.split_at_mut(at);
-    let (halved_left, halved_right) = halved.split_at_mut(at);
-    let mut halve_left = || halve(left, halved_left, first, depth + 1);
-    let mut halve_right = || halve(right, halved_right, first + at, depth + 1);
-    let parts = if in_parallel { rayon::join(halve_left, halve_right) } else { (halve_left(), halve_right()) };
-    halved_right[0] = Halved { cost: extent.cost(), parts: parts.into() };
+    let (clusters_left, clusters_right) = clusters.split_at_mut(at);
+    let mut divide_left = || divide(left, clusters_left, first, depth + 1);
+    let mut divide_right = || divide(right, clusters_right, first + at, depth + 1);
+    let parts = if in_parallel { rayon::join(divide_left, divide_right) } else { (divide_left(), divide_right()) };
+    clusters_right[0] = Cluster { cost: extent.cost(), parts: parts.into() };
     (first + at) as u32
 }
 
-/// What the heuristic knows of a cluster.
+/// Aggregates of a cluster for the split heuristic.
 #[derive(Clone, Copy)]
 struct Extent {
     low: Vec3A,
     high: Vec3A,
-    /// Sum of the main directions, by intensity; those of two-sided lights turned to one half-space.
+    /// Intensity-weighted sum of the axes; those of two-sided lights are flipped to one half-space.
     direction: Vec3A,
     intensity: f32,
     count: u32,
@@ -232,7 +233,7 @@ impl Extent {
         self.count += other.count;
     }
 
-    /// Solid angle from 1 (all alike) to 4 (all around), times the squared diagonal, times the intensity.
+    /// The heuristic: a solid angle term from 1 (parallel) to 4 (all directions) × squared diagonal × intensity.
     fn cost(&self) -> f32 {
         if self.count == 0 {
             return 0.0;
@@ -242,13 +243,13 @@ impl Extent {
     }
 }
 
-/// Divides a cluster of at least two in place and returns the size of the first part, neither of them empty.
+/// Divides a cluster of at least two lights in place; returns the size of the first part. Neither part is empty.
 fn split(items: &mut [Item]) -> usize {
     let low = items.iter().fold(Vec3A::INFINITY, |a, i| a.min(i.centre));
     let high = items.iter().fold(Vec3A::NEG_INFINITY, |a, i| a.max(i.centre));
     let binning = [0, 1, 2].map(|axis| Binning::new(low[axis], high[axis]));
     let mut bins = [[Extent::NOTHING; BINS]; 3];
-    // Lamps of a ceiling do not differ in height.
+    // Skip axes without extent: the lamps of a ceiling have the same height.
     let axes = (0..3).filter(|&axis| binning[axis].scale > 0.0);
     for item in items.iter() {
         for axis in axes.clone() {
@@ -258,7 +259,7 @@ fn split(items: &mut [Item]) -> usize {
     let mut best = (f32::INFINITY, 0, 0);
     for axis in axes {
         let bins = &bins[axis];
-        // Costs of what lies above each bin, then of both sides.
+        // Accumulate the costs above each bin, then add those below.
         let mut above = [0.0; BINS];
         let mut extent = Extent::NOTHING;
         for i in (1..BINS).rev() {
@@ -281,7 +282,7 @@ fn split(items: &mut [Item]) -> usize {
     items.len() / 2
 }
 
-/// The bins of coordinates between two ends; one alone if they are the same.
+/// Equal bins over an interval; a single bin if it is empty.
 struct Binning {
     low: f32,
     scale: f32,
@@ -298,7 +299,7 @@ impl Binning {
     }
 }
 
-/// Moves the items that belong first to the front and returns how many they are.
+/// Moves the items for which `first` holds to the front; returns their number.
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for i in 0..items.len() {

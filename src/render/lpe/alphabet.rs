@@ -1,16 +1,16 @@
-//! The events that can happen in a scene, numbered. Objects whose labels no expression tells apart share their events.
+//! The numbered events of a scene. Objects whose labels no expression distinguishes share their events.
 
 use super::parse::{Event, kind, mode};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::patches::Patches;
-use crate::render::LightSource;
+use crate::render::contribution::LightSource;
 use crate::scene::{Mesh, Scene, Texture, Wrap, texel_at};
 use glam::Vec2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The ways a surface scatters.
+/// The kinds of scattering at a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scatter {
     Diffuse,
@@ -20,26 +20,26 @@ pub enum Scatter {
 }
 
 pub struct Alphabet {
-    /// Events of scattering, four to a class of meshes, in the order of [`Scatter`].
+    /// Scattering events: four for each class of meshes, in the order of [`Scatter`].
     pub scatters: Vec<Event>,
-    /// Events at a light's end of a path.
+    /// Events at the light end of a path.
     pub lights: Vec<Event>,
-    /// Number of a mesh's class, which is that of its light too.
+    /// Class of each mesh; also the index of its light event.
     class_of_mesh: Vec<u32>,
-    /// Of meshes whose lamps are told apart.
+    /// For meshes whose lamps are distinguished.
     lamps: Vec<Option<Lamps>>,
     punctual: Vec<u32>,
     environment: u32,
 }
 
-/// The patches of an emission texture, each a light of its own.
+/// The lamps of an emission texture: each connected patch has a light event of its own.
 struct Lamps {
-    texture: Arc<Lit>,
-    /// The light of each patch, after that of what belongs to none.
+    texture: Arc<LampTexture>,
+    /// The light event of texels outside any patch, then that of each patch.
     lights: Vec<u32>,
 }
 
-struct Lit {
+struct LampTexture {
     size: [usize; 2],
     wrap: [Wrap; 2],
     patches: Patches,
@@ -47,25 +47,18 @@ struct Lit {
 
 impl Alphabet {
     /// # Errors
-    /// A label that nothing bears.
+    /// An expression names a label that does not exist in the scene.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
-        let names = |mesh: &Mesh| {
-            [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
-        };
-        let mut borne: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
-        borne.extend((0..scene.lights.len()).map(punctual_label));
-        borne.insert(ENVIRONMENT.to_string());
-        let lit = lit_textures(scene, expressions, names)?;
-        for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lit.get(&m.material)?))) {
-            borne.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
-        }
-        let wanted = wanted(expressions, &borne)?;
-        let told = |names: &[String]| -> Vec<String> {
-            let set: BTreeSet<&String> = names.iter().filter(|n| wanted.contains(*n)).collect();
+        let names = |mesh: &Mesh| names_of(scene, mesh);
+        let lamp_textures = lamp_textures(scene, expressions, names)?;
+        let existing = existing_labels(scene, &lamp_textures);
+        let named_labels = named_labels(expressions, &existing)?;
+        let keep_named = |names: &[String]| -> Vec<String> {
+            let set: BTreeSet<&String> = names.iter().filter(|n| named_labels.contains(*n)).collect();
             set.into_iter().cloned().collect()
         };
-        // Meshes of the same labels are one class; that of none is always there, so that what an expression can match
-        // does not depend on what a scene happens to have.
+        // Meshes of equal labels form a class. The class without labels always exists, so that the set of matchable
+        // expressions does not depend on the scene.
         let mut classes = BTreeMap::new();
         let (mut scatters, mut lights) = (Vec::new(), Vec::new());
         let mut class = |labels: Vec<String>| {
@@ -78,8 +71,8 @@ impl Alphabet {
             })
         };
         class(Vec::new());
-        let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(told(&names(mesh)))).collect();
-        // So with lights without a surface.
+        let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(keep_named(&names(mesh)))).collect();
+        // Punctual lights and the environment: lights of equal kinds and labels share an event.
         let mut by_labels = BTreeMap::new();
         let mut light = |kinds: u8, labels: Vec<String>| {
             *by_labels.entry((kinds, labels.clone())).or_insert_with(|| {
@@ -90,15 +83,15 @@ impl Alphabet {
         for kinds in [kind::LIGHT, kind::OBJECT, kind::BACKGROUND] {
             light(kinds, Vec::new());
         }
-        let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, told(&[punctual_label(i)]))).collect();
-        let environment = light(environment_kinds(emitter_as), told(&[ENVIRONMENT.to_string()]));
+        let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, keep_named(&[punctual_label(i)]))).collect();
+        let environment = light(environment_kinds(emitter_as), keep_named(&[ENVIRONMENT.to_string()]));
         let lamps = scene.meshes.iter().zip(&class_of_mesh).map(|(mesh, class)| {
-            let texture = lit.get(&mesh.material)?.clone();
+            let texture = lamp_textures.get(&mesh.material)?.clone();
             let of_lamp = |i: usize| {
                 let of_it = names(mesh).map(|name| lamp_label(&name, i));
-                // One that no expression names is like the rest of the mesh.
-                if of_it.iter().any(|name| wanted.contains(name)) {
-                    light(surface_kinds(emitter_as), told(&[names(mesh), of_it].concat()))
+                // A lamp that no expression names belongs to its mesh's class.
+                if of_it.iter().any(|name| named_labels.contains(name)) {
+                    light(surface_kinds(emitter_as), keep_named(&[names(mesh), of_it].concat()))
                 } else {
                     *class
                 }
@@ -110,7 +103,7 @@ impl Alphabet {
         Ok(Self { scatters, lights, class_of_mesh, lamps, punctual, environment })
     }
 
-    /// How many classes of meshes there are.
+    /// Number of mesh classes.
     #[inline]
     pub fn classes(&self) -> usize {
         self.scatters.len() / SCATTERS.len()
@@ -136,33 +129,50 @@ impl Alphabet {
 
 impl Lamps {
     fn light(&self, uv: Vec2) -> u32 {
-        let Lit { size, wrap, patches } = &*self.texture;
+        let LampTexture { size, wrap, patches } = &*self.texture;
         self.lights[patches.labels[texel_at(uv, *size, *wrap)] as usize]
     }
 }
 
-/// The emission textures of materials whose lamps an expression may name: `'Ceiling#3'`, after mesh or material.
-fn lit_textures(
+/// The names of a mesh and of its material.
+fn names_of(scene: &Scene, mesh: &Mesh) -> [String; 2] {
+    [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
+}
+
+/// The labels of all meshes, materials, lights and lamps of a scene.
+fn existing_labels(scene: &Scene, lamp_textures: &BTreeMap<usize, Arc<LampTexture>>) -> BTreeSet<String> {
+    let names = |mesh: &Mesh| names_of(scene, mesh);
+    let mut existing: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
+    existing.extend((0..scene.lights.len()).map(punctual_label));
+    existing.insert(ENVIRONMENT.to_string());
+    for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lamp_textures.get(&m.material)?))) {
+        existing.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
+    }
+    existing
+}
+
+/// The emission textures whose lamps an expression may name, as in `'Ceiling#3'`, by mesh or by material.
+fn lamp_textures(
     scene: &Scene,
     expressions: &[&Expression],
     names: impl Fn(&Mesh) -> [String; 2],
-) -> Result<BTreeMap<usize, Arc<Lit>>> {
+) -> Result<BTreeMap<usize, Arc<LampTexture>>> {
     let mut named = BTreeSet::new();
     for expression in expressions {
         expression.tree.labels(&mut |name, _| {
             named.extend(name.rsplit_once('#').map(|(owner, _)| owner.to_string()));
         });
     }
-    let mut lit = BTreeMap::new();
+    let mut lamp_textures = BTreeMap::new();
     for mesh in scene.meshes.iter().filter(|mesh| names(mesh).iter().any(|name| named.contains(name))) {
         let Some(map) = scene.materials.get(mesh.material).and_then(|m| m.emission_texture) else { continue };
-        if !lit.contains_key(&mesh.material) {
+        if !lamp_textures.contains_key(&mesh.material) {
             let Texture { image, wrap, .. } = &scene.textures[map.texture];
             let (size, patches) = ([image.width, image.height], Patches::of(image)?);
-            lit.insert(mesh.material, Arc::new(Lit { size, wrap: *wrap, patches }));
+            lamp_textures.insert(mesh.material, Arc::new(LampTexture { size, wrap: *wrap, patches }));
         }
     }
-    Ok(lit)
+    Ok(lamp_textures)
 }
 
 fn lamp_label(owner: &str, index: usize) -> String {
@@ -199,30 +209,30 @@ fn environment_kinds(emitter_as: EmitterAs) -> u8 {
     }
 }
 
-/// The labels that expressions name; those that an event must bear have to be borne by something.
-fn wanted(expressions: &[&Expression], borne: &BTreeSet<String>) -> Result<BTreeSet<String>> {
-    let mut wanted = BTreeSet::new();
+/// The labels that expressions name. Labels that an event must have need to exist in the scene.
+fn named_labels(expressions: &[&Expression], existing: &BTreeSet<String>) -> Result<BTreeSet<String>> {
+    let mut named_labels = BTreeSet::new();
     for expression in expressions {
         let mut missing = None;
         expression.tree.labels(&mut |name, must| {
-            if must && !borne.contains(name) {
+            if must && !existing.contains(name) {
                 missing = missing.take().or(Some(name.to_string()));
             }
-            wanted.insert(name.to_string());
+            named_labels.insert(name.to_string());
         });
         if let Some(name) = missing {
             let known: Vec<String> =
-                borne.iter().filter(|n| !n.is_empty()).take(12).map(|n| format!("'{n}'")).collect();
+                existing.iter().filter(|n| !n.is_empty()).take(12).map(|n| format!("'{n}'")).collect();
             return Err(Error::new(
                 ErrorKind::NotFound,
                 format!(
                     "expression {:?}: no object, material or light is called '{name}'; there are {}{}",
                     expression.text(),
                     known.join(", "),
-                    if borne.len() > 12 { ", ..." } else { "" }
+                    if existing.len() > 12 { ", ..." } else { "" }
                 ),
             ));
         }
     }
-    Ok(wanted)
+    Ok(named_labels)
 }

@@ -1,55 +1,56 @@
-//! All expressions of a rendering as one deterministic automaton (Thompson 1968; subset construction, Rabin and Scott 1959;
-//! minimised by refinement, Moore 1956).
+//! All expressions of a render as one deterministic finite automaton (Thompson 1968; subset construction by Rabin and
+//! Scott 1959; minimised by partition refinement, Moore 1956).
 //!
-//! A path of camera, scatterings and a light moves through it one look-up per event. States from which no light can
-//! complete any expression are one, [`DEAD`]: what a path carries there is dropped. States that no future event tells
-//! apart are one as well, so a path has as few parts as the expressions allow.
+//! A path of camera, scattering events and a light moves through it with one look-up per event. All states from which
+//! no light can complete an expression are merged into [`DEAD`]; a share of a path in that state is dropped. Equivalent
+//! states are merged, so that a path has as few components as the expressions allow.
 
 use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, Node, kind};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, Result};
-use crate::render::LightSource;
+use crate::render::contribution::LightSource;
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 
-/// The state that leads nowhere.
+/// The state from which no expression can be completed.
 pub const DEAD: u16 = 0;
 
-/// Bounds of the construction: places of all expressions, states before they are merged, and moves looked at.
-const MOST_PLACES: usize = 20_000;
-const MOST_STATES: usize = 4096;
-const MOST_MOVES: usize = 20_000_000;
+/// Limits of the construction: states of the nondeterministic automaton, states before minimisation, transitions
+/// visited. [judged, not recorded]
+const MAX_NFA_STATES: usize = 20_000;
+const MAX_STATES: usize = 4096;
+const MAX_TRANSITIONS: usize = 20_000_000;
 
-/// The automaton of a scene's events.
-pub struct Table {
+/// The automaton over the events of a scene.
+pub struct Automaton {
     alphabet: Alphabet,
     start: u16,
-    /// State by state and class of meshes by class, where each way of scattering leads.
+    /// The next states by state, class of meshes and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// State by state, which of `lists` holds when a path ends at each light.
+    /// By state and light, the index in `lists` of the accepting expressions.
     ends: Vec<u16>,
-    /// Expressions that accept the same paths; the first list is empty.
+    /// Lists of expressions that accept the same paths; the first list is empty.
     lists: Vec<Vec<u16>>,
-    /// States that no scattering leaves.
-    settled: Vec<bool>,
+    /// States that every scattering event leaves unchanged.
+    absorbing: Vec<bool>,
 }
 
-impl Table {
+impl Automaton {
     /// # Errors
-    /// A label that nothing in the scene bears, an expression that no path can match, or too many states.
+    /// A label that does not exist in the scene; an expression that no path can match; too many states.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
         let alphabet = Alphabet::new(scene, expressions, emitter_as)?;
-        let mut places = Places::default();
-        let start = places.add()?;
+        let mut nfa = Nfa::default();
+        let start = nfa.add()?;
         for (number, expression) in expressions.iter().enumerate() {
-            let end = places.build(&expression.tree, start)?;
-            places.accepts[end as usize].push(number as u16);
+            let end = nfa.build(&expression.tree, start)?;
+            nfa.accepts[end as usize].push(number as u16);
         }
-        let mut subsets = Subsets::new(&places, &alphabet);
-        let first = subsets.explore(start)?;
-        let Subsets { next, ends, lists, .. } = subsets;
-        // Every expression must have a path that it accepts.
+        let mut construction = SubsetConstruction::new(&nfa, &alphabet);
+        let first = construction.explore(start)?;
+        let SubsetConstruction { next, ends, lists, .. } = construction;
+        // Reject expressions that accept no path.
         for (number, expression) in expressions.iter().enumerate() {
             if !lists.iter().flatten().any(|&n| usize::from(n) == number) {
                 return Err(Error::argument(format!(
@@ -59,7 +60,7 @@ impl Table {
             }
         }
         let (next, _) = next.as_chunks();
-        Ok(Self { start: first, next: next.to_vec(), ends, lists, alphabet, settled: Vec::new() }.minimised())
+        Ok(Self { start: first, next: next.to_vec(), ends, lists, alphabet, absorbing: Vec::new() }.minimised())
     }
 
     /// The state of a path that has left the camera.
@@ -67,7 +68,7 @@ impl Table {
         self.start
     }
 
-    /// Number of the class of a mesh: expressions do not tell those of a class apart.
+    /// Class of a mesh: expressions do not distinguish the meshes of a class.
     #[inline]
     pub fn class(&self, mesh: u32) -> usize {
         self.alphabet.class(mesh)
@@ -79,7 +80,7 @@ impl Table {
         &self.next[usize::from(state) * self.alphabet.classes() + class]
     }
 
-    /// Adds the states after a surface that spreads light, by any of its layers, to those known.
+    /// Adds to `states` the states after non-specular scattering off a mesh, by any of its layers.
     pub fn spread(&self, state: u16, mesh: u32, is_layered: bool, states: &mut Vec<u16>) {
         let next = self.next(state, self.class(mesh));
         for scatter in [Scatter::Diffuse, Scatter::Glossy].into_iter().take(1 + usize::from(is_layered)) {
@@ -90,13 +91,13 @@ impl Table {
         }
     }
 
-    /// Number of a light.
+    /// Index of the event of a light.
     #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         self.alphabet.light(source)
     }
 
-    /// Which of the lists names the expressions that accept a path that ends at such a light. That of number 0 is empty.
+    /// Index of the list of expressions that accept a path which ends at a light. List 0 is empty.
     #[inline]
     pub fn accepting(&self, state: u16, light: usize) -> u16 {
         self.ends[usize::from(state) * self.alphabet.lights.len() + light]
@@ -107,10 +108,10 @@ impl Table {
         &self.lists
     }
 
-    /// Whether no scattering can lead on from a state.
+    /// Whether every scattering event leaves the state unchanged.
     #[inline]
-    pub fn is_settled(&self, state: u16) -> bool {
-        self.settled[usize::from(state)]
+    pub fn is_absorbing(&self, state: u16) -> bool {
+        self.absorbing[usize::from(state)]
     }
 
     #[cfg(test)]
@@ -118,11 +119,11 @@ impl Table {
         self.ends.len() / self.alphabet.lights.len()
     }
 
-    /// The same with states merged that no path tells apart.
+    /// The automaton with equivalent states merged.
     fn minimised(self) -> Self {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
-        // Tell apart by what is accepted now, then again and again by where events lead.
+        // Separate states by the expressions they accept, then repeatedly by the groups of their successors.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {
@@ -143,7 +144,7 @@ impl Table {
             }
             groups = found;
         }
-        // Groups are numbered by their first state, so the dead one, state 0, stays 0.
+        // Groups are numbered by their first state, so that the dead state 0 stays 0.
         let mut next = vec![[0; SCATTERS.len()]; groups * classes];
         let mut ends = vec![0; groups * lights];
         for state in 0..count {
@@ -155,43 +156,43 @@ impl Table {
         }
         let stays =
             |state: usize| next[state * classes..][..classes].as_flattened().iter().all(|&n| usize::from(n) == state);
-        let settled = (0..groups).map(stays).collect();
-        Self { start: group[usize::from(self.start)], next, ends, settled, ..self }
+        let absorbing = (0..groups).map(stays).collect();
+        Self { start: group[usize::from(self.start)], next, ends, absorbing, ..self }
     }
 }
 
-/// The expressions as one automaton that may be in many places at once.
+/// The expressions as one nondeterministic finite automaton.
 #[derive(Default)]
-struct Places<'a> {
-    /// Places that can be entered from each without an event.
-    jumps: Vec<Vec<u32>>,
-    /// The events that lead on, and where.
-    moves: Vec<Option<(&'a EventSet, u32)>>,
+struct Nfa<'a> {
+    /// Epsilon transitions of each state.
+    epsilon: Vec<Vec<u32>>,
+    /// The event transition of each state.
+    transitions: Vec<Option<(&'a EventSet, u32)>>,
     accepts: Vec<Vec<u16>>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> Nfa<'a> {
     fn add(&mut self) -> Result<u32> {
-        if self.jumps.len() >= MOST_PLACES {
+        if self.epsilon.len() >= MAX_NFA_STATES {
             return Err(too_large());
         }
-        self.jumps.push(Vec::new());
-        self.moves.push(None);
+        self.epsilon.push(Vec::new());
+        self.transitions.push(None);
         self.accepts.push(Vec::new());
-        Ok(self.jumps.len() as u32 - 1)
+        Ok(self.epsilon.len() as u32 - 1)
     }
 
-    fn jump(&mut self, from: u32, to: u32) {
-        self.jumps[from as usize].push(to);
+    fn add_epsilon(&mut self, from: u32, to: u32) {
+        self.epsilon[from as usize].push(to);
     }
 
-    /// Adds what a node matches after place `from`; returns the place after it.
+    /// Adds what a node matches after state `from`; returns the end state.
     fn build(&mut self, node: &'a Node, from: u32) -> Result<u32> {
         match node {
             Node::Event(set) => {
                 let (before, after) = (self.add()?, self.add()?);
-                self.jump(from, before);
-                self.moves[before as usize] = Some((set, after));
+                self.add_epsilon(from, before);
+                self.transitions[before as usize] = Some((set, after));
                 Ok(after)
             }
             Node::Sequence(nodes) => nodes.iter().try_fold(from, |at, node| self.build(node, at)),
@@ -199,26 +200,26 @@ impl<'a> Places<'a> {
                 let end = self.add()?;
                 for node in nodes {
                     let last = self.build(node, from)?;
-                    self.jump(last, end);
+                    self.add_epsilon(last, end);
                 }
                 Ok(end)
             }
-            Node::Repeat(node, least, most) => {
+            Node::Repeat(node, min, max) => {
                 let mut at = from;
-                for _ in 0..*least {
+                for _ in 0..*min {
                     at = self.build(node, at)?;
                 }
                 let end = self.add()?;
-                self.jump(at, end);
-                match most {
+                self.add_epsilon(at, end);
+                match max {
                     None => {
                         let last = self.build(node, end)?;
-                        self.jump(last, end);
+                        self.add_epsilon(last, end);
                     }
-                    Some(most) => {
-                        for _ in *least..*most {
+                    Some(max) => {
+                        for _ in *min..*max {
                             at = self.build(node, at)?;
-                            self.jump(at, end);
+                            self.add_epsilon(at, end);
                         }
                     }
                 }
@@ -228,41 +229,41 @@ impl<'a> Places<'a> {
     }
 }
 
-/// The sets of places that paths reach, as states.
-struct Subsets<'a> {
-    places: &'a Places<'a>,
+/// Subset construction: sets of NFA states become states.
+struct SubsetConstruction<'a> {
+    nfa: &'a Nfa<'a>,
     scatters: &'a [Event],
     lights: &'a [Event],
-    /// Numbers of the sets and of the lists seen so far.
-    numbers: BTreeMap<Vec<u32>, u16>,
-    list_numbers: BTreeMap<Vec<u16>, u16>,
+    /// Indices of the sets and of the lists seen so far.
+    number_of_set: BTreeMap<Vec<u32>, u16>,
+    number_of_list: BTreeMap<Vec<u16>, u16>,
     next: Vec<u16>,
     ends: Vec<u16>,
     lists: Vec<Vec<u16>>,
-    /// The last round that met each place, and how many there were.
-    met: Vec<u32>,
+    /// The last round that visited each NFA state, and the number of rounds.
+    visited: Vec<u32>,
     rounds: u32,
-    moves_left: usize,
+    transitions_left: usize,
 }
 
-impl<'a> Subsets<'a> {
-    fn new(places: &'a Places<'a>, alphabet: &'a Alphabet) -> Self {
+impl<'a> SubsetConstruction<'a> {
+    fn new(nfa: &'a Nfa<'a>, alphabet: &'a Alphabet) -> Self {
         Self {
-            places,
+            nfa,
             scatters: &alphabet.scatters,
             lights: &alphabet.lights,
-            numbers: BTreeMap::from([(Vec::new(), DEAD)]),
-            list_numbers: BTreeMap::from([(Vec::new(), 0)]),
+            number_of_set: BTreeMap::from([(Vec::new(), DEAD)]),
+            number_of_list: BTreeMap::from([(Vec::new(), 0)]),
             next: Vec::new(),
             ends: Vec::new(),
             lists: vec![Vec::new()],
-            met: vec![0; places.jumps.len()],
+            visited: vec![0; nfa.epsilon.len()],
             rounds: 0,
-            moves_left: MOST_MOVES,
+            transitions_left: MAX_TRANSITIONS,
         }
     }
 
-    /// Visits all that can follow the camera; returns the state after it.
+    /// Visits all states reachable behind the camera; returns the state after it.
     fn explore(&mut self, start: u32) -> Result<u16> {
         let camera = Event { kinds: kind::CAMERA, modes: 0, labels: Vec::new() };
         let mut sets = vec![Vec::new()];
@@ -279,12 +280,11 @@ impl<'a> Subsets<'a> {
             }
             for light in lights {
                 let after = self.after(&set, light)?;
-                let mut list: Vec<u16> =
-                    after.iter().flat_map(|&p| &self.places.accepts[p as usize]).copied().collect();
+                let mut list: Vec<u16> = after.iter().flat_map(|&p| &self.nfa.accepts[p as usize]).copied().collect();
                 list.sort_unstable();
                 list.dedup();
                 let number = self.lists.len() as u16;
-                let number = *self.list_numbers.entry(list.clone()).or_insert(number);
+                let number = *self.number_of_list.entry(list.clone()).or_insert(number);
                 if usize::from(number) == self.lists.len() {
                     self.lists.push(list);
                 }
@@ -296,51 +296,51 @@ impl<'a> Subsets<'a> {
     }
 
     fn number(&mut self, set: Vec<u32>, sets: &mut Vec<Vec<u32>>) -> Result<u16> {
-        if let Some(&number) = self.numbers.get(&set) {
+        if let Some(&number) = self.number_of_set.get(&set) {
             return Ok(number);
         }
-        if sets.len() >= MOST_STATES {
+        if sets.len() >= MAX_STATES {
             return Err(too_large());
         }
         let number = sets.len() as u16;
-        self.numbers.insert(set.clone(), number);
+        self.number_of_set.insert(set.clone(), number);
         sets.push(set);
         Ok(number)
     }
 
     fn after(&mut self, set: &[u32], event: &Event) -> Result<Vec<u32>> {
         self.spend(set.len())?;
-        let moves = set.iter().filter_map(|&p| self.places.moves[p as usize]);
-        let reached: Vec<u32> = moves.filter(|(events, _)| events.contains(event)).map(|(_, to)| to).collect();
+        let transitions = set.iter().filter_map(|&p| self.nfa.transitions[p as usize]);
+        let reached: Vec<u32> = transitions.filter(|(events, _)| events.contains(event)).map(|(_, to)| to).collect();
         self.closure(&reached)
     }
 
-    /// The places that can be entered from some others without an event; those that only pass on are left out.
+    /// Epsilon closure of some NFA states, without states that only have epsilon transitions.
     fn closure(&mut self, from: &[u32]) -> Result<Vec<u32>> {
         self.rounds += 1;
-        let matters = |p: usize| self.places.moves[p].is_some() || !self.places.accepts[p].is_empty();
-        let (mut waiting, mut reached, mut met) = (from.to_vec(), Vec::new(), 0);
+        let matters = |p: usize| self.nfa.transitions[p].is_some() || !self.nfa.accepts[p].is_empty();
+        let (mut waiting, mut reached, mut visited) = (from.to_vec(), Vec::new(), 0);
         while let Some(place) = waiting.pop() {
             let at = place as usize;
-            if std::mem::replace(&mut self.met[at], self.rounds) != self.rounds {
-                met += 1;
-                waiting.extend(&self.places.jumps[at]);
+            if std::mem::replace(&mut self.visited[at], self.rounds) != self.rounds {
+                visited += 1;
+                waiting.extend(&self.nfa.epsilon[at]);
                 reached.extend(matters(at).then_some(place));
             }
         }
-        self.spend(met)?;
+        self.spend(visited)?;
         reached.sort_unstable();
         Ok(reached)
     }
 
-    fn spend(&mut self, moves: usize) -> Result<()> {
-        self.moves_left = self.moves_left.checked_sub(moves).ok_or_else(too_large)?;
+    fn spend(&mut self, transitions: usize) -> Result<()> {
+        self.transitions_left = self.transitions_left.checked_sub(transitions).ok_or_else(too_large)?;
         Ok(())
     }
 }
 
 fn too_large() -> Error {
     Error::argument(format!(
-        "the expressions together need more than {MOST_STATES} states; shorten their repetitions or render them in groups"
+        "the expressions together need more than {MAX_STATES} states; shorten their repetitions or render them in groups"
     ))
 }

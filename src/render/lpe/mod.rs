@@ -1,59 +1,60 @@
-//! Light path expressions: images of the light that came by certain ways (Heckbert 1990, "Adaptive radiosity textures for
+//! Light path expressions: images of the light that took certain paths (Heckbert 1990, "Adaptive radiosity textures for
 //! bidirectional ray tracing"; StyLit, section 3.2; Open Shading Language, "OSL Light Path Expressions").
 //!
 //! An expression is a regular expression over the events of a path, in one of two orders:
 //!
-//! * light first, as in the papers, with `L` at its start and the eye `E` at its end: `LDE`, `LSE`, `LD{1,2}E`, `L.*DDE`,
-//!   `LS*DE`. `L` is any light and `S` all that is not diffuse: Heckbert knows nothing between.
-//! * camera first, as in Open Shading Language, with `C` at its start: `C<RD>L`, `C[GS]+.*<L.'Lamp'>`.
+//! * Light first, as in the papers, from a light `L` to the eye `E`: `LDE`, `LSE`, `LD{1,2}E`, `L.*DDE`, `LS*DE`. `L`
+//!   is any light
+//! and `S` is any event that is not diffuse: Heckbert has no other classes.
+//! * Camera first, as in Open Shading Language, from the camera `C`: `C<RD>L`, `C[GS]+.*<L.'Lamp'>`.
 //!
 //! | event | |
 //! |---|---|
-//! | `<type mode labels>` | e.g. `<RD>`, `<TS'pane'>`, `<L.'Ceiling'>`; each part a letter, `.` for any, `[..]`, `[^..]` |
-//! | types | `R` reflection, `T` transmission, `V` volume (never met here); `L` `O` `B` lights; `C` the camera |
-//! | modes | `D` diffuse, `G` glossy, `S` mirror or clear pane, `s` clear pane: straight through |
-//! | labels | names of objects (meshes) or of their materials; of lights the same, `light0`, `light1`, ... for punctual lights in the scene's order, and `environment`; `Name#0`, `Name#1`, ... for the lamps of the emission texture of the object or material Name, its connected patches in the order of their first texels |
+//! | `<type mode labels>` | e.g. `<RD>`, `<TS'pane'>`, `<L.'Ceiling'>`; each part is a letter, `.` for any, `[..]`, `[^..]` |
+//! | types | `R` reflection, `T` transmission, `V` volume (never occurs here); `L` `O` `B` lights; `C` the camera |
+//! | modes | `D` diffuse, `G` glossy, `S` mirror or clear pane, `s` clear pane (straight) |
+//! | labels | names of objects (meshes) or of their materials; for lights also `light0`, `light1`, ... for punctual lights in scene order, and `environment`; `Name#0`, `Name#1`, ... for the lamps of the emission texture of the object or material Name: its connected patches, ordered by their first texels |
 //! | `D`, `R`, `L`, `'x'` | short for `<.D>`, `<R.>`, `<L.>`, `<..'x'>` |
-//! | `.` `[DS]` `[^D]` | any event, one of these, none of these |
+//! | `.` `[DS]` `[^D]` | any event, one of these, any except these |
 //! | `*` `+` `?` `{n}` `{n,}` `{n,m}` `\|` `( )` | as in any regular expression |
 //!
-//! Several labels in one event must all fit: `<RD'Floor''Wood'>`. A label that nothing in the scene bears is an error, unless
-//! it is one to be left out (`[^'coat']`): a black image would hide the slip. In Open Shading Language, emissive surfaces are
-//! `O` and the environment is `B`; [`EmitterAs`] says whether they are `L` too. The names of Arnold's built-in expressions
-//! are known ([`BUILT_IN`]).
+//! An event must match all of several labels: `<RD'Floor''Wood'>`. A label that does not exist in the scene is an
+//! error, since a black image would hide the mistake; excluded labels (`[^'coat']`) need not exist. In Open Shading
+//! Language, emissive surfaces are `O` and the environment is `B`; [`EmitterAs`] decides whether they are also `L`.
+//! Arnold's built-in expressions are available by name ([`BUILT_IN`]).
 //!
-//! What happens at a vertex: the diffuse layer is `<RD>`, the top layer `<RG>`, or `<RS>` if it is a mirror; a clear pane is
-//! `<TS>` and `<Ts>` at once, whether a path goes through it or a shadow ray. Surfaces that are partly there (alpha) are no
-//! event where they are not there.
+//! Events at a vertex: the diffuse layer is `<RD>`; the top layer is `<RG>`, or `<RS>` if it is a mirror; a clear pane
+//! is both `<TS>` and `<Ts>`, for paths and for shadow rays. A surface with opacity below 1 is no event where a ray
+//! passes it.
 //!
-//! text → `parse` a tree → `automaton` one table for all expressions of a rendering, over the `alphabet` of events that its
-//! scene can have → `trail` what a path carries along it.
+//! `parse` turns the text into a tree, `automaton` compiles all expressions of a render over the `alphabet` of events
+//! in the scene, and `trail` tracks a path's states in the automaton.
 
 mod alphabet;
 mod automaton;
-mod ledger;
 mod parse;
+mod sparse_sums;
 mod trail;
 
-pub(super) use automaton::Table;
-pub(super) use trail::{Brought, Trail};
+pub(super) use automaton::Automaton;
+pub(super) use trail::{PathOutcome, Trail};
 
 use crate::error::Result;
 
-/// How emissive surfaces and the environment answer to the light letters of camera-first expressions.
+/// Which light letters match emissive surfaces and the environment in camera-first expressions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EmitterAs {
-    /// Surfaces are both `L` and `O`, the environment both `L` and `B`: `C<RD>L` is all direct light. A sum over `L` and
-    /// `O` counts them twice.
+    /// Surfaces are both `L` and `O`, the environment both `L` and `B`: `C<RD>L` is all direct light. The sum of `L`
+    /// and `O` counts surfaces twice.
     #[default]
     Both,
-    /// Every light is `L` only.
+    /// Every light is only `L`.
     Light,
     /// As in Open Shading Language: surfaces are `O`, the environment is `B`, punctual lights are `L`.
     Object,
 }
 
-/// A light path expression that has been understood.
+/// A parsed light path expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     text: String,
@@ -62,22 +63,22 @@ pub struct Expression {
 
 impl Expression {
     /// # Errors
-    /// What is no expression: with the column where it ceases to be one, what stands there, and what could.
+    /// A syntax error, with its column, the character found there, and the characters allowed there.
     pub fn parse(text: &str) -> Result<Self> {
         let built_in = BUILT_IN.iter().find(|(name, _)| *name == text);
         let tree = parse::parse(built_in.map_or(text, |(_, meaning)| meaning))?;
         Ok(Self { text: text.to_string(), tree })
     }
 
-    /// The text it was made from.
+    /// The text of the expression.
     pub fn text(&self) -> &str {
         &self.text
     }
 }
 
-/// Names that stand for expressions, after Arnold's built-in ones. Here "direct" is light from any source, the environment
-/// and emissive surfaces included, "specular" both glossy and mirror reflection, and under every [`EmitterAs`]
-/// `emission`, `background`, and direct and indirect light of each kind add up to the whole.
+/// Names of expressions, after Arnold's built-in ones. "direct" is light from any source, including the environment and
+/// emissive surfaces; "specular" is glossy and mirror reflection. With every [`EmitterAs`], `emission`, `background`,
+/// and the direct and indirect light of each kind add up to the whole image.
 pub const BUILT_IN: &[(&str, &str)] = &[
     ("RGBA", "C.*"),
     ("beauty", "C.*"),

@@ -1,11 +1,11 @@
-//! From the text of an expression to a tree of events, camera first whatever the order of the text.
+//! Parses the text of an expression into a tree of events, camera first for either order of the text.
 
 use crate::error::{Error, Result};
 
-/// Longest text and deepest nesting that are read, and the most often a part can be repeated by number.
-const MOST_CHARACTERS: usize = 2048;
-const DEEPEST: usize = 32;
-const MOST_REPEATS: u32 = 64;
+/// Longest text, deepest nesting, and largest number of repetitions in braces. [convention]
+const MAX_CHARACTERS: usize = 2048;
+const MAX_DEPTH: usize = 32;
+const MAX_REPEATS: u32 = 64;
 
 /// Bits of an event's type.
 pub mod kind {
@@ -27,7 +27,7 @@ pub mod mode {
     pub const STRAIGHT: u8 = 8;
 }
 
-/// What happens to a path. One event can be of two types or modes: a lamp that is both `L` and `O`.
+/// An event of a path. It can have several types or modes, such as a lamp that is both `L` and `O`.
 #[derive(Clone, Debug)]
 pub struct Event {
     pub kinds: u8,
@@ -40,11 +40,11 @@ pub enum Node {
     Event(EventSet),
     Sequence(Vec<Node>),
     Either(Vec<Node>),
-    /// At least and at most so many times.
+    /// Smallest and largest number of repetitions.
     Repeat(Box<Node>, u32, Option<u32>),
 }
 
-/// Events that fit one of the patterns, or none of them.
+/// Events that match one of the patterns, or, if negated, none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventSet {
     pub patterns: Vec<Pattern>,
@@ -59,14 +59,14 @@ pub struct Pattern {
     labels: Vec<Labels>,
 }
 
-/// Some of a set of bits, or none of them.
+/// Any bit of a set, or, if negated, none of the bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bits {
     bits: u8,
     negated: bool,
 }
 
-/// Some of a set of labels, or none of them.
+/// Any label of a set, or, if negated, none of the labels.
 #[derive(Clone, Debug, PartialEq)]
 struct Labels {
     names: Vec<String>,
@@ -101,7 +101,7 @@ impl EventSet {
 }
 
 impl Node {
-    /// Calls `see` for every label, and whether an event must bear it.
+    /// Calls `see` for every label with whether an event must have it.
     pub fn labels(&self, see: &mut impl FnMut(&str, bool)) {
         match self {
             Node::Event(set) => {
@@ -127,12 +127,12 @@ impl Node {
     }
 }
 
-/// Reads an expression in either order.
+/// Parses an expression in either order.
 pub fn parse(text: &str) -> Result<Node> {
     let characters: Vec<char> = text.chars().collect();
-    if characters.len() > MOST_CHARACTERS {
+    if characters.len() > MAX_CHARACTERS {
         return Err(Error::argument(format!(
-            "the expression has {} characters; at most {MOST_CHARACTERS} are read",
+            "the expression has {} characters; at most {MAX_CHARACTERS} are read",
             characters.len()
         )));
     }
@@ -161,7 +161,7 @@ impl Parser<'_> {
         Error::argument(format!("expression {:?}, column {}: {what}", self.text, at + 1))
     }
 
-    /// At the next character that is no space.
+    /// An error at the next character that is not a space.
     fn unexpected(&mut self, expected: &str) -> Error {
         let found = self.peek().map_or("the end".to_string(), |c| format!("{c:?}"));
         self.error(self.at, &format!("found {found}; expected {expected}"))
@@ -180,7 +180,7 @@ impl Parser<'_> {
         found
     }
 
-    /// The eye's letter tells the order: `C` camera first, `E` light first.
+    /// Detects the order: `C` means camera first, `E` means light first.
     fn find_order(&mut self) -> Result<()> {
         let mut quoted = false;
         let mut seen = [None; 2];
@@ -198,7 +198,7 @@ impl Parser<'_> {
                 "C and E in one expression; use C for camera-first or E for light-first order",
             )),
             [None, None] => {
-                // What is no expression in either order shows before the missing eye does.
+                // Report syntax errors in either order before the missing camera or eye.
                 self.either()?;
                 self.unexpected_unless_end()?;
                 let end = self.characters.len();
@@ -218,8 +218,8 @@ impl Parser<'_> {
 
     fn either(&mut self) -> Result<Node> {
         self.depth += 1;
-        if self.depth > DEEPEST {
-            return Err(self.error(self.at, &format!("parentheses nest deeper than {DEEPEST}")));
+        if self.depth > MAX_DEPTH {
+            return Err(self.error(self.at, &format!("parentheses nest deeper than {MAX_DEPTH}")));
         }
         let mut nodes = vec![self.sequence()?];
         while self.next_if('|') {
@@ -239,7 +239,7 @@ impl Parser<'_> {
 
     fn repeated(&mut self) -> Result<Node> {
         let node = self.atom()?;
-        let (least, most) = match self.peek() {
+        let (min, max) = match self.peek() {
             Some('*') => (0, None),
             Some('+') => (1, None),
             Some('?') => (0, Some(1)),
@@ -251,25 +251,25 @@ impl Parser<'_> {
             _ => return Ok(node),
         };
         self.at += 1;
-        Ok(Node::Repeat(node.into(), least, most))
+        Ok(Node::Repeat(node.into(), min, max))
     }
 
-    /// `n}`, `n,}` or `n,m}`.
+    /// Parses `n}`, `n,}` or `n,m}`.
     fn counts(&mut self) -> Result<(u32, Option<u32>)> {
         let start = self.at;
-        let least = self.number()?;
-        let most = match self.next_if(',') {
-            false => Some(least),
+        let min = self.number()?;
+        let max = match self.next_if(',') {
+            false => Some(min),
             true if self.peek() == Some('}') => None,
             true => Some(self.number()?),
         };
         if !self.next_if('}') {
             return Err(self.unexpected("'}'"));
         }
-        if most.is_some_and(|m| m < least.max(1)) {
+        if max.is_some_and(|m| m < min.max(1)) {
             return Err(self.error(start, "a repetition must allow at least one, and its second number not be smaller"));
         }
-        Ok((least, most))
+        Ok((min, max))
     }
 
     fn number(&mut self) -> Result<u32> {
@@ -282,8 +282,8 @@ impl Parser<'_> {
         if digits.is_empty() {
             return Err(self.unexpected("a number"));
         }
-        digits.parse().ok().filter(|&n| n <= MOST_REPEATS).ok_or_else(|| {
-            self.error(start, &format!("found {digits}; expected a number of at most {MOST_REPEATS} repetitions"))
+        digits.parse().ok().filter(|&n| n <= MAX_REPEATS).ok_or_else(|| {
+            self.error(start, &format!("found {digits}; expected a number of at most {MAX_REPEATS} repetitions"))
         })
     }
 
@@ -304,7 +304,7 @@ impl Parser<'_> {
         Ok(Node::Event(EventSet { patterns: vec![pattern], negated: false }))
     }
 
-    /// A letter, a label, or `<...>`.
+    /// Parses a letter, a label, or `<...>`.
     fn event(&mut self, expected: &str) -> Result<Pattern> {
         if self.next_if('<') {
             return self.pattern();
@@ -334,7 +334,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What follows `<`.
+    /// Parses the remainder of `<...>`.
     fn pattern(&mut self) -> Result<Pattern> {
         let start = self.at;
         let kinds = self.part("a type: R T V L O B, '.', or a set of them", Self::kind_bits)?;
@@ -368,7 +368,7 @@ impl Parser<'_> {
         Ok(Pattern { kinds, modes, labels })
     }
 
-    /// A letter, `.`, or a set of letters.
+    /// Parses a letter, `.`, or a set of letters.
     fn part(&mut self, expected: &str, bits: impl Fn(&Self, char) -> Option<u8>) -> Result<Bits> {
         if self.next_if('.') {
             return Ok(Bits::ANY);

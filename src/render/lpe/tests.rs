@@ -1,8 +1,8 @@
-//! Expressions against paths written out, and what is no expression.
+//! Expressions against written-out paths, and invalid expressions.
 
 use super::alphabet::Scatter;
 use super::automaton::DEAD;
-use super::{BUILT_IN, EmitterAs, Expression, Table};
+use super::{Automaton, BUILT_IN, EmitterAs, Expression};
 use crate::error::{Error, ErrorKind};
 use crate::render::LightSource;
 use crate::scene::{Material, Mesh, PunctualLight, Scene};
@@ -21,22 +21,22 @@ fn scene() -> Scene {
     }
 }
 
-fn table(expressions: &[&str], emitter_as: EmitterAs) -> Table {
+fn automaton(expressions: &[&str], emitter_as: EmitterAs) -> Automaton {
     let parsed: Vec<Expression> = expressions.iter().map(|e| Expression::parse(e).unwrap()).collect();
-    Table::new(&scene(), &parsed.iter().collect::<Vec<_>>(), emitter_as).unwrap()
+    Automaton::new(&scene(), &parsed.iter().collect::<Vec<_>>(), emitter_as).unwrap()
 }
 
-/// The expressions that accept a path, camera first, as `D G@Ball S T L`: modes, `T` for a pane, and at its end `L` a
-/// lamp, `P` or `Q` one of two punctual lights, `B` the environment. Objects are the floor, the ball for `S`, the window
-/// for `T`, unless named.
-fn accepted(table: &Table, path: &str) -> Vec<u16> {
-    let mut state = table.start();
+/// The expressions that accept a path, written camera first as `D G@Ball S T L`: modes, `T` for a pane, and at the end
+/// `L` for a lamp, `P` or `Q` for one of two punctual lights, `B` for the environment. The objects are the floor, the
+/// ball for `S`, and the window for `T`, unless named.
+fn accepted(automaton: &Automaton, path: &str) -> Vec<u16> {
+    let mut state = automaton.start();
     for event in path.split_whitespace() {
         let (letter, object) = event.split_once('@').unwrap_or((event, ""));
         let mesh = |default: u32| MESHES.iter().position(|m| m.0 == object).map_or(default, |i| i as u32);
         let lamp = |mesh| LightSource::Surface { mesh, triangle: 0, uv: Vec2::ZERO };
-        let go = |mesh, scatter| table.next(state, table.class(mesh))[scatter as usize];
-        let end = |source| table.lists()[usize::from(table.accepting(state, table.light(source)))].clone();
+        let go = |mesh, scatter| automaton.next(state, automaton.class(mesh))[scatter as usize];
+        let end = |source| automaton.lists()[usize::from(automaton.accepting(state, automaton.light(source)))].clone();
         state = match letter {
             "D" => go(mesh(0), Scatter::Diffuse),
             "G" => go(mesh(0), Scatter::Glossy),
@@ -52,7 +52,7 @@ fn accepted(table: &Table, path: &str) -> Vec<u16> {
     panic!("{path} does not end at a light");
 }
 
-/// An expression, the paths it accepts, and some that it does not.
+/// An expression, paths that it accepts, and paths that it rejects.
 type Row = (&'static str, &'static [&'static str], &'static [&'static str]);
 
 const LIGHT_FIRST: &[Row] = &[
@@ -121,10 +121,10 @@ const CAMERA_FIRST: &[Row] = &[
 fn expressions_accept_the_paths_they_say_and_no_others() {
     let mut rows = 0;
     for &(expression, yes, no) in LIGHT_FIRST.iter().chain(CAMERA_FIRST) {
-        let table = table(&[expression], EmitterAs::Both);
+        let automaton = automaton(&[expression], EmitterAs::Both);
         for (paths, expected) in [(yes, vec![0]), (no, vec![])] {
             for path in paths {
-                assert_eq!(accepted(&table, path), expected, "{expression} and {path}");
+                assert_eq!(accepted(&automaton, path), expected, "{expression} and {path}");
                 rows += 1;
             }
         }
@@ -136,14 +136,14 @@ fn expressions_accept_the_paths_they_say_and_no_others() {
 fn all_expressions_together_accept_what_each_accepts_alone() {
     let rows: Vec<&Row> = LIGHT_FIRST.iter().chain(CAMERA_FIRST).collect();
     let expressions: Vec<&str> = rows.iter().map(|r| r.0).collect();
-    let together = table(&expressions, EmitterAs::Both);
+    let together = automaton(&expressions, EmitterAs::Both);
     for (number, (expression, yes, no)) in rows.iter().enumerate() {
         let number = number as u16;
         assert!(yes.iter().all(|p| accepted(&together, p).contains(&number)), "{expression}");
         assert!(!no.iter().any(|p| accepted(&together, p).contains(&number)), "{expression}");
     }
-    // The paper's five need few states, so paths have few parts.
-    let five = table(&["L.*E", "LDE", "LSE", "L.*DDE", "LD{1,2}E"], EmitterAs::Both);
+    // The paper's five expressions need few states, so that paths have few components.
+    let five = automaton(&["L.*E", "LDE", "LSE", "L.*DDE", "LD{1,2}E"], EmitterAs::Both);
     assert!(five.states() <= 8, "{} states", five.states());
 }
 
@@ -155,10 +155,10 @@ fn emitters_are_the_letters_they_are_asked_to_be() {
         (EmitterAs::Light, vec![0], vec![0]),
         (EmitterAs::Object, vec![1], vec![2]),
     ] {
-        let table = table(&expressions, emitter_as);
-        assert_eq!(accepted(&table, "D L"), lamp, "{emitter_as:?}");
-        assert_eq!(accepted(&table, "D B"), sky, "{emitter_as:?}");
-        assert_eq!(accepted(&table, "D P"), [0], "{emitter_as:?}");
+        let automaton = automaton(&expressions, emitter_as);
+        assert_eq!(accepted(&automaton, "D L"), lamp, "{emitter_as:?}");
+        assert_eq!(accepted(&automaton, "D B"), sky, "{emitter_as:?}");
+        assert_eq!(accepted(&automaton, "D P"), [0], "{emitter_as:?}");
     }
 }
 
@@ -180,11 +180,11 @@ fn built_in_kinds_of_light_add_up_to_the_whole() {
     ];
     for emitter_as in [EmitterAs::Both, EmitterAs::Light, EmitterAs::Object] {
         for parts in parts {
-            let table = table(parts, emitter_as);
+            let automaton = automaton(parts, emitter_as);
             for path in paths {
-                // A punctual light cannot be seen.
+                // A punctual light is invisible.
                 if path != "P" {
-                    assert_eq!(accepted(&table, path).len(), 1, "{path}, {emitter_as:?}");
+                    assert_eq!(accepted(&automaton, path).len(), 1, "{path}, {emitter_as:?}");
                 }
             }
         }
@@ -196,11 +196,11 @@ fn built_in_kinds_of_light_add_up_to_the_whole() {
 
 #[test]
 fn what_leads_nowhere_is_dropped_at_once() {
-    let table = table(&["LDE", "LSE"], EmitterAs::Both);
-    let class = table.class(0);
-    let [diffuse, ..] = *table.next(table.start(), class);
+    let automaton = automaton(&["LDE", "LSE"], EmitterAs::Both);
+    let class = automaton.class(0);
+    let [diffuse, ..] = *automaton.next(automaton.start(), class);
     assert_ne!(diffuse, DEAD);
-    assert_eq!(table.next(diffuse, class)[Scatter::Diffuse as usize], DEAD);
+    assert_eq!(automaton.next(diffuse, class)[Scatter::Diffuse as usize], DEAD);
 }
 
 #[test]
@@ -249,13 +249,13 @@ fn what_is_no_expression_is_refused_where_it_ceases_to_be_one() {
 
 fn refused(text: &str) -> Error {
     let expression = Expression::parse(text).unwrap();
-    Table::new(&scene(), &[&expression], EmitterAs::Both).err().unwrap()
+    Automaton::new(&scene(), &[&expression], EmitterAs::Both).err().unwrap()
 }
 
 #[test]
 fn what_needs_too_many_states_is_refused() {
-    // The last 12 of any number of scatterings have to be kept in mind: 2^12 ways and more.
-    table(&["C.*D.{8}L"], EmitterAs::Both);
+    // The automaton must remember the last 12 of any number of scatterings, in at least 2^12 states.
+    automaton(&["C.*D.{8}L"], EmitterAs::Both);
     for text in ["C.*D.{12}L", "L(DD|....+.(DD|....+...S?){8}E?){6}E"] {
         let error = refused(text);
         assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("4096 states"), "{text}: {error}");
@@ -270,7 +270,7 @@ fn what_no_path_can_match_is_refused_with_the_scene() {
     let error = refused("C<RD'Flor'>L");
     assert_eq!(error.kind, ErrorKind::NotFound);
     assert!(error.message.contains("'Flor'") && error.message.contains("'Floor'"), "{}", error.message);
-    // Exponentially many states, and more places than anyone writes by hand.
+    // Exponentially many states, and more NFA states than anyone writes by hand.
     let states = format!("C.*D{}L", ".".repeat(20));
     assert!(refused(&states).message.contains("states"));
     assert!(refused("C((D{64}G){64}S){64}L").message.contains("states"));

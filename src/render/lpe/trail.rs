@@ -1,276 +1,285 @@
-//! What a path carries through the automaton: parts, each a state and its share of whatever the path brings.
+//! The states of a path in the automaton: components, each a state with its share of the path's light.
 //!
-//! Where a surface has a diffuse and a glossy layer, one sample stands for both (Veach 1997, 9.2.4: the sampled direction
-//! is weighed by the sum of the layers), so a part goes on as two whose shares are those of the layers in that sum, channel
-//! by channel. Parts of equal state are one again: there are never more of them than states, and nothing has to be cut
-//! off. Parts that no expression can accept any more are dropped, and a path whose parts have all come to states that
-//! nothing leaves carries them on for free.
+//! A sample of a surface with a diffuse and a glossy layer stands for both layers (Veach 1997, 9.2.4: it is weighed by
+//! the sum of the layers). A component therefore splits in two, in proportion to the layers' values, channel by
+//! channel. Components of equal state are merged: there are never more components than states, and no truncation is
+//! needed. Components in the dead state are dropped. Once all components are in absorbing states, further scattering
+//! costs nothing.
 //!
-//! A path that several others will go on along is followed once, from each of the states in which they may come to it.
+//! A subpath that several paths replay is tracked once, from each state in which they may join it.
 
 use super::alphabet::Scatter;
-use super::automaton::{DEAD, Table};
-use super::ledger::Ledger;
-use crate::render::LightSource;
-use crate::render::bsdf::{Kind, Lobes};
-use crate::render::path::Found;
+use super::automaton::{Automaton, DEAD};
+use super::sparse_sums::SparseSums;
+use crate::render::bsdf::{Lobes, ScatterKind};
+use crate::render::contribution::LightSource;
+use crate::render::path::Strategy;
 use crate::render::world::{Pane, World};
 use glam::{Vec3, Vec3A};
 
-/// A share of a path, and the state that it is in.
+/// A state with its share of the path.
 #[derive(Clone, Copy)]
-struct Part {
-    /// Where what it brings stands in the ledger: for each state in which the path may have begun, one sum for each list
-    /// of expressions.
-    place: u32,
+struct Component {
+    /// Offset of its sums: for each initial state of the path, there is one sum per list of expressions.
+    offset: u32,
     state: u16,
     share: Vec3A,
 }
 
-/// What is for a list of expressions when a path has begun in a state.
-pub struct Brought {
+/// Light of a recorded subpath for one initial state and one list of expressions.
+pub struct PathOutcome {
     origin: u16,
     list: u16,
     light: Vec3A,
 }
 
 pub struct Trail<'a> {
-    table: &'a Table,
-    parts: Vec<Part>,
-    /// Whether no scattering changes any of the parts.
-    settled: bool,
-    /// The parts before a step, and those at a light.
-    before: Vec<Part>,
-    ends: Vec<Part>,
-    /// What stands between a vertex and the light chosen for it.
+    automaton: &'a Automaton,
+    components: Vec<Component>,
+    /// Whether all components are in absorbing states.
+    absorbing: bool,
+    /// Scratch memory: the components before an event, and those at a light.
+    before: Vec<Component>,
+    ends: Vec<Component>,
+    /// The panes between a vertex and its light sample.
     panes: Vec<Pane>,
-    /// What the path has brought so far.
-    brought: Ledger,
-    /// What it has brought since it settled, by lights of this number: its parts share in it alike, in the end.
+    /// Light of the path so far, by initial state and list.
+    sums: SparseSums,
+    /// Light since all states became absorbing, from the light event `rest_light`; it is distributed to the components
+    /// later.
     rest: Vec3A,
     rest_light: usize,
 }
 
 impl<'a> Trail<'a> {
-    pub fn new(table: &'a Table) -> Self {
-        let [parts, before, ends] = [const { Vec::new() }; 3];
-        let (panes, brought) = (Vec::new(), Ledger::default());
-        Self { table, parts, settled: false, before, ends, panes, brought, rest: Vec3A::ZERO, rest_light: 0 }
+    pub fn new(automaton: &'a Automaton) -> Self {
+        let [components, before, ends] = [const { Vec::new() }; 3];
+        let (panes, sums) = (Vec::new(), SparseSums::default());
+        Self { automaton, components, absorbing: false, before, ends, panes, sums, rest: Vec3A::ZERO, rest_light: 0 }
     }
 
-    /// A new path leaves the camera.
+    /// Begins a path at the camera.
     #[inline]
     pub fn start(&mut self) {
-        self.start_from(&[self.table.start()]);
+        self.start_from(&[self.automaton.start()]);
     }
 
-    /// A path begins of which nobody knows yet in which of some states: it is followed from each.
+    /// Begins a subpath, tracked from each of several initial states.
     #[inline]
     pub fn start_from(&mut self, origins: &[u16]) {
-        self.brought.begin(origins.len() * self.table.lists().len());
+        self.sums.begin(origins.len() * self.automaton.lists().len());
         self.rest = Vec3A::ZERO;
         self.set_out(origins);
     }
 
-    /// The path leaves the camera once more, on another way. What it has brought stays.
+    /// Returns to the camera, to leave it along another path. The sums are kept.
     #[inline]
     pub fn restart(&mut self) {
-        self.share_rest();
-        self.set_out(&[self.table.start()]);
+        self.flush_rest();
+        self.set_out(&[self.automaton.start()]);
     }
 
     #[inline(always)]
     fn set_out(&mut self, origins: &[u16]) {
-        let lists = self.table.lists().len() as u32;
-        let part = |(i, &state): (usize, &u16)| Part { place: i as u32 * lists, state, share: Vec3A::ONE };
-        self.parts.clear();
-        self.parts.extend(origins.iter().enumerate().map(part));
-        self.settled = origins.iter().all(|&state| self.table.is_settled(state));
+        let lists = self.automaton.lists().len() as u32;
+        let component = |(i, &state): (usize, &u16)| Component { offset: i as u32 * lists, state, share: Vec3A::ONE };
+        self.components.clear();
+        self.components.extend(origins.iter().enumerate().map(component));
+        self.absorbing = origins.iter().all(|&state| self.automaton.is_absorbing(state));
     }
 
-    /// The path goes on as one that was followed from every state that it can be in.
-    pub fn follow(&mut self, outcome: &[Brought], importance: Vec3A) {
-        for part in &self.parts {
-            receive(&mut self.brought, part.state, part.share * importance, outcome);
+    /// Continues along a recorded subpath.
+    pub fn follow(&mut self, outcome: &[PathOutcome], importance: Vec3A) {
+        for component in &self.components {
+            replay_outcome(&mut self.sums, component.state, component.share * importance, outcome);
         }
     }
 
-    /// The same of a path that leaves the camera once more and goes on from its first surface, of a mesh.
+    /// Returns to the camera, scatters at the primary vertex on a mesh, and continues along a recorded subpath.
     #[inline]
-    pub fn follow_from(&mut self, mesh: u32, lobes: Lobes, outcome: &[Brought], importance: Vec3A) {
-        let [diffuse, glossy, ..] = *self.table.next(self.table.start(), self.table.class(mesh));
+    pub fn follow_from(&mut self, mesh: u32, lobes: Lobes, outcome: &[PathOutcome], importance: Vec3A) {
+        let [diffuse, glossy, ..] = *self.automaton.next(self.automaton.start(), self.automaton.class(mesh));
         match only_layer(lobes) {
-            Some(Scatter::Diffuse) => receive(&mut self.brought, diffuse, importance, outcome),
-            Some(_) => receive(&mut self.brought, glossy, importance, outcome),
+            Some(Scatter::Diffuse) => replay_outcome(&mut self.sums, diffuse, importance, outcome),
+            Some(_) => replay_outcome(&mut self.sums, glossy, importance, outcome),
             None => {
-                let share = diffuse_share(lobes);
-                receive(&mut self.brought, diffuse, share * importance, outcome);
-                receive(&mut self.brought, glossy, (Vec3A::ONE - share) * importance, outcome);
+                let share = diffuse_fraction(lobes);
+                replay_outcome(&mut self.sums, diffuse, share * importance, outcome);
+                replay_outcome(&mut self.sums, glossy, (Vec3A::ONE - share) * importance, outcome);
             }
         }
     }
 
-    /// Says which panes stand between a vertex and the light chosen for it, if they matter.
+    /// Sets the panes between a vertex and its light sample, if any state depends on them.
     pub fn set_panes(&mut self, panes: &[Pane]) {
-        if !self.settled && !(panes.is_empty() && self.panes.is_empty()) {
+        if !self.absorbing && !(panes.is_empty() && self.panes.is_empty()) {
             self.panes.clear();
             self.panes.extend_from_slice(panes);
         }
     }
 
-    /// A place for the panes between a vertex and a light, if they matter.
+    /// A list for the panes between a vertex and its light sample, if any state depends on them.
     #[inline]
-    pub fn wants_panes(&mut self) -> Option<&mut Vec<Pane>> {
-        if self.settled { None } else { Some(&mut self.panes) }
+    pub fn panes_wanted(&mut self) -> Option<&mut Vec<Pane>> {
+        if self.absorbing { None } else { Some(&mut self.panes) }
     }
 
     #[inline(always)]
-    pub fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
-        if self.settled {
+    pub fn scatter(&mut self, mesh: u32, kind: ScatterKind, lobes: Lobes) {
+        if self.absorbing {
             return;
         }
         let way = match kind {
-            Kind::Spread(_) => only_layer(lobes),
-            Kind::Mirrored => Some(Scatter::Mirror),
-            Kind::Through => Some(Scatter::Pane),
+            ScatterKind::NonSpecular(_) => only_layer(lobes),
+            ScatterKind::Mirror => Some(Scatter::Mirror),
+            ScatterKind::Pane => Some(Scatter::Pane),
         };
-        match (way, &mut self.parts[..]) {
-            // Most paths are still whole.
-            (Some(way), [part]) => {
-                part.state = self.table.next(part.state, self.table.class(mesh))[way as usize];
-                self.settled = self.table.is_settled(part.state);
+        match (way, &mut self.components[..]) {
+            // Most paths have a single component.
+            (Some(way), [component]) => {
+                component.state = self.automaton.next(component.state, self.automaton.class(mesh))[way as usize];
+                self.absorbing = self.automaton.is_absorbing(component.state);
             }
             _ => self.divide(mesh, way, lobes),
         }
     }
 
-    /// The same for a path of several parts, or one that goes on in several ways.
+    /// Handles several components, and scattering that splits a component.
     #[inline(never)]
     fn divide(&mut self, mesh: u32, way: Option<Scatter>, lobes: Lobes) {
-        let Self { table, parts, before, .. } = self;
-        std::mem::swap(parts, before);
-        go_on(table, table.class(mesh), way, lobes, before, parts);
-        self.settled = parts.iter().all(|part| table.is_settled(part.state));
+        let Self { automaton, components, before, .. } = self;
+        std::mem::swap(components, before);
+        advance(automaton, automaton.class(mesh), way, lobes, before, components);
+        self.absorbing = components.iter().all(|component| automaton.is_absorbing(component.state));
     }
 
-    /// The path, or a connection of it, has come to a light, and brings a contribution: each part of it is for the
-    /// expressions of a list.
+    /// Adds the contribution of a light that the path or a connection has reached, by the list of each component.
     #[inline(always)]
-    pub fn add(&mut self, world: &World, contribution: Vec3A, source: LightSource, found: Found) {
-        let light = self.table.light(source);
-        if self.settled {
+    pub fn add(&mut self, world: &World, contribution: Vec3A, source: LightSource, strategy: Strategy) {
+        let light = self.automaton.light(source);
+        if self.absorbing {
             if light != self.rest_light {
-                self.share_rest();
+                self.flush_rest();
                 self.rest_light = light;
             }
             self.rest += contribution;
             return;
         }
-        match found {
-            Found::Met => self.share(light, contribution),
-            Found::Chosen { mesh, lobes } if self.panes.is_empty() => self.connect(light, contribution, mesh, lobes),
-            Found::Chosen { mesh, lobes } => self.connect_through_panes(world, light, contribution, mesh, lobes),
+        match strategy {
+            Strategy::BsdfSample => self.add_to_components(light, contribution),
+            Strategy::LightSample { mesh, lobes } if self.panes.is_empty() => {
+                self.connect(light, contribution, mesh, lobes)
+            }
+            Strategy::LightSample { mesh, lobes } => {
+                self.connect_through_panes(world, light, contribution, mesh, lobes)
+            }
         }
     }
 
-    /// A contribution of which each part has its share.
+    /// Distributes a contribution to all components.
     #[inline(never)]
-    fn share(&mut self, light: usize, contribution: Vec3A) {
-        let Self { table, parts, brought, .. } = self;
-        for &Part { place, state, share } in parts.iter() {
-            bring(brought, place, table.accepting(state, light), share * contribution);
+    fn add_to_components(&mut self, light: usize, contribution: Vec3A) {
+        let Self { automaton, components, sums, .. } = self;
+        for &Component { offset, state, share } in components.iter() {
+            add_to_list(sums, offset, automaton.accepting(state, light), share * contribution);
         }
     }
 
-    /// A connection of a vertex to a light.
+    /// Adds a light sample at a vertex.
     #[inline(never)]
     fn connect(&mut self, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
-        let Self { table, parts, brought, .. } = self;
-        let class = table.class(mesh);
+        let Self { automaton, components, sums, .. } = self;
+        let class = automaton.class(mesh);
         if let Some(scatter) = only_layer(lobes) {
-            for &Part { place, state, share } in parts.iter() {
-                let end = table.next(state, class)[scatter as usize];
-                bring(brought, place, table.accepting(end, light), share * contribution);
+            for &Component { offset, state, share } in components.iter() {
+                let end = automaton.next(state, class)[scatter as usize];
+                add_to_list(sums, offset, automaton.accepting(end, light), share * contribution);
             }
             return;
         }
-        let diffuse = diffuse_share(lobes) * contribution;
+        let diffuse = diffuse_fraction(lobes) * contribution;
         let glossy = contribution - diffuse;
-        for &Part { place, state, share } in parts.iter() {
-            let [one, other, ..] = *table.next(state, class);
-            let (one, other) = (table.accepting(one, light), table.accepting(other, light));
+        for &Component { offset, state, share } in components.iter() {
+            let [one, other, ..] = *automaton.next(state, class);
+            let (one, other) = (automaton.accepting(one, light), automaton.accepting(other, light));
             if one == other {
-                bring(brought, place, one, share * contribution);
+                add_to_list(sums, offset, one, share * contribution);
             } else {
-                bring(brought, place, one, share * diffuse);
-                bring(brought, place, other, share * glossy);
+                add_to_list(sums, offset, one, share * diffuse);
+                add_to_list(sums, offset, other, share * glossy);
             }
         }
     }
 
-    /// A connection of a vertex to a light behind panes, each of which splits it.
+    /// Adds a light sample at a vertex behind panes; each pane splits the components.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
-        let Self { table, parts, before, ends, panes, brought, .. } = self;
-        go_on(table, table.class(mesh), only_layer(lobes), lobes, parts, ends);
-        // In the order in which light from the vertex would meet them.
+        let Self { automaton, components, before, ends, panes, sums, .. } = self;
+        advance(automaton, automaton.class(mesh), only_layer(lobes), lobes, components, ends);
+        // Sort the panes by distance from the vertex.
         panes.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         for pane in panes.iter() {
             let (mesh, _) = world.locate(pane.triangle);
-            let class = table.class(mesh);
-            let through = share_of(pane.through, Vec3::splat(pane.beside) + pane.through);
+            let class = automaton.class(mesh);
+            let through = fraction(pane.through, Vec3::splat(pane.beside) + pane.through);
             std::mem::swap(ends, before);
             ends.clear();
-            for part in before.iter() {
-                go_two_ways(ends, part, table.next(part.state, class)[Scatter::Pane as usize], part.state, through);
+            for component in before.iter() {
+                split_component(
+                    ends,
+                    component,
+                    automaton.next(component.state, class)[Scatter::Pane as usize],
+                    component.state,
+                    through,
+                );
             }
         }
-        for &Part { place, state, share } in ends.iter() {
-            bring(brought, place, table.accepting(state, light), share * contribution);
+        for &Component { offset, state, share } in ends.iter() {
+            add_to_list(sums, offset, automaton.accepting(state, light), share * contribution);
         }
     }
 
-    fn share_rest(&mut self) {
+    fn flush_rest(&mut self) {
         let rest = std::mem::replace(&mut self.rest, Vec3A::ZERO);
         if rest != Vec3A::ZERO {
-            self.share(self.rest_light, rest);
+            self.add_to_components(self.rest_light, rest);
         }
     }
 
-    /// Ends the path: gives what it has brought for each list of expressions.
+    /// Ends the path: passes the light of each list of expressions to `take`.
     #[inline]
-    pub fn finish(&mut self, take: impl FnMut(usize, Vec3A)) {
-        self.share_rest();
-        self.brought.drain(take);
+    pub fn end(&mut self, take: impl FnMut(usize, Vec3A)) {
+        self.flush_rest();
+        self.sums.drain(take);
     }
 
-    /// The same for one that may have begun in any of some states.
-    pub fn finish_from(&mut self, origins: &[u16], outcome: &mut Vec<Brought>) {
-        let lists = self.table.lists().len();
+    /// Ends a subpath: stores its light by initial state and list.
+    pub fn end_from(&mut self, origins: &[u16], outcome: &mut Vec<PathOutcome>) {
+        let lists = self.automaton.lists().len();
         outcome.clear();
-        self.finish(|number, light| {
-            outcome.push(Brought { origin: origins[number / lists], list: (number % lists) as u16, light });
+        self.end(|number, light| {
+            outcome.push(PathOutcome { origin: origins[number / lists], list: (number % lists) as u16, light });
         });
     }
 }
 
-/// Notes a contribution of a part for a list of expressions.
+/// Adds a contribution to the sum of a list, for one initial state.
 #[inline(always)]
-fn bring(brought: &mut Ledger, place: u32, list: u16, light: Vec3A) {
+fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     if list != 0 {
-        brought.add(place as usize + usize::from(list), light);
+        sums.add(offset as usize + usize::from(list), light);
     }
 }
 
-/// Notes what came of a path for one of its viewers, who was in a state.
+/// Adds the light of a recorded subpath that a component joins in `state`.
 #[inline(always)]
-fn receive(brought: &mut Ledger, state: u16, importance: Vec3A, outcome: &[Brought]) {
-    for Brought { list, light, .. } in outcome.iter().filter(|b| b.origin == state) {
-        brought.add(usize::from(*list), importance * *light);
+fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome: &[PathOutcome]) {
+    for PathOutcome { list, light, .. } in outcome.iter().filter(|b| b.origin == state) {
+        sums.add(usize::from(*list), importance * *light);
     }
 }
 
-/// The layer that sends all of it on, if one does.
+/// The only layer with a non-zero value, if there is just one.
 #[inline]
 fn only_layer(lobes: Lobes) -> Option<Scatter> {
     if lobes.glossy == Vec3::ZERO {
@@ -282,50 +291,59 @@ fn only_layer(lobes: Lobes) -> Option<Scatter> {
     }
 }
 
-/// All parts go on by one event, or by the layers of a surface.
-fn go_on(table: &Table, class: usize, scatter: Option<Scatter>, lobes: Lobes, from: &[Part], to: &mut Vec<Part>) {
+/// Advances all components by one event, or by the layers of a surface.
+fn advance(
+    automaton: &Automaton,
+    class: usize,
+    scatter: Option<Scatter>,
+    lobes: Lobes,
+    from: &[Component],
+    to: &mut Vec<Component>,
+) {
     to.clear();
     if let Some(scatter) = scatter {
-        return from.iter().for_each(|part| add(to, part, table.next(part.state, class)[scatter as usize], part.share));
+        return from.iter().for_each(|component| {
+            add(to, component, automaton.next(component.state, class)[scatter as usize], component.share)
+        });
     }
-    let diffuse = diffuse_share(lobes);
-    for part in from {
-        let [one, other, ..] = *table.next(part.state, class);
-        go_two_ways(to, part, one, other, diffuse);
+    let diffuse = diffuse_fraction(lobes);
+    for component in from {
+        let [one, other, ..] = *automaton.next(component.state, class);
+        split_component(to, component, one, other, diffuse);
     }
 }
 
-/// Of a part, the share `first` goes to one state and the rest to another.
+/// Splits a component: the share `first` goes to one state, the remainder to another.
 #[inline]
-fn go_two_ways(to: &mut Vec<Part>, part: &Part, one: u16, other: u16, first: Vec3A) {
+fn split_component(to: &mut Vec<Component>, component: &Component, one: u16, other: u16, first: Vec3A) {
     if one == other {
-        return add(to, part, one, part.share);
+        return add(to, component, one, component.share);
     }
-    let first = part.share * first;
-    add(to, part, one, first);
-    add(to, part, other, part.share - first);
+    let first = component.share * first;
+    add(to, component, one, first);
+    add(to, component, other, component.share - first);
 }
 
-/// Adds what a part comes to, to one of equal place and state if there is one.
+/// Adds a component, merged with one of equal offset and state.
 #[inline(always)]
-fn add(parts: &mut Vec<Part>, from: &Part, state: u16, share: Vec3A) {
+fn add(components: &mut Vec<Component>, from: &Component, state: u16, share: Vec3A) {
     if state == DEAD {
         return;
     }
-    match parts.iter_mut().find(|part| part.state == state && part.place == from.place) {
-        Some(part) => part.share += share,
-        None => parts.push(Part { state, share, ..*from }),
+    match components.iter_mut().find(|component| component.state == state && component.offset == from.offset) {
+        Some(component) => component.share += share,
+        None => components.push(Component { state, share, ..*from }),
     }
 }
 
 #[inline]
-fn diffuse_share(lobes: Lobes) -> Vec3A {
-    share_of(lobes.diffuse, lobes.sum())
+fn diffuse_fraction(lobes: Lobes) -> Vec3A {
+    fraction(lobes.diffuse, lobes.sum())
 }
 
-/// Channel by channel; none of nothing.
+/// Ratio per channel; 0 where the whole is 0.
 #[inline]
-fn share_of(part: Vec3, whole: Vec3) -> Vec3A {
-    let (part, whole) = (Vec3A::from(part), Vec3A::from(whole));
-    Vec3A::select(whole.cmpgt(Vec3A::ZERO), part / whole, Vec3A::ZERO)
+fn fraction(component: Vec3, whole: Vec3) -> Vec3A {
+    let (component, whole) = (Vec3A::from(component), Vec3A::from(whole));
+    Vec3A::select(whole.cmpgt(Vec3A::ZERO), component / whole, Vec3A::ZERO)
 }

@@ -1,12 +1,13 @@
-//! Whether parts cover an image: every path of every pixel in one of them, and in no other.
+//! Checks that parts cover an image: every path of every pixel must be in exactly one part.
 
-use super::{File, Part};
+use super::file::File;
+use super::part::Part;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
-use crate::render::Params;
+use crate::render::params::Params;
 
-/// The order in which parts are summed: by their first paths, then from the top down and from left to right.
+/// Checks the cover and returns the order of summation: by first path, then from top to bottom and from left to right.
 pub fn order(files: &[File], params: &Params, job: Job) -> Result<Vec<usize>> {
     check_overlaps(files, job)?;
     check_holes(files, params, job)?;
@@ -15,7 +16,7 @@ pub fn order(files: &[File], params: &Params, job: Job) -> Result<Vec<usize>> {
     Ok(order)
 }
 
-/// Looks at each pair whose rows overlap.
+/// Tests each pair of parts with overlapping rows.
 fn check_overlaps(files: &[File], job: Job) -> Result<()> {
     let mut by_row: Vec<&File> = files.iter().collect();
     by_row.sort_by_key(|f| f.part.y);
@@ -43,7 +44,7 @@ fn overlap(a: &Part, b: &Part) -> bool {
         && meet(paths(a).0, paths(a).1, paths(b).0, paths(b).1)
 }
 
-/// Counts the paths of each pixel: where parts do not overlap, those that are too few are missing.
+/// Counts the paths of each pixel: without overlaps, a pixel of too few paths has a hole.
 fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
     let (width, height) = (params.width, params.height);
     let mut counts = try_vec(width * height, 0u32)?;
@@ -54,7 +55,8 @@ fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
         }
     }
     let Some(hole) = counts.iter().position(|&count| count < params.samples) else { return Ok(()) };
-    // The first range of paths that the first of these pixels lacks, and how far its neighbours lack it too.
+    // Find the first missing range of paths at the first such pixel, and the rectangle around it that misses the same
+    // range.
     let (x, y) = (hole % width, hole / width);
     let missing_at = |at: [usize; 2]| {
         let mut ranges: Vec<(u32, u32)> =

@@ -1,15 +1,16 @@
-//! Parts as files (`image::numbers`): the sums, where they belong, and what render they are of.
+//! Files of parts (`image::numbers`): the sums, their place in the image, and the identity of the render.
 
-use super::{Identity, Part};
+use super::identity::Identity;
+use super::part::Part;
 use crate::error::{Error, Result};
 use crate::image::numbers::{self, Head};
 use crate::image::{Image, io};
-use crate::render::Params;
 use crate::render::film::Sums;
 use crate::render::layers::Layers;
+use crate::render::params::Params;
 use std::path::{Path, PathBuf};
 
-/// Begins the names of all texts in the header.
+/// Prefix of all attribute names in the header.
 const PREFIX: &str = "luxfer.part.";
 
 /// A file that holds a part.
@@ -22,7 +23,7 @@ pub struct File {
 }
 
 impl File {
-    /// Reads what part a file holds, not yet its sums.
+    /// Reads the header of a file, without the sums.
     pub fn open(path: &Path) -> Result<Self> {
         let head = numbers::read_head(path)?;
         let note = |name: &str| {
@@ -44,7 +45,7 @@ impl File {
         self.path.display()
     }
 
-    /// Checks that the part is of a render with this identity, and so many numbers for each pixel.
+    /// Checks that the part belongs to a render of this identity and has `numbers` sums per pixel.
     pub fn check(&self, identity: &Identity, numbers: usize, params: &Params) -> Result<()> {
         let differs = |what: &str, theirs: &str, ours: &str| {
             Err(Error::argument(format!(
@@ -69,7 +70,7 @@ impl File {
         self.part.check(params).map_err(|e| e.within(self.name()))
     }
 
-    /// Reads the sums of a part that has been checked.
+    /// Reads the sums of a checked part.
     pub fn read(&self, layers: Option<&Layers>) -> Result<Sums> {
         let mut sums = Sums::new(&self.part, layers)?;
         let Part { x, y, .. } = self.part;

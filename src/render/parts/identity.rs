@@ -1,7 +1,7 @@
-//! What all parts of one render have in common, as texts that files can hold and people can read.
+//! The identity of a render, which all its parts share, as readable texts for files.
 
-use crate::render::Params;
 use crate::render::lpe::EmitterAs;
+use crate::render::params::Params;
 use crate::scene::{Camera, Scene};
 
 pub struct Identity {
@@ -22,7 +22,7 @@ impl Identity {
             EmitterAs::Light => "light",
             EmitterAs::Object => "object",
         };
-        // Paths may differ from version to version.
+        // Include the version: it may change the paths.
         let texts = vec![
             ("version", env!("CARGO_PKG_VERSION").to_string()),
             ("scene", format!("{:016x}", scene.fingerprint())),

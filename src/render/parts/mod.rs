@@ -1,102 +1,38 @@
-//! Renders in parts: rectangles of the image and ranges of its paths, for many machines to share.
+//! Renders in parts: rectangles of the image and ranges of its paths, for distribution to many machines.
 //!
-//! [`run`] sums a part, [`File`] keeps its sums, [`merge`] adds those of all parts up to the image. Path number n of a pixel
-//! is the same in every part, so that the parts make the very paths that one render of the whole in a single part makes, and
-//! the image is the same but for the rounding of sums in f64 (`film::sums`), whatever the parts and their order.
+//! [`run`] computes the sums of a part, a [`File`] stores them, and [`merge`] adds the sums of all parts up to the
+//! image. Path number n of a pixel is the same in every partition. The merged image therefore equals a render in a
+//! single part up to the rounding of sums in f64 (`film::sums`), for any partition and order.
 //!
-//! Pixels next to a part whose block it cuts are traced with it, for what their paths find: parts at multiples of 8 pixels
-//! cost nothing extra. Otherwise a part cannot know what others have found. So all have a fixed number of paths: no target, no time budget. And how long
-//! paths are follows from a few paths ahead of the image (`film::survey`), not from those of the passes before as in
-//! [`super::run`]; both are unbiased, but the images of the two differ within their errors.
+//! Pixels outside a part whose block it cuts are traced with the part, for their secondary vertices; parts at multiples
+//! of 8 pixels avoid this cost. Apart from that, a part does not know the results of others. All parts therefore have a
+//! fixed number of paths, without error targets or a time budget. The roulette weights come from a prepass
+//! (`film::prepass`) instead of the previous passes of [`super::run`]. Both are unbiased, but their images differ
+//! within their errors.
 //!
-//! `cover` tells whether the parts are all there, `identity` whether they are of one render.
+//! `cover` checks that the parts are complete; `identity` checks that they belong to one render.
 
 mod cover;
 mod file;
 mod identity;
+mod part;
 
 pub use file::File;
+pub use part::Part;
 
-use super::film::{Canvas, Sums, TILE};
-use super::{Film, Params, World, check_camera, preview};
-use crate::error::{Error, Result, check_range};
+use super::film::{Canvas, Sums};
+use super::output::Film;
+use super::params::{Params, check_camera};
+use super::preview;
+use super::world::World;
+use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::render::layers::Layers;
 use crate::scene::Camera;
 use identity::Identity;
-use std::fmt;
 use std::path::Path;
 
-/// A rectangle of the image, in pixels from the top-left corner, and a range of the paths of each of its pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Part {
-    pub x: usize,
-    pub y: usize,
-    pub width: usize,
-    pub height: usize,
-    /// Number of the first path.
-    pub first: u32,
-    pub samples: u32,
-}
-
-impl Part {
-    /// All of an image in one part.
-    pub fn whole(params: &Params) -> Self {
-        Self { x: 0, y: 0, width: params.width, height: params.height, first: 0, samples: params.samples }
-    }
-
-    /// Part number `index` of `columns` × `rows` rectangles and `ranges` ranges of paths of about the same size. Rectangles
-    /// go on row by row, and all of a range come before the next.
-    pub fn split(params: &Params, [columns, rows, ranges]: [u32; 3], index: u32) -> Result<Self> {
-        params.check()?;
-        check_range("columns", columns as usize, 1, params.width)?;
-        check_range("rows", rows as usize, 1, params.height)?;
-        check_range("ranges", ranges, 1, params.samples)?;
-        let count = u64::from(columns) * u64::from(rows) * u64::from(ranges);
-        check_range("index", u64::from(index), 0, count - 1)?;
-        let rectangle = (u64::from(index) % (u64::from(columns) * u64::from(rows))) as u32;
-        let range = (u64::from(index) / (u64::from(columns) * u64::from(rows))) as u32;
-        let [x, right] = [0, 1].map(|end| bound(params.width, columns, rectangle % columns + end, TILE));
-        let [y, bottom] = [0, 1].map(|end| bound(params.height, rows, rectangle / columns + end, TILE));
-        let [first, last] = [0, 1].map(|end| bound(params.samples as usize, ranges, range + end, 1) as u32);
-        Ok(Self { x, y, width: right - x, height: bottom - y, first, samples: last - first })
-    }
-
-    pub fn has(&self, [x, y]: [usize; 2]) -> bool {
-        x.wrapping_sub(self.x) < self.width && y.wrapping_sub(self.y) < self.height
-    }
-
-    fn check(&self, params: &Params) -> Result<()> {
-        let within = |start: usize, size: usize, whole: usize| size > 0 && start < whole && size <= whole - start;
-        let paths = (self.first as usize, self.samples as usize, params.samples as usize);
-        if within(self.x, self.width, params.width)
-            && within(self.y, self.height, params.height)
-            && within(paths.0, paths.1, paths.2)
-        {
-            return Ok(());
-        }
-        Err(Error::argument(format!(
-            "the part is {self}; it must have pixels and paths, all of them of an image of {} x {} pixels with samples = {}",
-            params.width, params.height, params.samples
-        )))
-    }
-}
-
-impl fmt::Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { x, y, width, height, first, samples } = self;
-        let last = first.saturating_add(*samples).saturating_sub(1);
-        write!(f, "paths {first} to {last} of the {width} x {height} pixels at ({x}, {y})")
-    }
-}
-
-/// Where one of `count` pieces begins: at multiples of a unit, where that changes little.
-fn bound(size: usize, count: u32, piece: u32, unit: usize) -> usize {
-    let exact = (size as u64 * u64::from(piece) / u64::from(count)) as usize;
-    if exact == size || size / (count as usize) < 4 * unit { exact } else { exact / unit * unit }
-}
-
-/// A part that has been rendered.
+/// A rendered part.
 pub struct Rendered {
     sums: Sums,
     identity: Identity,
@@ -104,11 +40,11 @@ pub struct Rendered {
     pub film: Film,
 }
 
-/// Renders a part. To be called on the library's own pool.
+/// Renders a part. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parameters out of range, or that let the number of paths depend on what they find; a part that is none of the image's; a
-/// camera that cannot see; no memory; cancelled.
+/// Parameters out of range, or error targets and time budgets; a part outside the image; a degenerate camera; no
+/// memory; cancelled.
 pub fn run(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Rendered> {
     check(camera, params)?;
     part.check(params)?;
@@ -120,18 +56,18 @@ pub fn run(world: &World, camera: &Camera, params: &Params, part: &Part, job: Jo
 }
 
 impl Rendered {
-    /// Writes the sums into a file; an existing one is replaced only by a complete one.
+    /// Writes the sums to a file; replaces an existing file only when the new one is complete.
     pub fn save(&self, path: &Path) -> Result<()> {
         file::save(path, &self.sums, &self.identity, &self.film.beauty)
     }
 }
 
-/// Adds parts up to an image; the order of the files does not matter. The scene, the camera and the parameters are those the
-/// parts were made with. To be called on the library's own pool.
+/// Merges parts to an image, in any order of the files. The scene, the camera and the parameters must be those of the
+/// parts. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parts of another render, by what is different; parts that overlap; paths that are in no part, by which; files that cannot
-/// be read; what [`run`] refuses.
+/// Parts of another render, with the difference; overlapping parts; missing paths, with the first hole; unreadable
+/// files; the errors of [`run`].
 pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], job: Job) -> Result<Film> {
     check(camera, params)?;
     let guided = preview::guided(params);
@@ -141,7 +77,7 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     for file in files {
         file.check(&identity, sums.width(), params)?;
     }
-    // Summed in an order of their own, they give the same bits in whatever order they come.
+    // Sum in a fixed order, so that the bits do not depend on the order of the files.
     for (done, &index) in cover::order(files, params, job)?.iter().enumerate() {
         let from = done as f64 / files.len() as f64;
         job.report(0.9 * from);
@@ -151,12 +87,12 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     film(world, camera, params, &sums, job.part(0.9, 1.0))
 }
 
-/// The image of sums.
+/// The image of the sums of a part.
 fn film(world: &World, camera: &Camera, params: &Params, sums: &Sums, job: Job) -> Result<Film> {
     let guided = preview::guided(params);
     let canvas = Canvas::of_sums(world, camera, &guided, sums, job.part(0.0, 0.2))?;
     let mut film = canvas.film(job.part(0.2, 0.6))?;
-    preview::finish(&mut film, &canvas, params, job.part(0.6, 1.0))?;
+    preview::add_preview(&mut film, &canvas, params, job.part(0.6, 1.0))?;
     job.report(1.0);
     Ok(film)
 }

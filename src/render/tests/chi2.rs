@@ -1,12 +1,12 @@
-//! Pearson's chi-squared test: whether samples fall as often as is stated.
+//! Pearson's chi-squared test of observed frequencies against stated probabilities.
 
-/// Bins in which less is expected are taken together with their neighbours.
-const LEAST: f64 = 10.0;
-/// The chance that one of all the tests of a routine fails though nothing is wrong.
+/// Bins of a smaller expected count are merged with their neighbours. [convention]
+const MIN_EXPECTED: f64 = 10.0;
+/// Probability that at least one of all tests of a routine fails by chance. [convention]
 const CHANCE: f64 = 1e-3;
 
-/// Asserts that counts follow what is expected of them, as one of `tests` tests that may fail with a chance of 1/1000 all
-/// together (Šidák 1967). Both must cover all there is: they have the same sum, but for the quadrature of what is expected.
+/// Asserts that counts follow their expectation, as one of `tests` tests whose joint probability of a chance failure is
+/// 1/1000 (Šidák 1967). Both must cover the whole sample space: their sums are equal up to quadrature errors.
 pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], tests: usize, what: &str) {
     let bins = pooled(expected, observed);
     let (total, seen) = bins.iter().fold((0.0, 0.0), |(e, o), bin| (e + bin.0, o + bin.1));
@@ -18,12 +18,12 @@ pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], test
     }
 }
 
-/// Bins of enough expectation, each what is expected and what was observed; what remains goes with the last.
+/// Pairs of expected and observed counts after merging; a remainder joins the last bin.
 fn pooled(expected: &[f64], observed: &[f64]) -> Vec<(f64, f64)> {
     let (mut bins, mut open) = (Vec::new(), (0.0, 0.0));
     for (&e, &o) in expected.iter().zip(observed) {
         open = (open.0 + e, open.1 + o);
-        if open.0 >= LEAST {
+        if open.0 >= MIN_EXPECTED {
             bins.push(std::mem::take(&mut open));
         }
     }
@@ -34,7 +34,7 @@ fn pooled(expected: &[f64], observed: &[f64]) -> Vec<(f64, f64)> {
     bins
 }
 
-/// What chi-squared exceeds with the chance of one of `tests` tests (Wilson and Hilferty 1931).
+/// Critical value of chi-squared for one of `tests` tests (Wilson and Hilferty 1931).
 fn limit(degrees: f64, tests: usize) -> f64 {
     let chance = 1.0 - (1.0 - CHANCE).powf(1.0 / tests as f64);
     let (mut low, mut high) = (1.0, 10.0);
@@ -45,7 +45,7 @@ fn limit(degrees: f64, tests: usize) -> f64 {
     degrees * (1.0 - 2.0 / (9.0 * degrees) + low * (2.0 / (9.0 * degrees)).sqrt()).powi(3)
 }
 
-/// The chance that a standard normal deviate is larger, for positive `z` (continued fraction of Mills' ratio).
+/// Upper tail probability of the standard normal distribution for positive `z` (continued fraction of Mills' ratio).
 fn tail(z: f64) -> f64 {
     let ratio = (1..=60).rev().fold(z, |f, k| z + f64::from(k) / f);
     (-z * z / 2.0).exp() / (std::f64::consts::TAU.sqrt() * ratio)
@@ -53,7 +53,8 @@ fn tail(z: f64) -> f64 {
 
 #[test]
 fn limits_are_those_of_tables() {
-    // 1/1000 of 10 degrees: 29.588; of 100 degrees: 149.449. The approximation is 0.6 % off at few degrees.
+    // The 0.1 % quantiles: 29.588 for 10 degrees of freedom, 149.449 for 100. The approximation is 0.6 % off at few
+    // degrees.
     assert!((limit(10.0, 1) - 29.588).abs() < 0.2 && (limit(100.0, 1) - 149.449).abs() < 0.1);
     assert!((tail(1.959964) - 0.025).abs() < 1e-6);
 }

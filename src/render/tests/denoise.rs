@@ -1,9 +1,9 @@
-//! The preview filter.
+//! Tests of the preview filter.
 
 use super::*;
 use crate::render::denoise::{self, Input};
 
-/// Albedo, normal and position of what is seen.
+/// Albedo, normal and position of the primary hits.
 fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Image; 3] {
     let outputs = Outputs { aovs: vec![Aov::Albedo, Aov::Normal, Aov::Position], ..Outputs::default() };
     let film = render(world, camera, &Params { width, height, samples: 16, outputs, ..Params::default() });
@@ -11,7 +11,7 @@ fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Ima
     images.try_into().unwrap()
 }
 
-/// Mean of the squared errors relative to the truth.
+/// Mean squared error relative to the truth.
 fn rel_mse(image: &Image, truth: &Image) -> f64 {
     let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
     let square = |(&v, &t): (&f32, &f32)| f64::from(v - t).powi(2) / (f64::from(t).powi(2) + (0.01 * mean).powi(2));
@@ -59,7 +59,7 @@ fn smoothed(halves: &Halves, guide: &[Image; 3], strength: f32) -> denoise::Outp
     denoise::run(&input, &denoise::Params { strength }, Monitor::default().job()).unwrap()
 }
 
-/// Means of luminance over squares of 8 × 8 pixels.
+/// Mean luminance of squares of 8 × 8 pixels.
 fn squares(image: &Image) -> Vec<f64> {
     let mut means = Vec::new();
     for top in (0..image.height).step_by(8) {
@@ -91,7 +91,7 @@ fn a_preview_has_a_fraction_of_the_error_and_says_how_far_off_its_mean_is() {
     let both = Image { data: one.data.iter().zip(&other.data).map(|(a, b)| (a + b) / 2.0).collect(), ..*one };
     let (before, after) = (rel_mse(&both, &truth), rel_mse(&output.image, &truth));
     assert!(after < before / 5.0, "from {before} to {after}");
-    // How far the mean of the previews is off in squares, less what is left of their scatter.
+    // Bias of the mean preview in squares, without its remaining noise.
     let truth = squares(&truth);
     let off: Vec<Vec<f64>> = renders
         .iter()
@@ -106,7 +106,7 @@ fn a_preview_has_a_fraction_of_the_error_and_says_how_far_off_its_mean_is() {
     let bias = ((0..truth.len()).map(of_square).sum::<f64>() / truth.len() as f64).sqrt() / light;
     let stated = (renders.iter().map(|(_, output)| output.bias.powi(2)).sum::<f64>() / n).sqrt();
     assert!(stated > 0.7 * bias && stated < 1.6 * bias, "{stated} stated, {bias} measured");
-    // Nothing at strength 0 but rounding.
+    // Strength 0 changes the image by rounding only.
     let same = smoothed(halves, &guide, 0.0);
     assert!(same.image.data.iter().zip(&both.data).all(|(a, b)| (a - b).abs() <= 1e-5 * b.abs()));
     assert!(same.bias < 1e-5);
@@ -121,24 +121,24 @@ fn a_render_makes_its_own_preview_and_shows_only_what_was_asked_for() {
     let names: Vec<&str> = film.layers.iter().map(|l| l.name.as_str()).collect();
     assert_eq!(names, ["Normal", "Depth"]);
     let preview = film.preview.unwrap();
-    // The image itself is left alone, and the preview is better.
+    // The main image is unchanged, and the preview is better.
     let plain = render(&world, &camera, &Params { preview: 0.0, ..params.clone() });
     assert!(plain.preview.is_none() && plain.beauty == film.beauty);
     let truth = render(&world, &camera, &Params { preview: 0.0, samples: 256, seed: 9, ..params.clone() }).beauty;
     let (before, after) = (rel_mse(&film.beauty, &truth), rel_mse(&preview.image, &truth));
-    // Neighbours that share what their paths find have small errors, and in part the same: the filter has less to do.
+    // With path sharing, errors are small and correlated between neighbours: the filter gains less.
     assert!(after < before / 2.0, "from {before} to {after}");
-    // Two halves of the same paths, which the filter at strength 0 only adds up.
+    // At strength 0, the filter only averages the two halves.
     let weak = render(&world, &camera, &Params { preview: 1e-12, ..params.clone() }).preview.unwrap().image;
     assert!(weak.data.iter().zip(&film.beauty.data).all(|(a, b)| (a - b).abs() <= 1e-4 * b.abs()));
-    // From the first coarse pass on there is one.
+    // There is a preview from the first coarse pass on.
     let monitor = Monitor::default();
-    let mut shown = 0;
+    let mut published = 0;
     let all = run(&world, &camera, &params, monitor.job(), &mut |film| {
-        shown += usize::from(film.preview.as_ref().is_some_and(|p| p.image.count_non_finite() == 0));
+        published += usize::from(film.preview.as_ref().is_some_and(|p| p.image.count_non_finite() == 0));
         monitor.cancel();
     });
-    assert!(all.is_err() && shown > 0, "{shown}");
+    assert!(all.is_err() && published > 0, "{published}");
 }
 
 #[test]

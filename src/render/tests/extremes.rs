@@ -1,4 +1,4 @@
-//! Extremes of size, place and light.
+//! Tests of extreme sizes, positions and intensities.
 
 use super::*;
 
@@ -27,7 +27,7 @@ fn scale_changes_nothing() {
 
 const SMALL: fn() -> Params = || Params { width: 24, height: 16, samples: 16, ..Params::default() };
 
-/// A scene with everything in it, `scale` times as large, its lamps `light` times as bright.
+/// A scene with every feature, scaled by `scale`, with its lamps scaled by `light`.
 fn grown(scale: f32, light: f32) -> Scene {
     let mut scene = everything();
     scene.meshes.iter_mut().flat_map(|m| &mut m.positions).for_each(|p| *p *= scale);
@@ -55,7 +55,7 @@ fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
 #[test]
 fn lamps_of_any_brightness_make_the_same_image() {
     let unit = render(&world(grown(1.0, 1.0)), &viewer(), &SMALL());
-    // 1e-9 and 1e9 cd/m², as powers of two: scaling by these rounds nothing.
+    // About 1e-9 and 1e9 cd/m², as powers of two, so that scaling is exact.
     for light in [2f32.powi(-30), 2f32.powi(30)] {
         let film = render(&world(grown(1.0, light)), &viewer(), &SMALL());
         assert_eq!(differing(&unit.beauty, &film.beauty, light), 0.0, "{light}");
@@ -69,7 +69,7 @@ fn scenes_of_any_size_make_the_same_image() {
     let unit = render(&world(grown(1.0, 1.0)), &viewer(), &SMALL());
     for scale in [2f32.powi(-13), 1e-4, 1e3, 2f32.powi(20), 1e6] {
         let film = render(&world(grown(scale, 1.0)), &grown_viewer(scale), &SMALL());
-        // A rounded coordinate sends a path another way now and then.
+        // A rounded coordinate occasionally changes a path.
         let share = differing(&unit.beauty, &film.beauty, 1.0);
         assert!(share < 0.03, "scale {scale}: {share}");
         assert!((film.error / unit.error - 1.0).abs() < 0.1);
@@ -103,7 +103,7 @@ fn one_pixel_and_very_wide_and_very_high_images() {
         assert_eq!(film.beauty.count_non_finite() + film.variance.count_non_finite(), 0);
         assert!(film.beauty.data.iter().any(|&v| v > 0.0));
     }
-    // The middle of a wide image is that of a narrow one of the same rows.
+    // The middle of a wide image equals a narrow image of the same rows.
     let params = |width| Params { width, height: 8, samples: 4096, ..Params::default() };
     let (narrow, wide) = (render(&world, &viewer(), &params(2)), render(&world, &viewer(), &params(4)));
     for y in 0..8 {
@@ -142,14 +142,14 @@ fn without_light_every_target_is_reached_at_once() {
 #[test]
 fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
     let scene = everything();
-    // In the plane of the lamp, at a corner of it, on the sphere's wall, and outside of all.
+    // In the plane of the lamp, at one of its corners, on the sphere's wall, and outside the scene.
     for position in [Vec3::new(0.1, 1.2, 0.2), Vec3::new(-1.0, 1.2, -1.0), Vec3::Y * 2.0, Vec3::splat(90.0)] {
         let camera = Camera { position, ..Camera::look_at(Vec3::ZERO, Vec3::new(0.3, -0.4, -1.0), 1.2) };
         let film = render(&world(scene.clone()), &camera, &SMALL());
         assert_eq!(film.beauty.count_non_finite(), 0);
         assert_eq!(film.discarded, 0);
     }
-    // Inside a solid without light it is dark.
+    // The inside of a solid without lights is dark.
     let solid = Scene {
         meshes: vec![inward_sphere(1.0, 0), Mesh::parallelogram(Vec3::new(-1.0, 3.0, -1.0), Vec3::X, Vec3::Z, 1)],
         materials: vec![matt(0.9, 0.0), matt(0.0, 1e6)],
@@ -162,19 +162,19 @@ fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
 
 #[test]
 fn closed_white_rooms_end_with_the_right_energy() {
-    // Walls that give back all light and a black lamp: everything comes to look like the lamp.
+    // White walls of albedo 1 and a black lamp: everything approaches the radiance of the lamp.
     let (mut scene, camera) = room();
     scene.materials[0] = matt(1.0, 0.0);
-    // It covers the ceiling, and its back is behind that.
+    // The lamp covers the ceiling; its back faces the ceiling.
     scene.meshes[6] = Mesh::parallelogram(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);
     let film = render(&world(scene), &camera, &Params { samples: 512, ..SMALL() });
     assert_mean(&film, 100.0);
-    // Walls that shine themselves and give back 99 %.
+    // Emissive walls of albedo 0.99.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.99, 1.0)], ..Scene::default() };
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
     let film = render(&world(scene), &camera, &Params { samples: 512, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
-    // And 99.8 %: an eighth of their light has scattered more than a thousand times.
+    // Emissive walls of albedo 0.998: an eighth of their light has scattered more than a thousand times.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.998, 0.2)], ..Scene::default() };
     let film = render(&world(scene), &camera, &Params { samples: 256, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
@@ -183,7 +183,7 @@ fn closed_white_rooms_end_with_the_right_energy() {
 fn assert_mean(film: &Film, expected: f64) {
     let n = film.beauty.data.len() as f64;
     let mean = film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / n;
-    // Channels are alike: a third of the numbers are independent.
+    // The channels are equal: only a third of the values are independent.
     let error = film.variance.data.iter().step_by(3).map(|&v| f64::from(v)).sum::<f64>().sqrt() / (n / 3.0);
     assert!(error < 0.02 * expected, "{error}");
     assert!((mean - expected).abs() < 4.0 * error + 1e-4 * expected, "{mean} ± {error}, expected {expected}");
@@ -202,13 +202,13 @@ fn surfaces_in_the_same_place_are_one_or_the_other() {
     let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0);
     let film = |materials| render(&world(scene(materials)), &camera, &SMALL());
     let both = film([0, 1]).beauty;
-    // Each path meets one or the other, and a surface that lies on another is not in its shadow: pixels lie between those
-    // that one surface alone makes of the same paths.
+    // Each path hits one of the coincident surfaces, and neither shadows the other: each pixel lies between its values
+    // for the two surfaces alone, with the same paths.
     let (dark, bright) = (film([0, 0]).beauty, film([1, 1]).beauty);
     for ((&d, &v), &b) in dark.data.iter().zip(&both.data).zip(&bright.data) {
         assert!(v >= d * 0.99999 && v <= b * 1.00001, "{d} {v} {b}");
     }
-    // Alone: a fifth and four fifths of the sky, which is all that they see.
+    // Alone, they reflect a fifth and four fifths of the sky, which is all they see.
     for (image, albedo) in [(&dark, 0.2), (&bright, 0.8)] {
         let mean = image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64;
         assert!((mean / albedo - 1.0).abs() < 0.01, "{mean} of {albedo}");
@@ -229,19 +229,19 @@ fn triangles_without_area_change_nothing_and_needles_little() {
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     };
-    // Points, lines and lamps among them.
+    // Add degenerate triangles, and degenerate lamps among them.
     scene.meshes.push(flat(points, 0));
     scene.meshes.push(flat([points[0]; 3], 1));
     scene.meshes.push(flat([points[0], points[0], points[2]], 1));
     let flattened = world(scene.clone());
-    // The sphere has some at its poles already.
+    // The sphere already has degenerate triangles at its poles.
     let flat_triangles = plain_world.requirements().flat_triangles + 3;
     assert_eq!(flattened.requirements().flat_triangles, flat_triangles);
     let film = render(&flattened, &viewer(), &SMALL());
     assert_eq!(film.discarded, 0);
     let share = differing(&plain.beauty, &film.beauty, 1.0);
     assert!(share < 0.03, "{share}");
-    // A million times as long as wide.
+    // A triangle a million times as long as wide.
     scene.meshes.push(flat([points[0], points[2], points[2] + Vec3::Y * 2e-6], 4));
     let film = render(&world(scene), &viewer(), &SMALL());
     assert_eq!(film.beauty.count_non_finite(), 0);

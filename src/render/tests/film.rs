@@ -1,4 +1,4 @@
-//! Passes: the same bits on any number of threads, stated errors, and when a render stops.
+//! Tests of passes: the same bits on any number of threads, stated errors, and stopping conditions.
 
 use super::*;
 use crate::exec::Pool;
@@ -41,7 +41,7 @@ fn stated_variances_are_those_of_repeated_renders() {
         let (mut stated, mut observed) = (0.0, 0.0);
         for i in 0..films[0].beauty.data.len() {
             let mean = films.iter().map(|f| f64::from(f.beauty.data[i])).sum::<f64>() / n;
-            // Relative to the pixel, so that no bright one outvotes the others.
+            // Relative to the pixel, so that no bright pixel dominates.
             let scale = mean.max(1e-3).powi(2);
             observed +=
                 films.iter().map(|f| (f64::from(f.beauty.data[i]) - mean).powi(2)).sum::<f64>() / (n - 1.0) / scale;
@@ -67,7 +67,7 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         for film in &films {
             let interval = film.interval(monitor.job()).unwrap();
             for ((&value, &truth), &half) in film.beauty.data.iter().zip(&truth.data).zip(&interval.data) {
-                // Where nothing is random there is nothing to be sure of.
+                // Skip pixels without noise.
                 if half > 1e-4 * truth {
                     inside += usize::from((value - truth).abs() <= half);
                     count += 1;
@@ -82,7 +82,7 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         }
         let share = inside as f64 / count as f64;
         assert!((0.925..0.975).contains(&share), "{samples} paths: {share}");
-        // Predicted against measured root mean square error.
+        // Compare the predicted with the measured root mean square error.
         let measured = (squared / (films.len() * truth.data.len()) as f64).sqrt() / mean;
         let stated = (stated / films.len() as f64).sqrt();
         assert!((stated / measured - 1.0).abs() < 0.1, "{samples} paths: stated {stated}, measured {measured}");
@@ -90,9 +90,9 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         let stated = (stated_relative / films.len() as f64).sqrt();
         relative_ratios.push(stated / measured);
     }
-    // It converges from the safe side: few paths leave pixels in the shade less sure than they are.
-    for (ratio, most) in relative_ratios.iter().zip([1.3, 1.2, 1.1]) {
-        assert!((0.95..most).contains(ratio), "stated over measured: {relative_ratios:?}");
+    // Estimates converge from above: with few paths, the errors of dark pixels are overestimated.
+    for (ratio, max_bounces) in relative_ratios.iter().zip([1.3, 1.2, 1.1]) {
+        assert!((0.95..max_bounces).contains(ratio), "stated over measured: {relative_ratios:?}");
     }
 }
 
@@ -118,8 +118,8 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
             assert!(low >= 16.0 && high <= 1024.0 && film.samples < 512);
             spread = spread.max(high / low);
         }
-        let least = if relative_error > 0.0 { 2.0 } else { 4.0 };
-        assert!(spread >= least, "{target_error} {relative_error} {pixel_error}: {spread}");
+        let min = if relative_error > 0.0 { 2.0 } else { 4.0 };
+        assert!(spread >= min, "{target_error} {relative_error} {pixel_error}: {spread}");
         let bias = sum / count as f64;
         let error = ((square / count as f64 - bias * bias) / count as f64).sqrt();
         assert!(bias.abs() < 0.01 + 3.0 * error, "bias {bias} ± {error}");
@@ -133,7 +133,7 @@ fn pixels_are_as_sure_as_was_asked() {
     let film = render(&world, &viewer(), &params);
     let interval = film.interval(Monitor::default().job()).unwrap();
     let mean = film.beauty.data.iter().sum::<f32>() / film.beauty.data.len() as f32;
-    // The promise is the root mean square over a tile.
+    // The target is the root mean square over a tile.
     for top in (0..32).step_by(8) {
         for left in (0..32).step_by(8) {
             let mut squares = 0.0;
@@ -158,7 +158,7 @@ fn a_cancelled_render_leaves_what_was_published() {
         monitor.cancel();
     });
     assert_eq!(result.unwrap_err(), Error::cancelled());
-    // One path for a pixel here and there, and every pixel shows one of them.
+    // Only some pixels have a path, and every pixel shows one of them.
     let film = last.unwrap();
     let paths = film.paths.data.iter().sum::<f32>();
     assert!(paths > 0.0 && paths < 4096.0, "{paths}");
@@ -179,7 +179,7 @@ fn a_render_stops_when_it_is_good_enough_or_out_of_time() {
     assert!(film.error <= 0.3 && film.samples < 1 << 20);
 }
 
-/// Time that this thread has had a processor: other programs do not count.
+/// CPU time of this thread, which is independent of other programs.
 fn processor_time() -> Duration {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     Duration::from_nanos(text.split(' ').next().and_then(|n| n.parse().ok()).unwrap_or(0))
@@ -188,8 +188,8 @@ fn processor_time() -> Duration {
 #[test]
 fn a_time_budget_is_kept_but_for_the_first_image() {
     let world = world(everything());
-    // More pixels than there is time for, and more paths of one pixel. One thread does it all, and its processor time is no
-    // more than the time that passes.
+    // Test more pixels than the time allows, and more paths per pixel than it allows. A single thread does all work,
+    // and its CPU time is at most the elapsed time.
     Pool::new(1).unwrap().run(|| {
         for (width, height) in [(2048, 512), (1, 1)] {
             for target_error in [0.0, 1e-6] {
@@ -200,16 +200,16 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
                     let film = render(&world, &viewer(), &params);
                     (film, processor_time() - start)
                 };
-                // The least there is: a path for one pixel in many, and an image of them.
-                let (film, least) = timed(1);
+                // The smallest render: a path for one pixel in many, and an image of them.
+                let (film, min) = timed(1);
                 let paths: f32 = film.paths.data.iter().sum();
                 assert!(paths > 0.0 && (paths <= 1024.0 || width == 1), "{width} x {height}: {paths}");
                 assert_eq!(film.beauty.count_non_finite(), 0);
                 for budget in [40, 300] {
                     let (film, taken) = timed(budget);
                     assert!(film.samples < 1 << 20 && film.beauty.count_non_finite() == 0);
-                    let allowed = least.max(Duration::from_millis(budget.into())) + Duration::from_millis(50);
-                    assert!(taken < allowed + least, "{width} x {height}, {budget} ms: {taken:?}, at least {least:?}");
+                    let allowed = min.max(Duration::from_millis(budget.into())) + Duration::from_millis(50);
+                    assert!(taken < allowed + min, "{width} x {height}, {budget} ms: {taken:?}, at least {min:?}");
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Calculation grids and maps of surfaces, against closed forms.
+//! Tests of calculation grids and maps of surfaces against closed forms.
 
 use super::*;
 use crate::exec::Pool;
@@ -8,7 +8,7 @@ fn measure(world: &World, place: &Place, params: &Params) -> Output {
     run(world, place, params, Monitor::default().job()).unwrap()
 }
 
-/// A lamp of 1 × 1.5 m overhead at 1.5 m, 100 cd/m².
+/// A lamp of 1 × 1.5 m overhead at a height of 1.5 m, 100 cd/m².
 fn lit_floor() -> Scene {
     Scene {
         meshes: vec![
@@ -20,14 +20,14 @@ fn lit_floor() -> Scene {
     }
 }
 
-/// The error of a point comes from 16 batches, so off by errors is Student's t of 15 degrees of freedom: it exceeds this in
-/// one of the 45 points below with a chance of 1/1000 in all (Šidák: 2.2e-5 for each).
+/// The error of a point comes from 16 batches: its deviation follows Student's t with 15 degrees of freedom. Any of the
+/// 45 points below exceeds this value with a probability of 1/1000 in total (Šidák: 2.2e-5 for each).
 const T15: f64 = 6.02;
 
 #[test]
 fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
     let world = world(lit_floor());
-    // A point `d` below the lamp, off its middle by (x, z): four rectangles with signs.
+    // A point `d` below the lamp, at (x, z) from its centre: four rectangles with signs.
     let expected = |x: f64, z: f64, d: f64| {
         let part = |a: f64, b: f64| a.signum() * b.signum() * parallel_form_factor(a.abs(), b.abs(), d);
         let (l, r, n, f) = (0.5 + x, 0.5 - x, 0.75 + z, 0.75 - z);
@@ -52,7 +52,7 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
             }
         }
         assert!((output.mean - sum).abs() < 4.0 * output.mean_error && output.mean_error < 0.005 * sum);
-        assert!(output.least < output.mean && output.mean < output.largest);
+        assert!(output.min < output.mean && output.mean < output.max);
     }
     // The floor's texture runs along z first, then along x.
     let map = measure(&world, &Place::Mesh { mesh: 0, front: true }, &Params { columns: 3, rows: 5, ..params.clone() });
@@ -63,8 +63,8 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
             assert!((value - truth).abs() < T15 * error + 1e-5 * truth, "{value} ± {error}, expected {truth}");
         }
     }
-    // Nothing arrives from below, nor on the other side.
-    assert_eq!(measure(&world, &Place::Mesh { mesh: 0, front: false }, &params).largest, 0.0);
+    // No light arrives from below, nor on the other side.
+    assert_eq!(measure(&world, &Place::Mesh { mesh: 0, front: false }, &params).max, 0.0);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Irradiance against closed forms and against scattering alone.
+//! Tests of irradiance against closed forms and against BSDF sampling alone.
 
 use super::*;
 use glam::Vec4;
@@ -6,7 +6,7 @@ use glam::Vec4;
 #[test]
 fn irradiance_under_a_rectangle_is_its_form_factor() {
     let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
-    // Overhead: four quarters of 0.5 × 0.75 at 1.5 m, 100 cd/m², facing down.
+    // A lamp overhead: four quarters of 0.5 × 0.75 m at a height of 1.5 m, 100 cd/m², facing down.
     let lamp = Mesh::parallelogram(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1);
     let scene = Scene {
         meshes: vec![floor.clone(), lamp],
@@ -15,10 +15,10 @@ fn irradiance_under_a_rectangle_is_its_form_factor() {
     };
     let expected = 100.0 * std::f64::consts::PI * 4.0 * parallel_form_factor(0.5, 0.75, 1.5);
     assert_close(&world(scene.clone()), &centre_of(0), expected);
-    // The lamp's back is dark, but for the rounding of its two triangles' common plane.
+    // The lamp's back is dark, up to the rounding of the common plane of its two triangles.
     let above = SurfacePoint { front: false, ..centre_of(1) };
     assert!(measure(&world(scene.clone()), &above).0 < 1e-6);
-    // A window beside it: 0.8 to each side, 1.2 high, standing 0.7 away on the floor's plane.
+    // A window: 0.8 m to each side, 1.2 m high, on the floor's plane at a distance of 0.7 m.
     let window = Mesh::parallelogram(Vec3::new(0.7, 0.0, -0.8), Vec3::Z * 1.6, Vec3::Y * 1.2, 1);
     let scene = Scene { meshes: vec![floor, window], ..scene };
     let expected = 100.0 * std::f64::consts::PI * 2.0 * perpendicular_form_factor(0.8, 1.2, 0.7);
@@ -48,10 +48,10 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         measure(&world(Scene { meshes: vec![floor.clone(), small], ..scene.clone() }), &centre_of(0));
     let (mean, own_error) = measure(&world(scene.clone()), &centre_of(0));
     assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{mean} and {expected}");
-    // As precise as the lamp alone: the dark texels cost nothing.
+    // As accurate as the lamp alone: dark texels cost nothing.
     assert!(own_error < 2.0 * error, "{own_error} and {error}");
 
-    // The same texel reached through other texture coordinates.
+    // The same texel by other texture coordinates.
     for (wrap, from, to) in [
         (crate::scene::Wrap::Repeat, Vec2::new(3.0, -2.0), Vec2::new(4.0, -1.0)),
         (crate::scene::Wrap::Mirror, Vec2::new(2.0, 2.0), Vec2::new(1.0, 1.0)),
@@ -61,14 +61,14 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         moved.textures[0].wrap = [wrap; 2];
         moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = from + (to - from) * *uv);
         if wrap == crate::scene::Wrap::Mirror {
-            // Mirrored twice over: u from 2 down to 1 runs through the texture from left to right.
+            // Mirrored twice: from u = 2 down to 1, the texture runs from left to right.
             moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = Vec2::splat(2.0) - (*uv - Vec2::splat(2.0)));
         }
         let (mean, own_error) = measure(&world(moved), &centre_of(0));
         assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{wrap:?}: {mean} and {expected}");
     }
 
-    // Texture coordinates without area: the triangle shines evenly with whatever texel they name.
+    // Texture coordinates without area: the triangle emits uniformly with the texel at its coordinates.
     let mut flat = scene.clone();
     flat.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = Vec2::new(5.5, 2.5) / 8.0);
     let even = 5000.0 * std::f64::consts::PI * 4.0 * parallel_form_factor(1.0, 1.0, 1.0);
@@ -110,26 +110,26 @@ fn skies_light_a_floor_by_their_integral() {
     let base = Scene { meshes: vec![floor], materials: vec![matt(0.5, 0.0)], ..Scene::default() };
     let constant = Scene { environment: Some(Environment::Constant(Vec3::splat(7.0))), ..base.clone() };
     assert_close(&world(constant), &centre_of(0), 7.0 * std::f64::consts::PI);
-    // A sky that grows with the cosine of the angle from the zenith: E = 2π/3, up to interpolation between rows.
+    // A sky proportional to the cosine of the zenith angle: E = 2π/3, up to interpolation between rows.
     let image =
         Image::from_fn(16, 256, |_, y| [((std::f32::consts::PI * (y as f32 + 0.5) / 256.0).cos()).max(0.0) * 3.0; 3]);
     let sky = Scene { environment: Some(Environment::Image(image.unwrap())), ..base.clone() };
     let (mean, error) = measure(&world(sky), &centre_of(0));
     let expected = 3.0 * std::f64::consts::TAU / 3.0;
     assert!((mean - expected).abs() < 4.0 * error + 2e-4 * expected, "{mean} ± {error}, expected {expected}");
-    // A small sun among dark pixels, 30 degrees up towards -z.
+    // A small sun among dark pixels, 30 degrees above the horizon towards -z.
     let mut image = Image::new(64, 32, 3).unwrap();
     image.pixel_mut(32, 10).fill(1e4);
     let sun = Scene { environment: Some(Environment::Image(image)), ..base };
     let world = world(sun);
     let (mean, error) = measure(&world, &centre_of(0));
-    // Against a sum over directions of the same interpolated image.
+    // Compare with a sum over directions of the same interpolated image.
     let environment = world.scene().environment.as_ref().unwrap();
     let n = 2000;
     let mut expected = 0.0;
     for i in 0..n {
         for j in 0..n {
-            // Only the part of the sky that is not dark.
+            // Sum over the emissive part of the sky only.
             let (theta, phi) = (0.8 + 0.5 * (i as f64 + 0.5) / n as f64, 0.4 * (j as f64 + 0.5) / n as f64 - 0.2);
             let d = DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos()).as_vec3();
             let radiance = f64::from(environment::radiance(environment, d).x);
@@ -155,7 +155,7 @@ fn scattering_alone_finds_the_same_light_as_the_weighed_strategies() {
         ..Scene::default()
     };
     let world = world(scene);
-    // Surfaces are black: all light is direct. Directions by their cosine, and whatever they meet.
+    // All surfaces are black: all light is direct. Sample directions by the cosine and add the emission they hit.
     let n = 400_000;
     let (mut sum, mut square) = (0.0, 0.0);
     let mut rng = crate::rng::Rng::new(5, &[]);
@@ -183,7 +183,7 @@ fn scattering_alone_finds_the_same_light_as_the_weighed_strategies() {
 
 #[test]
 fn light_through_a_clear_pane_is_the_same_by_either_strategy() {
-    // A pane between lamp and floor takes the share that Fresnel's factor and its colour demand.
+    // A pane between lamp and floor attenuates by its Fresnel factor and its colour.
     let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     let lamp = Mesh::parallelogram(Vec3::new(-0.01, 2.0, -0.01), Vec3::X * 0.02, Vec3::Z * 0.02, 1);
     let pane = Mesh::parallelogram(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 2);

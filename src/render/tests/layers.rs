@@ -1,4 +1,4 @@
-//! Images of light by its way, and of surfaces: against closed forms, against each other, and against the main image.
+//! Tests of light path expressions and surface attributes: against closed forms, each other, and the main image.
 
 use super::*;
 use crate::exec::Pool;
@@ -28,14 +28,14 @@ fn open() -> Scene {
     let names = ["Floor", "Ceiling", "Gloss", "Mirror", "Window", "Leaf"];
     scene.meshes[0] = Mesh::parallelogram(Vec3::new(-3.0, -0.6, -3.0), Vec3::Z * 6.0, Vec3::X * 6.0, 0);
     scene.meshes.iter_mut().zip(names).for_each(|(mesh, name)| mesh.name = name.into());
-    // A paint that is diffuse below and glossy on top, and a pane in front of all.
+    // A material with a diffuse and a glossy layer, and a pane in front of everything.
     scene.materials[0] = Material { ior: 1.5, roughness: 0.4, ..scene.materials[0].clone() };
     scene.meshes.push(Mesh::parallelogram(Vec3::new(-0.4, -0.5, 0.2), Vec3::X, Vec3::Y * 0.5, 4));
     scene.meshes.push(Mesh::parallelogram(Vec3::new(-1.0, 0.9, -1.0), Vec3::X, Vec3::Z * 2.0, 4));
     scene
 }
 
-/// Largest difference of a sum of layers from the image, relative to the pixel.
+/// Largest difference between a sum of layers and the image, relative to the pixel.
 fn sum_error(film: &Film) -> f32 {
     let n = film.beauty.data.len();
     (0..n)
@@ -70,15 +70,15 @@ fn complete_sets_sum_to_the_image_and_leave_its_bits() {
         assert!(film.beauty == plain.beauty && film.variance == plain.variance, "set {number}");
         let error = sum_error(&film);
         assert!(error <= 1e-5, "set {number}: {error}");
-        // None of the parts is empty.
+        // No layer is black.
         for layer in &film.layers {
             assert!(layer.image.data.iter().any(|&v| v > 0.0), "set {number}, {}", layer.name);
         }
     }
 }
 
-/// The lamps of an emission texture are lights of their own: with what is between them they sum to the image, and each is
-/// what it is when the others are off.
+/// The lamps of an emission texture are separate lights: together with the light of all others they sum to the image,
+/// and each equals the image with the others switched off.
 #[test]
 fn lamps_of_a_texture_are_light_groups() {
     let texture = |lit: [f32; 2]| {
@@ -100,17 +100,18 @@ fn lamps_of_a_texture_are_light_groups() {
     assert_eq!(film.beauty, render(&room([1.0, 3.0]), &viewer(), &params).beauty);
     let error = sum_error(&film);
     assert!(error <= 1e-5, "{error}");
-    // One alone is named together with its material.
+    // A single lamp, with the material name in both expressions.
     let both = [("a", "C.*<L.'Lamps'>"), ("b", "C.*<L.[^'Lamps']>"), ("c", "C.*<L.'Lamps''Lamps#1'>")];
     let named = render(&room([1.0, 3.0]), &viewer(), &with(&params, &both, &[]));
     assert_eq!(layer(&named, "c"), layer(&film, "b"));
     assert!((mean(layer(&film, "a")) + mean(layer(&film, "b")) - mean(layer(&named, "a"))).abs() < 1e-4);
-    // The second is off: the image is what the first gives and the rest. Both are estimates, of other paths.
+    // With the second lamp off, the image is the light of the first plus the rest. Both are estimates of different
+    // paths.
     let alone = render(&room([1.0, 0.0]), &viewer(), &with(&params, &set[..1], &[]));
     let (mixed, direct) = (mean(layer(&film, "a")), mean(layer(&alone, "a")));
     assert!(mixed > 0.0 && mean(layer(&film, "b")) > 1.5 * mixed);
     assert!((mixed / direct - 1.0).abs() < 0.05, "{mixed} {direct}");
-    // A lamp that is not there is an error that says what there is.
+    // A lamp that does not exist is an error that lists the existing names.
     let missing = with(&params, &[("x", "C.*<L.'Lamps#2'>")], &[]);
     let error =
         crate::render::run(&room([1.0, 1.0]), &viewer(), &missing, Monitor::default().job(), &mut |_| ()).unwrap_err();
@@ -162,7 +163,7 @@ fn bounces_in_a_furnace_are_a_geometric_series() {
 
 #[test]
 fn direct_diffuse_light_is_the_form_factor_whatever_the_walls_add() {
-    // A floor below a lamp in a white room, seen from above: each pixel's LDE is albedo times luminance times form factor.
+    // A floor below a lamp in a white room, seen from above: LDE of each pixel is albedo × luminance × form factor.
     let room = |albedo: f32| Scene {
         meshes: vec![
             inward_sphere(2.0, 2),
@@ -181,14 +182,14 @@ fn direct_diffuse_light_is_the_form_factor_whatever_the_walls_add() {
         let value = mean(layer(film, "LDE"));
         assert!((value / expected - 1.0).abs() < 0.01, "{value}, expected {expected}");
     }
-    // Without walls that send light back, direct light is all there is; with them there is much more.
+    // With black walls all light is direct; with white walls there is much more.
     assert!((mean(&black.beauty) / expected - 1.0).abs() < 0.01);
     assert!(mean(&white.beauty) > 1.2 * expected && mean(layer(&white, "LDDE")) > 0.2 * expected);
 }
 
 #[test]
 fn layers_of_a_paint_are_told_apart_under_a_lamp() {
-    // One floor, one punctual light: the image is LDE + LSE, and each is the BSDF's own layer.
+    // With one floor and one punctual light, the image is LDE + LSE; each is a layer of the BSDF.
     let paint = Material { base_color: Vec3::new(0.6, 0.4, 0.2), metallic: 0.0, roughness: 0.5, ..Material::default() };
     let scene = Scene {
         meshes: vec![Mesh::parallelogram(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, 0)],
@@ -211,7 +212,7 @@ fn layers_of_a_paint_are_told_apart_under_a_lamp() {
 
 #[test]
 fn mirrors_and_panes_are_specular_however_their_light_is_found() {
-    // A mirror floor that shows a lamp: LSE is the lamp times the reflectance of the metal at that angle.
+    // A mirror floor that reflects a lamp: LSE is the lamp times the reflectance of the metal at that angle.
     let lamp = || Mesh::parallelogram(Vec3::new(-1.5, 1.0, -1.0), Vec3::X, Vec3::Z * 2.0, 1);
     let metal = Material { base_color: Vec3::new(0.9, 0.6, 0.3), roughness: 0.0, ..Material::default() };
     let scene = Scene {
@@ -227,15 +228,15 @@ fn mirrors_and_panes_are_specular_however_their_light_is_found() {
     assert!((value - expected).abs().max_element() < 0.01 * expected.x, "{value}, {expected}");
     assert!(layer(&film, "LDE").data.iter().all(|&v| v == 0.0));
 
-    // A matt floor that the lamp lights through a pane: none of it is LDE, all of it is LS*DE, and it is what comes
-    // without the pane times what the pane lets through. A small lamp is found by choice, a large one by scattering.
+    // A matt floor lit by a lamp through a pane: LDE is zero, LS*DE has all light, and it equals the light without the
+    // pane times the transmittance. Light samples find a small lamp, BSDF samples a large one.
     for size in [0.1, 8.0] {
         let lamp = Mesh::parallelogram(Vec3::new(-size / 2.0, 1.0, -size / 2.0), Vec3::X * size, Vec3::Z * size, 1);
         let pane = Mesh::parallelogram(Vec3::new(-9.0, 0.5, -9.0), Vec3::X * 18.0, Vec3::Z * 18.0, 2);
         let mut scene = Scene { meshes: vec![scene.meshes[0].clone(), lamp, pane], ..scene.clone() };
         scene.meshes[2].name = "Pane".into();
         scene.materials[0] = matt(0.5, 0.0);
-        // An index of 1 lets all pass at any angle.
+        // An index of 1 transmits everything at any angle.
         let glass = Material { base_color: Vec3::new(0.5, 0.7, 0.9), ior: 1.0, transmission: 1.0, ..matt(0.0, 0.0) };
         scene.materials.push(glass.clone());
         let camera = Camera::look_at(Vec3::new(0.4, 0.3, 0.0), Vec3::ZERO, 0.01);
@@ -255,7 +256,7 @@ fn mirrors_and_panes_are_specular_however_their_light_is_found() {
 }
 
 impl Params {
-    /// The same without one of its expressions.
+    /// A copy without one of its expressions.
     fn clone_without(mut self, name: &str) -> Self {
         self.outputs.expressions.retain(|(n, _)| n != name);
         self
@@ -286,7 +287,7 @@ fn objects_are_lights_by_the_letter_asked_for() {
 
 #[test]
 fn surfaces_seen_have_their_distance_place_and_name() {
-    // A wall 2 m ahead that covers the left half of the image, tilted normals by its corners.
+    // A wall at a distance of 2 m that covers the left half of the image, with vertex normals tilted.
     let mut wall = Mesh::parallelogram(Vec3::new(-4.0, -4.0, -2.0), Vec3::X * 4.0, Vec3::Y * 8.0, 1);
     wall.normals = vec![Vec3::new(0.6, 0.0, 0.8); 4];
     let behind = Mesh::parallelogram(Vec3::new(-1.0, -1.0, -3.0), Vec3::X, Vec3::Y, 0);
@@ -302,7 +303,7 @@ fn surfaces_seen_have_their_distance_place_and_name() {
     let at = |aov: Aov, x: usize, y: usize| layer(&film, aov.name()).pixel(x, y);
     for y in 0..5 {
         for x in 0..9 {
-            // The middle column is cut in half; 64 samples there have a standard deviation of 1/16 at most.
+            // The middle column is half covered; the standard deviation of 64 samples there is at most 1/16.
             let alpha = at(Aov::Alpha, x, y)[0];
             let (expected, tolerance) = [(1.0, 0.0), (0.5, 0.25), (0.0, 0.0)][(x > 3) as usize + (x > 4) as usize];
             assert!((alpha - expected).abs() <= tolerance, "{x}, {y}: {alpha}");
@@ -315,7 +316,7 @@ fn surfaces_seen_have_their_distance_place_and_name() {
             assert!((at(Aov::Depth, x, y)[0] - 2.0).abs() < 1e-5);
             let position = Vec3::from_slice(at(Aov::Position, x, y));
             assert!((position.z + 2.0).abs() < 1e-5 && position.x < 0.0);
-            // The mean of distances is at least the distance of the mean, and hardly more.
+            // The mean distance is slightly larger than the distance of the mean position.
             let distance = at(Aov::Distance, x, y)[0] - position.length();
             assert!((-1e-5..0.01).contains(&distance), "{distance}");
             assert!(Vec3::from_slice(at(Aov::Normal, x, y)).abs_diff_eq(Vec3::new(0.6, 0.0, 0.8), 1e-5));
@@ -338,7 +339,7 @@ fn layers_that_cannot_be_are_refused_by_name() {
     }
     assert!(outputs.add("x", "LD").unwrap_err().message.contains("column 3"));
     assert_eq!(outputs.expressions.len(), 1);
-    // A label that the scene does not know shows when it is rendered.
+    // A label that does not exist in the scene is refused when it is rendered.
     outputs.add("y", "C<RD'Nowhere'>L").unwrap();
     let params = Params { width: 4, height: 4, samples: 1, outputs, ..Params::default() };
     let result = run(&world(open()), &viewer(), &params, Monitor::default().job(), &mut |_| ());

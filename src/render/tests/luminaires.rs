@@ -1,4 +1,4 @@
-//! Luminaires that were measured, against closed forms.
+//! Tests of measured luminaires against closed forms.
 
 use super::*;
 use crate::exec::Pool;
@@ -18,7 +18,7 @@ fn hung(luminaire: Luminaire, axis: Vec3, c0: Vec3) -> Scene {
     }
 }
 
-/// Illuminance over a parallelogram, seen from the side of `normal`.
+/// Illuminance over a parallelogram, on the side of `normal`.
 fn lux(scene: Scene, [origin, across, down, normal]: [Vec3; 4], cells: usize) -> illuminance::Output {
     let place = Place::Grid { origin, across, down, normal };
     let params = illuminance::Params { columns: cells, rows: cells, samples: 16, seed: 1 };
@@ -28,8 +28,7 @@ fn lux(scene: Scene, [origin, across, down, normal]: [Vec3; 4], cells: usize) ->
 
 const FLOOR: [Vec3; 4] = [Vec3::new(-2.0, 0.0, -2.0), Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 4.0), Vec3::Y];
 
-/// A luminaire from its file that sends out the same everywhere is a point light; one that falls with the cosine lights a
-/// plane by `I cos⁴ / h²`.
+/// A luminaire of uniform intensity equals a point light; one of cosine intensity lights a plane by `I cos⁴ / h²`.
 #[test]
 fn even_and_matt_luminaires_light_a_plane_by_closed_forms() {
     let even = b"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n250 250\n";
@@ -50,7 +49,7 @@ fn even_and_matt_luminaires_light_a_plane_by_closed_forms() {
     }
 }
 
-/// Each quarter of the circle gets what its plane says, however the luminaire hangs.
+/// Each quarter of the circle receives the intensity of its C plane, for any orientation of the luminaire.
 #[test]
 fn planes_lie_where_the_axes_say() {
     let quarters = Luminaire {
@@ -72,7 +71,7 @@ fn planes_lie_where_the_axes_say() {
     }
 }
 
-/// What arrives at all sides of a box is the flux of the luminaire within.
+/// The flux through all sides of a box equals the flux of the luminaire inside.
 #[test]
 fn flux_is_conserved() {
     let batwing = Luminaire {

@@ -1,4 +1,4 @@
-//! Closed forms, invariants and statistics of the whole renderer: what the tests share.
+//! Closed forms, invariants and statistics of the whole renderer; this file has the common helpers.
 
 pub(super) mod chi2;
 mod denoise;
@@ -16,6 +16,8 @@ mod requirements;
 mod shared;
 
 use super::*;
+use crate::error::Error;
+use crate::image::Image;
 use crate::job::Monitor;
 use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
 use glam::DVec3;
@@ -26,7 +28,7 @@ fn matt(albedo: f32, emission: f32) -> Material {
     Material { ior: 1.0, emission: Vec3::splat(emission), ..Material::diffuse("matt", Vec3::splat(albedo)) }
 }
 
-/// A closed sphere of triangles that faces its centre.
+/// A closed sphere of triangles that face its centre.
 fn inward_sphere(radius: f32, material: usize) -> Mesh {
     let (rows, columns) = (12, 24);
     let mut mesh = Mesh { material, ..Mesh::default() };
@@ -64,7 +66,7 @@ impl PathSink for Sum {
     }
 }
 
-/// Mean irradiance of a point (red) and its standard error, from independent scramblings.
+/// Mean irradiance of a point (red channel) and its standard error, from independent scramblings.
 fn measure(world: &World, point: &SurfacePoint) -> (f64, f64) {
     let (batches, per_batch) = (64, 256);
     let means: Vec<f64> = (0..batches)
@@ -85,26 +87,27 @@ fn assert_close(world: &World, point: &SurfacePoint, expected: f64) {
     assert!((mean - expected).abs() < 4.0 * error + 1e-5 * expected, "{mean} ± {error}, expected {expected}");
 }
 
-/// A point in the middle of the first triangle of a mesh's front.
+/// The centroid of the first triangle of a mesh, on its front side.
 fn centre_of(mesh: u32) -> SurfacePoint {
     SurfacePoint { mesh, triangle: 0, barycentric: Vec2::new(0.0, 0.5), front: true }
 }
 
-/// Form factor from a small facet to a rectangle `a × b` at distance `c`, one corner on the facet's normal, parallel.
+/// Form factor from a small facet to a parallel rectangle `a × b` at distance `c`, with one corner on the facet's
+/// normal.
 fn parallel_form_factor(a: f64, b: f64, c: f64) -> f64 {
     let (x, y) = (a / c, b / c);
     let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     (x / p * (y / p).atan() + y / q * (x / q).atan()) / std::f64::consts::TAU
 }
 
-/// The same for a rectangle in a plane perpendicular to the facet's, at distance `c`, `b` high and `a` wide.
+/// Form factor from a small facet to a perpendicular rectangle at distance `c`, `b` high and `a` wide.
 fn perpendicular_form_factor(a: f64, b: f64, c: f64) -> f64 {
     let (x, y) = (a / c, b / c);
     let r = 1.0 / (1.0 + y * y).sqrt();
     (x.atan() - r * (x * r).atan()) / std::f64::consts::TAU
 }
 
-/// A small room with everything in it: textures, mirror, glass, gloss, alpha, a lamp and a sky.
+/// A small room with every feature: textures, mirror, glass, gloss, alpha, a lamp and a sky.
 fn everything() -> Scene {
     let image = Image::from_fn(16, 16, |x, y| {
         let lit = x % 4 == 1 && y % 4 == 2;

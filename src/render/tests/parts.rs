@@ -1,4 +1,4 @@
-//! Parts: the same image whatever they are, and nothing that does not belong together becomes one.
+//! Tests of renders in parts: any partition gives the same image, and parts that do not belong together are refused.
 
 use super::*;
 use crate::error::ErrorKind;
@@ -7,7 +7,7 @@ use crate::render::parts::{self, File, Part};
 use crate::rng::Rng;
 use std::path::PathBuf;
 
-/// A folder that is gone with the test.
+/// A temporary folder that is deleted with the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -35,7 +35,7 @@ fn merged(world: &World, params: &Params, files: &[File]) -> Result<Film> {
     parts::merge(world, &viewer(), params, files, Monitor::default().job())
 }
 
-/// With light of all kinds, all surfaces, and a preview.
+/// With expressions of light, all surface attributes, and a preview.
 fn with_layers() -> Params {
     let mut outputs = Outputs { aovs: Aov::ALL.to_vec(), ..Outputs::default() };
     for (name, expression) in [("direct", "LDE"), ("rest", "L.*DDE"), ("glass", "L.*S.*E")] {
@@ -73,7 +73,7 @@ fn any_parts_in_any_order_give_the_same_bits() {
         }
         assert_same(&whole, &merged(&world, &params, &files).unwrap());
     }
-    // No grid, and no multiple of anything.
+    // An irregular partition without any multiples of 8.
     let odd = [
         Part { x: 0, y: 0, width: 5, height: 21, first: 0, samples: 24 },
         Part { x: 5, y: 0, width: 32, height: 3, first: 0, samples: 1 },
@@ -96,7 +96,7 @@ fn parts_are_the_same_on_any_number_of_threads_and_show_themselves() {
     let film = run(1);
     assert_same(&film, &run(3));
     assert_eq!((film.beauty.width, film.beauty.height, film.samples), (17, 9, 10));
-    // Its picture is a piece of the whole's, but for noise.
+    // The picture of a part is a crop of the whole image, up to noise.
     let whole = render(&world, &viewer(), &Params { samples: 256, ..params });
     let (mut difference, mut sum) = (0.0, 0.0);
     for y in 0..9 {
@@ -127,7 +127,7 @@ fn a_merged_image_has_the_mean_and_the_error_of_one_rendered_at_once() {
     let n = count as f64;
     let [a, b] = [0, 1].map(|i| (sums[i] / n, (squares[i] / n - (sums[i] / n).powi(2)) / (n - 1.0)));
     assert!((a.0 - b.0).abs() < 4.0 * (a.1 + b.1).sqrt(), "{a:?} {b:?}");
-    // The variance is about the same as well.
+    // The variance is also about equal.
     assert!((errors[0] / errors[1] - 1.0).abs() < 0.1, "{errors:?}");
 }
 
@@ -143,7 +143,7 @@ fn what_does_not_belong_together_is_refused_by_name() {
         let error = merged(world, params, files).unwrap_err();
         assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains(word), "{word}: {}", error.message);
     };
-    // Of another rendering.
+    // Parts of another render.
     let with = |change: &dyn Fn(&mut Params)| {
         let mut params = params.clone();
         change(&mut params);
@@ -161,13 +161,13 @@ fn what_does_not_belong_together_is_refused_by_name() {
     let aside = Camera { fov_y: 1.0, ..viewer() };
     let error = parts::merge(&world, &aside, &params, &files, Monitor::default().job()).unwrap_err();
     assert!(error.message.contains("camera"), "{}", error.message);
-    // Too much, and too little.
+    // Overlaps and holes.
     refused(&world, &params, &[files[0].clone(), files[1].clone(), files[0].clone()], "overlap");
     refused(&world, &params, &files[1..], "paths 0 to 7 of the 8 x 12 pixels at (0, 0)");
     refused(&world, &params, &[], "16 x 12 pixels at (0, 0)");
     let late = folder.part(&world, &params, &Part { first: 3, samples: 5, ..half(0) });
     refused(&world, &params, &[late, files[1].clone()], "paths 0 to 2 of the 8 x 12 pixels");
-    // Paths that are not fixed, and parts of nothing.
+    // Parameters without a fixed number of paths, and invalid parts.
     let run = |params: &Params, part: &Part| {
         parts::run(&world, &viewer(), params, part, Monitor::default().job()).err().unwrap().message
     };
@@ -204,13 +204,13 @@ fn damaged_files_are_errors_and_a_cancel_leaves_none() {
             damaged.truncate(rng.below(bytes.len()));
         } else {
             for _ in 0..1 + rng.below(4) {
-                // Mostly the header.
+                // Corrupt mostly the header.
                 let at = rng.below(if round % 3 == 1 { 2000 } else { bytes.len() });
                 damaged[at] = rng.next_u32() as u8;
             }
         }
         std::fs::write(&path, &damaged).unwrap();
-        // Numbers that are others are not noticed; anything else is an error and nothing worse.
+        // Changed pixel values go unnoticed; any other corruption is an error and nothing worse.
         if let Ok(file) = File::open(&path) {
             let _ = merged(&world, &params, &[file]);
         }

@@ -1,8 +1,8 @@
-//! Scenes far from the origin.
+//! Tests of scenes far from the origin.
 
 use super::*;
 
-/// A room of coordinates that are exact a million metres away as well, with a table, a lamp, and a point light.
+/// A room with a table, a lamp and a point light, whose coordinates are exact even a million metres away.
 fn room(at: Vec3) -> (Scene, Camera) {
     let boxed = |low: Vec3, size: Vec3, material| {
         let (x, y, z) = (Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z);
@@ -44,14 +44,14 @@ fn a_room_a_million_metres_away_looks_as_it_does_at_home() {
     };
     let home = film(Vec3::ZERO);
     let mean = home.beauty.data.iter().sum::<f32>() / home.beauty.data.len() as f32;
-    let largest = |a: &Image, b: &Image| a.data.iter().zip(&b.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    let max = |a: &Image, b: &Image| a.data.iter().zip(&b.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     for at in [Vec3::X * 1_048_576.0, Vec3::new(-1_048_576.0, 1_048_576.0, 524_288.0)] {
         let away = film(at);
-        let off = largest(&home.beauty, &away.beauty);
+        let off = max(&home.beauty, &away.beauty);
         assert!(off <= 1e-5 * mean, "{at}: {off} of {mean}");
-        assert!(largest(&home.layers[0].image, &away.layers[0].image) <= 1e-5, "depths");
+        assert!(max(&home.layers[0].image, &away.layers[0].image) <= 1e-5, "depths");
         for (p, q) in home.layers[1].image.data.chunks(3).zip(away.layers[1].image.data.chunks(3)) {
-            // To the steps of f32 at that distance.
+            // Equal up to the resolution of f32 at that distance.
             let off = (Vec3::from_slice(q) - (Vec3::from_slice(p) + at)).abs().max_element();
             assert!(off <= 0.125, "{at}: positions off by {off}");
         }

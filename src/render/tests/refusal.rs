@@ -1,4 +1,4 @@
-//! Bad input is refused by name.
+//! Tests that bad input is refused by name.
 
 use super::*;
 

@@ -1,8 +1,8 @@
-//! What a scene requires: found rightly, left out without a trace, and bounded truthfully.
+//! Tests of the scene analysis: it finds the right features, its omissions change nothing, and its bounds hold.
 
 use super::*;
 
-/// Renders with the analysis and without it; the largest difference of a pixel relative to the mean of the image.
+/// Renders with and without the analysis; returns the largest difference of a pixel relative to the mean of the image.
 fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
     let params = Params { width: 48, height: 32, samples, ..Params::default() };
     let mut world = world(scene);
@@ -41,7 +41,7 @@ fn what_can_occur_is_found_and_what_cannot_is_named() {
     assert!(r.diffuse && r.glossy && r.mirror && r.glass && r.alpha && r.normal_maps);
     assert!(r.surfaces && r.textured_surfaces && r.points && r.environment);
     assert!(!r.spots && !r.directional && r.textures == 1);
-    // The poles of the sphere; and the pane is not as smooth as it would have to be.
+    // The poles of the sphere are degenerate; the pane is slightly too rough for a mirror.
     let frosted = "Material 4 is transparent and rough: light goes straight on through, and is not scattered.";
     assert_eq!(r.left_out(), ["48 triangles have no area: no ray meets them.", frosted]);
 
@@ -61,7 +61,7 @@ fn what_can_occur_is_found_and_what_cannot_is_named() {
     };
     assert_eq!(found(&|_| ()), matt_only);
     assert_eq!(matt_only.left_out().len(), 9, "{:?}", matt_only.left_out());
-    // Materials that no triangle has, and lights that do not shine.
+    // Materials without triangles, and lights that do not emit.
     assert_eq!(
         found(&|s| s.materials.extend(everything().materials.into_iter().map(|m| Material {
             base_color_texture: None,
@@ -74,12 +74,12 @@ fn what_can_occur_is_found_and_what_cannot_is_named() {
     assert_eq!(found(&|s| s.environment = Some(Environment::Constant(Vec3::ZERO))), matt_only);
     let unlit = PunctualLight::Point { position: Vec3::ZERO, intensity: Vec3::ZERO };
     assert_eq!(found(&|s| s.lights.push(unlit)), matt_only);
-    // What would make it see-through, but for the rest of it.
+    // Alpha blending requires an opacity below 1.
     assert!(!found(&|s| s.materials[0].alpha_mode = AlphaMode::Blend).alpha);
     assert!(!found(&|s| s.materials[0].alpha_mode = AlphaMode::Mask(0.9)).alpha);
     assert!(!found(&|s| (s.materials[0].transmission, s.materials[0].metallic) = (1.0, 1.0)).glass);
     assert!(found(&|s| (s.materials[0].alpha_mode, s.materials[0].alpha) = (AlphaMode::Blend, 0.9)).alpha);
-    // A texture of one colour is a factor; one of two is not.
+    // A texture of one colour is a constant factor; a texture of two colours is not.
     let textured = |second: f32| {
         found(&|s: &mut Scene| {
             let image = Image::from_fn(2, 1, |x, _| [if x == 0 { 0.5f32 } else { second }; 3]).unwrap();
@@ -91,7 +91,8 @@ fn what_can_occur_is_found_and_what_cannot_is_named() {
     assert_eq!((textured(0.75).textures, textured(0.75).albedo), (1, Vec3::splat(0.375)));
 }
 
-/// A ball of glass shows the world upside down, and a pane shows it as it is: which of them a scene has is told.
+/// A glass ball would show the world upside down, and a pane shows it as it is: the report says which of them a scene
+/// has.
 #[test]
 fn glass_that_would_bend_light_is_named() {
     let glass = Material { transmission: 1.0, metallic: 0.0, roughness: 0.0, ..Material::default() };
@@ -114,7 +115,7 @@ fn glass_that_would_bend_light_is_named() {
     assert!(!named(&Material { transmission: 0.0, ..glass.clone() }, &[&ball]).0);
     let (bent, scattered, text) = named(&Material { roughness: 0.5, ..glass.clone() }, &[&pane]);
     assert!(!bent && scattered && text.contains("Material 1 is"), "{text}");
-    // Where no mesh has it, it is no matter.
+    // A material that no mesh uses does not matter.
     pane.material = 0;
     assert!(!named(&Material { roughness: 0.5, ..glass }, &[&pane]).1);
 }
@@ -129,7 +130,7 @@ fn bounces_follow_from_the_albedo() {
     assert_eq!((of(1.0).bounces(0.5), of(0.5).bounces(0.0), of(0.5).bounces(f32::NAN)), (None, None, None));
 }
 
-/// A room of one albedo is the worst case: what is cut off is all that the bound allows.
+/// A room of uniform albedo is the worst case: the truncated light reaches the bound.
 #[test]
 fn truncation_takes_no_more_than_it_says() {
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 3.0)], ..Scene::default() };

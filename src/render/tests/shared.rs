@@ -1,14 +1,14 @@
-//! Paths that share what they find: the same light as paths on their own, with less scatter.
+//! Tests of path sharing: the same light as separate paths, with less variance.
 
 use super::*;
-use crate::render::path::{self, Length};
+use crate::render::path::{self, PathLength};
 use crate::render::sampler::Sampler;
-use crate::render::shared::{self, MOST, Scratch, Start};
+use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
 use crate::render::tape::Sum as Light;
 use crate::scene::accel::Ray;
 
-/// A room of all that decides who takes part: matt, glossy, metal, mirror and glass, a smooth ball, leaves that are partly
-/// there, a pane before a corner, and a pane that nobody sees.
+/// A room with every case that decides about sharing: matt, glossy, metal, mirror and glass, a smooth ball, leaves with
+/// alpha, a pane in front of a corner, and a pane outside the view.
 fn room() -> Scene {
     let mut scene = everything();
     let materials = scene.materials.len();
@@ -31,9 +31,9 @@ fn room() -> Scene {
     scene
 }
 
-/// Mean of estimates along some rays, and the variance of one. Each mean is of 64 paths of one point sequence.
-fn estimates(mut make: impl FnMut(u64) -> [Vec3; MOST], count: u64) -> [[DVec3; 2]; MOST] {
-    let mut sums = [[DVec3::ZERO; 2]; MOST];
+/// Mean of estimates along several rays, and the variance of one. Each mean is over 64 paths of one point sequence.
+fn estimates(mut make: impl FnMut(u64) -> [Vec3; MAX_SHARED], count: u64) -> [[DVec3; 2]; MAX_SHARED] {
+    let mut sums = [[DVec3::ZERO; 2]; MAX_SHARED];
     for trial in 0..count {
         for (sum, value) in sums.iter_mut().zip(make(trial)) {
             let value = value.as_dvec3();
@@ -45,7 +45,7 @@ fn estimates(mut make: impl FnMut(u64) -> [Vec3; MOST], count: u64) -> [[DVec3; 
 }
 
 /// Neighbouring rays from the eye around a direction.
-fn rays(world: &World, towards: Vec3) -> [Ray; MOST] {
+fn rays(world: &World, towards: Vec3) -> [Ray; MAX_SHARED] {
     let eye = viewer().position;
     std::array::from_fn(|i| {
         let aside = Vec3::new((i % 4) as f32, (i / 4) as f32, 0.0) * 0.03;
@@ -53,7 +53,7 @@ fn rays(world: &World, towards: Vec3) -> [Ray; MOST] {
     })
 }
 
-fn apart(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [Vec3; MOST] {
+fn apart(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: u64) -> [Vec3; MAX_SHARED] {
     std::array::from_fn(|i| {
         let mut sum = Light::default();
         for index in 0..64 {
@@ -65,16 +65,16 @@ fn apart(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [Vec3
     })
 }
 
-fn together(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [Vec3; MOST] {
-    let mut sums = [Light::default(); MOST];
+fn together(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: u64) -> [Vec3; MAX_SHARED] {
+    let mut sums = [Light::default(); MAX_SHARED];
     let mut scratch = Scratch::default();
     for index in 0..64 {
         let start = |i: usize| {
             let mut sampler = Sampler::new(crate::rng::hash(trial, &[2, i as u64]), index);
             let first = sampler.next();
-            Start { ray: rays[i], lighting: (first.fine(2), first.get(3)), length, sampler }
+            Start { ray: rays[i], light_u: (first.fine(2), first.get(3)), length, sampler }
         };
-        let mut starts: [Start; MOST] = std::array::from_fn(start);
+        let mut starts: [Start; MAX_SHARED] = std::array::from_fn(start);
         shared::trace(world, &mut starts, &mut sums, &mut scratch);
     }
     sums.map(|s| s.0 / 64.0)
@@ -83,7 +83,7 @@ fn together(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [V
 #[test]
 fn shared_paths_bring_the_same_light() {
     let world = world(room());
-    // Into corners, along edges, on the ball, through panes and leaves; paths cut short, and whole.
+    // Into corners, along edges, on the ball, through panes and leaves; with limited and with unlimited bounces.
     let targets = [
         Vec3::new(-1.4, -0.5, -1.4),
         Vec3::new(0.0, -0.6, -0.4),
@@ -95,9 +95,9 @@ fn shared_paths_bring_the_same_light() {
     let (mut worst, mut tests) = (0f64, 0);
     for towards in targets {
         let rays = rays(&world, towards);
-        for most in [0, 1, 2, 3, path::MOST_SCATTERINGS] {
-            let count = if most > 3 { 96 } else { 32 };
-            let length = Length { most, worth: Some(Vec3::splat(0.7)) };
+        for max_bounces in [0, 1, 2, 3, path::MAX_BOUNCES] {
+            let count = if max_bounces > 3 { 96 } else { 32 };
+            let length = PathLength { max_bounces, roulette_weight: Some(Vec3::splat(0.7)) };
             let own = estimates(|trial| apart(&world, &rays, length, trial), count);
             let shared = estimates(|trial| together(&world, &rays, length, trial), count);
             for ([a, va], [b, vb]) in own.into_iter().zip(shared) {
@@ -110,7 +110,7 @@ fn shared_paths_bring_the_same_light() {
             }
         }
     }
-    // Of 720 distances, by Student's law with 62 degrees of freedom at least, one in ten thousand runs has one above 6.
+    // Of 720 deviations of Student's t with at least 62 degrees of freedom, one exceeds 6 in one of ten thousand runs.
     assert!(tests == 720 && worst < 6.0, "{worst}");
 }
 
@@ -122,9 +122,9 @@ fn shared_paths_scatter_less() {
         ..Scene::default()
     };
     let world = world(scene);
-    // What lies above the lamp is in its shade.
+    // Surfaces above the lamp are in its shadow.
     let rays = rays(&world, Vec3::new(0.0, 2.5, -1.5));
-    let length = Length { most: 2, worth: None };
+    let length = PathLength { max_bounces: 2, roulette_weight: None };
     let own = estimates(|trial| apart(&world, &rays, length, trial), 64);
     let shared = estimates(|trial| together(&world, &rays, length, trial), 64);
     for ([a, va], [b, vb]) in own.into_iter().zip(shared) {

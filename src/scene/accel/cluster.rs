@@ -1,13 +1,15 @@
-//! The binary tree, from its leaves up: hierarchical, parallel, locally-ordered clustering (Benthin, Meister, Barczak,
-//! Mehalwal, Tsakok and Kensler 2024, "H-PLOC").
+//! Bottom-up construction of the binary tree: hierarchical, parallel, locally-ordered clustering (Benthin, Meister,
+//! Barczak, Mehalwal, Tsakok and Kensler 2024, "H-PLOC").
 //!
-//! The list of leaves is halved, and halved again, where the curve they are sorted along leaves the largest cells of space.
-//! From the smallest ranges up, the clusters left of two halves are merged with their nearest neighbours until few are
-//! left: each with the one of those around it with which it has the smallest box, where that holds for both.
+//! The list of leaves, sorted along a space-filling curve, is split recursively where the curve leaves the largest
+//! cells of space. From the smallest ranges up, the remaining clusters of two halves are merged with their nearest
+//! neighbours until few are left. Two clusters merge if each is the neighbour with which the other forms the smallest
+//! box.
 //!
-//! On regular grids, which the walls of rooms are, all merges of neighbours cost the same. Of equal boxes a cluster prefers
-//! the one whose place differs from its own in the lowest bits: as both agree on that, a row of equal clusters is merged
-//! two by two. (Taken in order, hardly any two would choose each other, and those that did would lie anywhere.)
+//! On regular grids, such as the walls of rooms, all merges of neighbours cost the same. Among equal boxes, a cluster
+//! prefers the one whose index differs from its own in the lowest bits. The preference is mutual, so a row of equal
+//! clusters merges in pairs. (With a preference by order, hardly any two clusters would choose each other, and the
+//! merges would be irregular.)
 
 use super::lanes::{Baseline, Lanes};
 use super::leaves::Leaves;
@@ -18,24 +20,24 @@ use crate::job::Job;
 use crate::simd::Level;
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Clusters that a range is merged down to before it is joined with its neighbour.
-const FEW: usize = 32;
-/// Neighbours on either side that a cluster chooses from.
-const REACH: usize = 8;
-/// Leaves of the ranges that are done by one thread.
+/// Number of clusters to which a range is reduced before it is joined with its neighbour.
+const FEW_CLUSTERS: usize = 32;
+/// Neighbours on either side among which a cluster chooses.
+const SEARCH_RADIUS: usize = 8;
+/// Maximum number of leaves in a range processed by one thread.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
-/// Bits of an area that tell the partner instead.
-const PARTNER: u32 = 2 * FEW as u32 - 1;
+/// Low bits of an area that are replaced by the index difference to the partner.
+const PARTNER_BITS: u32 = 2 * FEW_CLUSTERS as u32 - 1;
 
-/// The tree over all leaves, of which there is one at least.
+/// The tree over all leaves, of which there must be at least one.
 pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tree> {
     let mut clusters = pages::filled(leaves.order.len(), Cluster::default(), job)?;
-    // The first pair is the root's.
+    // The first pair belongs to the root.
     let len = leaves.order.len() + 1;
     let mut tree =
         Tree { pairs: pages::filled(len, Pair::default(), job)?, parents: pages::filled(len, Tree::ROOT, job)? };
-    let new = New { pairs: &mut tree.pairs[1..], parents: &mut tree.parents[1..], first: 1 };
+    let new = NewPairs { pairs: &mut tree.pairs[1..], parents: &mut tree.parents[1..], first: 1 };
     let mut all = Range { leaves: &leaves.list, order: &leaves.order, clusters: &mut clusters, new, level };
     let left = all.merge(job)?;
     let left = merge_nearest(&mut all.clusters[..left], &mut all.new, 1, level);
@@ -50,27 +52,27 @@ pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tre
 #[derive(Clone, Copy, Default)]
 struct Cluster {
     node: Bvh2Node,
-    /// A pair of nodes that nothing below takes.
+    /// Index of an unused pair of nodes, reserved for this cluster's parent.
     pair: u32,
 }
 
-/// Pairs of nodes that are to be filled.
-struct New<'a> {
+/// Pairs of nodes still to be filled.
+struct NewPairs<'a> {
     pairs: &'a mut [Pair],
     parents: &'a mut [u32],
-    /// The first of them, counted from that of all.
+    /// Index of the first of them in the whole tree.
     first: u32,
 }
 
-impl New<'_> {
-    fn split_at(&mut self, middle: usize) -> (New<'_>, New<'_>) {
+impl NewPairs<'_> {
+    fn split_at(&mut self, middle: usize) -> (NewPairs<'_>, NewPairs<'_>) {
         let (left_pairs, pairs) = self.pairs.split_at_mut(middle);
         let (left_parents, parents) = self.parents.split_at_mut(middle);
-        let left = New { pairs: left_pairs, parents: left_parents, first: self.first };
-        (left, New { pairs, parents, first: self.first + middle as u32 })
+        let left = NewPairs { pairs: left_pairs, parents: left_parents, first: self.first };
+        (left, NewPairs { pairs, parents, first: self.first + middle as u32 })
     }
 
-    /// Makes two clusters siblings. Of their free pairs they take one; the other one is their parent's.
+    /// Makes two clusters siblings. They use one of their two free pairs; the other passes to their parent.
     fn join(&mut self, a: &Cluster, b: &Cluster) -> Cluster {
         let (pair, free) = (a.pair.min(b.pair), a.pair.max(b.pair));
         self.pairs[(pair - self.first) as usize] = Pair([a.node, b.node]);
@@ -83,20 +85,21 @@ impl New<'_> {
     }
 }
 
-/// Some leaves in their order along the curve, and what is made of them. There are as many new pairs as leaves, one more than it takes to join all.
+/// A range of leaves along the curve, with its clusters. It owns as many new pairs as leaves, one more than joining
+/// them all requires.
 struct Range<'a> {
     leaves: &'a [Bvh2Node],
     order: &'a [(u64, u32)],
     clusters: &'a mut [Cluster],
-    new: New<'a>,
+    new: NewPairs<'a>,
     level: Level,
 }
 
 impl Range<'_> {
-    /// Leaves a few clusters at the front, and tells how many.
+    /// Merges the range to a few clusters, stored at the front, and returns their number.
     fn merge(&mut self, job: Job) -> Result<usize> {
         let len = self.order.len();
-        if len <= FEW {
+        if len <= FEW_CLUSTERS {
             for (i, (cluster, &(_, leaf))) in self.clusters.iter_mut().zip(self.order).enumerate() {
                 *cluster = Cluster { node: self.leaves[leaf as usize], pair: self.new.first + i as u32 };
             }
@@ -112,10 +115,10 @@ impl Range<'_> {
         };
         let (left, right) = (left?, right?);
         self.clusters.copy_within(middle..middle + right, left);
-        Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW, self.level))
+        Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW_CLUSTERS, self.level))
     }
 
-    /// Where the highest bit changes in which codes differ.
+    /// The split position: where the highest differing bit of the codes changes.
     fn middle(&self) -> usize {
         let (first, last) = (self.order[0].0, self.order[self.order.len() - 1].0);
         if first == last {
@@ -135,8 +138,8 @@ impl Range<'_> {
     }
 }
 
-/// Merges neighbours until few are left, at the front; tells how many.
-fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, level: Level) -> usize {
+/// Merges neighbours until at most `few` are left, at the front; returns their number.
+fn merge_nearest(clusters: &mut [Cluster], new: &mut NewPairs, few: usize, level: Level) -> usize {
     let mut len = clusters.len();
     if len <= few {
         return len;
@@ -144,7 +147,7 @@ fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, level: Lev
     let mut boxes = Boxes::of(clusters);
     while len > few {
         let choices = boxes.choose(len, level);
-        let partner = |i: usize| i ^ (choices[i].to_bits() & PARTNER) as usize;
+        let partner = |i: usize| i ^ (choices[i].to_bits() & PARTNER_BITS) as usize;
         let mut kept = 0;
         for i in 0..len {
             let other = partner(i);
@@ -162,22 +165,23 @@ fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, level: Lev
     len
 }
 
-const ROOM: usize = 2 * FEW + 2 * REACH;
+const BOX_CAPACITY: usize = 2 * FEW_CLUSTERS + 2 * SEARCH_RADIUS;
 
-/// Low and high ends of boxes side by side, with boxes around them that are too large to be chosen.
-struct Boxes([[f32; ROOM]; 6]);
+/// Bounds of boxes in SoA layout, surrounded by sentinel boxes too large to be chosen.
+struct Boxes([[f32; BOX_CAPACITY]; 6]);
 
-/// Scenes are of unit size, though they may lie 2^24 times as far away.
-const TOO_LARGE: f32 = 1e15;
+/// Larger than any box: scenes are scaled to unit size, though they may lie 2^24 times as far from the origin
+/// [convention].
+const SENTINEL: f32 = 1e15;
 
-/// `[i][k]`: the bits in which places `i` and `i - REACH + k` differ.
-static DIFFER: [[[u32; LANES]; 2 * REACH + 1]; 2 * FEW / LANES] = {
-    let mut table = [[[0; LANES]; 2 * REACH + 1]; 2 * FEW / LANES];
+/// `[i][k]`: the bits in which the indices `i` and `i - SEARCH_RADIUS + k` differ.
+static INDEX_DIFFERENCE: [[[u32; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES] = {
+    let mut table = [[[0; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES];
     let mut i = 0;
-    while i < 2 * FEW {
+    while i < 2 * FEW_CLUSTERS {
         let mut k = 0;
-        while k <= 2 * REACH {
-            table[i / LANES][k][i % LANES] = (i ^ (i + k).wrapping_sub(REACH)) as u32 & PARTNER;
+        while k <= 2 * SEARCH_RADIUS {
+            table[i / LANES][k][i % LANES] = (i ^ (i + k).wrapping_sub(SEARCH_RADIUS)) as u32 & PARTNER_BITS;
             k += 1;
         }
         i += 1;
@@ -187,32 +191,32 @@ static DIFFER: [[[u32; LANES]; 2 * REACH + 1]; 2 * FEW / LANES] = {
 
 impl Boxes {
     fn of(clusters: &[Cluster]) -> Self {
-        let (low, high) = ([-TOO_LARGE; ROOM], [TOO_LARGE; ROOM]);
+        let (low, high) = ([-SENTINEL; BOX_CAPACITY], [SENTINEL; BOX_CAPACITY]);
         let mut boxes = Self([low, low, low, high, high, high]);
         boxes.update(clusters, 0);
         boxes
     }
 
-    /// Takes the boxes of some clusters, where there were a number of them before.
+    /// Loads the boxes of some clusters and resets the rest of the `before` previous ones to sentinels.
     fn update(&mut self, clusters: &[Cluster], before: usize) {
         for (i, cluster) in clusters.iter().enumerate() {
             self.set(i, cluster.node.min.into(), cluster.node.max.into());
         }
-        (clusters.len()..before).for_each(|i| self.set(i, [-TOO_LARGE; 3], [TOO_LARGE; 3]));
+        (clusters.len()..before).for_each(|i| self.set(i, [-SENTINEL; 3], [SENTINEL; 3]));
     }
 
     fn set(&mut self, i: usize, low: [f32; 3], high: [f32; 3]) {
         for axis in 0..3 {
-            self.0[axis][REACH + i] = low[axis];
-            self.0[3 + axis][REACH + i] = high[axis];
+            self.0[axis][SEARCH_RADIUS + i] = low[axis];
+            self.0[3 + axis][SEARCH_RADIUS + i] = high[axis];
         }
     }
 
-    /// For each box the neighbour with which it has the smallest box together: bits of that box's area (as it is not
-    /// negative they sort as it does), the lowest of which are replaced by those in which the two places differ.
-    fn choose(&self, len: usize, level: Level) -> [f32; 2 * FEW] {
+    /// For each box, the neighbour with which it forms the smallest union: the bits of the union's area (non-negative
+    /// floats sort as their bits do), the lowest of which are replaced by the bits in which the two indices differ.
+    fn choose(&self, len: usize, level: Level) -> [f32; 2 * FEW_CLUSTERS] {
         match level {
-            // SAFETY: the processor has the instructions of its level, and of those below.
+            // SAFETY: the processor supports its level and all levels below.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 | Level::Avx512 => unsafe { self.choose_avx2(len) },
             Level::Baseline => self.choose_with::<Baseline>(len),
@@ -221,25 +225,25 @@ impl Boxes {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn choose_avx2(&self, len: usize) -> [f32; 2 * FEW] {
+    fn choose_avx2(&self, len: usize) -> [f32; 2 * FEW_CLUSTERS] {
         self.choose_with::<super::lanes::Avx2>(len)
     }
 
     #[inline(always)]
-    fn choose_with<L: Lanes>(&self, len: usize) -> [f32; 2 * FEW] {
-        let mut choices = [0.0; 2 * FEW];
+    fn choose_with<L: Lanes>(&self, len: usize) -> [f32; 2 * FEW_CLUSTERS] {
+        let mut choices = [0.0; 2 * FEW_CLUSTERS];
         let rows = |at: usize| -> [L; 6] {
             std::array::from_fn(|k| L::load_from(self.0[k][at..at + LANES].first_chunk().unwrap_or(&[0.0; LANES])))
         };
         for (i, choices) in choices.chunks_exact_mut(LANES).enumerate().take(len.div_ceil(LANES)) {
-            let own = rows(REACH + LANES * i);
+            let own = rows(SEARCH_RADIUS + LANES * i);
             let mut best = L::splat(f32::MAX);
-            for k in (0..REACH).chain(REACH + 1..2 * REACH + 1) {
+            for k in (0..SEARCH_RADIUS).chain(SEARCH_RADIUS + 1..2 * SEARCH_RADIUS + 1) {
                 let other = rows(LANES * i + k);
                 let extent = |axis: usize| own[3 + axis].max(other[3 + axis]).sub(own[axis].min(other[axis]));
                 let [x, y, z] = [extent(0), extent(1), extent(2)];
                 let area = x.add(y).mul(z).add(x.mul(y));
-                best = best.min(area.with_bits(PARTNER, &DIFFER[i][k]));
+                best = best.min(area.with_bits(PARTNER_BITS, &INDEX_DIFFERENCE[i][k]));
             }
             choices.copy_from_slice(&best.store().0);
         }
@@ -264,7 +268,7 @@ mod tests {
 
     #[test]
     fn equal_merges_make_a_balanced_tree() {
-        // Every other square of a grid, so that no two triangles are made one leaf.
+        // Every other square of a grid, so that no two triangles share a leaf.
         let square = |i: u32, j: u32| {
             let corner = |x, y| Vec3::new((2 * i) as f32 + x, (2 * j) as f32 + y, 0.0);
             [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]

@@ -1,10 +1,10 @@
-//! From a binary tree to nodes of eight children, by the cost rays are expected to meet (Ylitie, Karras and Laine 2017,
-//! section 3.1).
+//! Collapses the binary tree to nodes of eight children, minimising the expected cost of rays (Ylitie, Karras and
+//! Laine 2017, section 3.1).
 //!
-//! For each binary subtree the least expected cost is found of turning it into one to seven wide subtrees; then the choices
-//! are followed from the root down.
+//! For each binary subtree, the minimum expected cost of representing it by one to seven wide subtrees is computed;
+//! then the optimal choices are followed from the root down.
 //!
-//! The tree is cut into parts near its root, which are done in parallel. Where it is cut depends on the tree alone.
+//! The tree is cut near its root into parts, which are processed in parallel. The cut depends on the tree alone.
 
 use super::costs::{Binary, Branch, Content, Source, distribute};
 use super::lines::{Draft, Lines};
@@ -18,22 +18,23 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::{BinaryHeap, HashMap};
 
-/// Parts a large tree is cut into; smaller ones have parts of so many leaves, or are not worth cutting.
+/// Number of parts of a large tree; number of leaves per part of smaller trees; and minimum number of parts worth
+/// cutting.
 const PARTS: usize = 256;
 const PART_LEAVES: usize = 128;
-const FEW_PARTS: usize = 8;
-/// Lines of a page of memory, within which a ray's next step need not look up another page.
+const MIN_PARTS: usize = 8;
+/// Lines in a page of memory: a step to a node within it needs no new page-table lookup.
 const PAGE_LINES: usize = 64;
 
 /// Builds the nodes and packets of `accel`.
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
-    // Costs: of the parts in parallel, then of what lies above them.
+    // Compute the costs of the parts in parallel, then the costs above them.
     let cut = source.cut();
     let part = |&root: &u32| Binary::new(source, root, &HashMap::new(), &[], job);
     let mut binaries: Vec<Binary> = cut.par_iter().map(part).collect::<Result<_>>()?;
     let places: HashMap<u32, u32> = cut.iter().enumerate().map(|(i, &node)| (node, i as u32)).collect();
     binaries.push(Binary::new(source, Tree::ROOT, &places, &binaries, job)?);
-    // Choices: those above the parts first; they leave subtrees of parts, which are done in parallel.
+    // Follow the choices above the parts first; then process the remaining subtrees in parallel.
     let choice = Choice { source, binaries: &binaries, job };
     let mut top = choice.widen((cut.len(), 0), true)?;
     let tasks = std::mem::take(&mut top.left);
@@ -41,7 +42,7 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let mut done: Vec<Wide> = tasks.par_iter().map(below).collect::<Result<_>>()?;
     drop(binaries);
 
-    // Find where each comes to lie, the top first, and tell it.
+    // Determine the final position of each part, the top first, and store it in its parent.
     let mut len = top.lines.len();
     let mut bases = Vec::with_capacity(tasks.len());
     for (task, wide) in tasks.iter().zip(&done) {
@@ -64,13 +65,13 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
 }
 
 impl Source<'_> {
-    /// Roots of the parts: the tree is opened where its boxes are largest. Empty for a small tree.
+    /// Roots of the parts: the tree is opened repeatedly at the largest box. Empty for a small tree.
     fn cut(&self) -> Vec<u32> {
         let parts = (self.tree.pairs.len() / PART_LEAVES).min(PARTS);
-        if parts < FEW_PARTS {
+        if parts < MIN_PARTS {
             return Vec::new();
         }
-        // Areas are not negative: their bits sort as they do.
+        // Non-negative floats sort as their bits do.
         let entry = |index: u32| (half_area(self.tree[index].aabb()).to_bits(), index);
         let mut open = BinaryHeap::from([entry(Tree::ROOT)]);
         let mut leaves = Vec::new();
@@ -90,7 +91,7 @@ impl Source<'_> {
     }
 }
 
-/// A branch of one of the binary parts.
+/// A branch of one of the binary parts: (part, branch).
 type Place = (usize, usize);
 
 /// Wide nodes of a subtree.
@@ -98,14 +99,14 @@ type Place = (usize, usize);
 struct Wide {
     lines: Draft,
     root: Child,
-    /// Where each node is.
+    /// Line of each node.
     nodes: Vec<usize>,
     stack_need: usize,
     left: Vec<Left>,
 }
 
 impl Wide {
-    /// Where the lines come to lie a number of lines later.
+    /// Shifts the line numbers of all children.
     fn move_by(&mut self, lines: usize) {
         for &node in &self.nodes {
             let children = &mut self.lines.get_mut::<Node>(node).children;
@@ -114,26 +115,26 @@ impl Wide {
     }
 }
 
-/// A place that is to become a node.
+/// A branch that is to become a node.
 struct Open {
     place: Place,
     area: f32,
-    /// The node and the lane whose child it is.
+    /// The parent node, and the lane of this child.
     parent: Option<(usize, usize)>,
-    /// Entries that wait when it is visited.
+    /// Stack entries waiting when it is visited.
     waiting: usize,
 }
 
-/// A child that is left to be done, and where it belongs.
+/// A child left to another task, and its position in its parent.
 struct Left {
     at: Place,
     node: usize,
     lane: usize,
-    /// Entries that wait when it is visited.
+    /// Stack entries waiting when it is visited.
     waiting: usize,
 }
 
-/// Follows the least costs down.
+/// Follows the choices of minimum cost down the tree.
 struct Choice<'a> {
     source: &'a Source<'a>,
     binaries: &'a [Binary],
@@ -145,15 +146,15 @@ impl Choice<'_> {
         &self.binaries[binary].branches[at]
     }
 
-    /// The wide subtree of a place; within other parts than its own, children are left to be done if `leave`.
+    /// The wide subtree of a branch; with `leave`, children in other parts are left to other tasks.
     fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
-        let mut wide = Wide { lines: Draft::with_room(self.branch(root).lines())?, ..Wide::default() };
+        let mut wide = Wide { lines: Draft::with_capacity(self.branch(root).lines())?, ..Wide::default() };
         if self.is_packet(root) {
             wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
             return Ok(wide);
         }
-        // A page at a time is filled with the nodes that rays meet together most: a root, and of the nodes below those that
-        // are there the largest. What does not fit starts pages of its own.
+        // Fill each page with the nodes most likely to be visited together: a root, then repeatedly the largest node
+        // below the nodes present. Nodes that do not fit start new pages.
         let mut roots = vec![Open { place: root, area: 0.0, parent: None, waiting: 0 }];
         let mut open = Vec::new();
         while let Some(next) = roots.pop() {
@@ -171,7 +172,7 @@ impl Choice<'_> {
         Ok(wide)
     }
 
-    /// A node and its packets; the nodes below it are left open.
+    /// Creates a node and its packets; appends the nodes below it to `open`.
     fn make_node(&self, this: Open, root: Place, leave: bool, wide: &mut Wide, open: &mut Vec<Open>) -> Result<()> {
         let node = wide.lines.push(&Node::empty())?;
         wide.nodes.push(node);
@@ -182,9 +183,9 @@ impl Choice<'_> {
         let mut members = [root; 8];
         let len = self.members(this.place, &mut members);
         let mut ranked = members.map(|at| (0.0, at));
-        ranked[..len].iter_mut().for_each(|(promise, at)| *promise = self.promise(*at));
+        ranked[..len].iter_mut().for_each(|(benefit, at)| *benefit = self.benefit(*at));
         ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
-        // All triangles are known, and memory is asked for them, before the first is needed.
+        // Determine and prefetch all triangles before the first is used.
         let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
         wide.stack_need = wide.stack_need.max(this.waiting + len);
         let waiting = this.waiting + len - 1;
@@ -205,9 +206,8 @@ impl Choice<'_> {
         Ok(())
     }
 
-    /// What a search for any hit may expect of a child, which visits the last lane first: the triangles met by a line, over
-    /// the cost of looking for them.
-    fn promise(&self, place: Place) -> f32 {
+    /// Expected benefit of a child to an any-hit query, which visits the last lane first: surface area hit per cost.
+    fn benefit(&self, place: Place) -> f32 {
         let branch = self.branch(place);
         branch.surface / branch.cost[0]
     }
@@ -219,14 +219,14 @@ impl Choice<'_> {
     /// The children of a branch that becomes a node.
     fn members(&self, node: Place, members: &mut [Place; 8]) -> usize {
         let mut len = 0;
-        // (place, wide subtrees it may become); a stack of at most one right half per level that is divided.
+        // A stack of (branch, maximum number of wide subtrees); at most one right half per level is pending.
         let mut open = [(node, 8); 8];
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
             let ((binary, at), mut roots) = open[waiting];
             let branch = self.branch((binary, at));
-            // Fewer will do where they cost the same; the node itself has to be divided.
+            // Use fewer subtrees if they cost the same; the node itself must be divided.
             while roots < 8 && roots > 1 && branch.cost[roots - 2] <= branch.cost[roots - 1] {
                 roots -= 1;
             }
@@ -255,7 +255,7 @@ impl Choice<'_> {
         len
     }
 
-    /// The triangles of a branch, which may reach into another part. Memory is asked for them.
+    /// The triangles of a branch, which may extend into another part; prefetches them.
     fn triangles(&self, at: Place) -> ([u32; WIDTH], usize) {
         let mut ids = [0; WIDTH];
         let mut len = 0;

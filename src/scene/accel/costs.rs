@@ -1,7 +1,7 @@
-//! What a ray is expected to cost in each subtree of the binary tree, as one to seven wide subtrees.
+//! Expected traversal cost of each subtree of the binary tree, represented by one to seven wide subtrees.
 //!
-//! A ray that meets the box of a parent meets the box of a child in proportion to their surface areas. The costs of a
-//! subtree follow from those of its two halves.
+//! A ray that hits a parent's box hits a child's box with probability proportional to the child's surface area (the
+//! surface area heuristic). The costs of a subtree follow from those of its two halves.
 
 use super::packet::WIDTH;
 use super::pages;
@@ -15,26 +15,26 @@ use obvhs::bvh2::node::Bvh2Node;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Expected cost of testing a packet of triangles, in units of that of testing a node.
+/// Expected cost of intersecting a packet of triangles, relative to that of a node [origin not recorded].
 const PACKET_COST: f32 = 1.0;
 
-/// Branches made or weighed between two looks at the job: a part may hold nearly the whole tree.
+/// Branches processed between two checks for cancellation: a part may hold nearly the whole tree.
 const CHUNK: usize = 1 << 14;
 
 pub(super) struct Source<'a> {
     pub triangles: &'a [[Vec3; 3]],
     pub tree: &'a Tree,
-    /// Units of the tree's boxes.
+    /// Scale of the tree's boxes.
     pub scale: f32,
 }
 
 #[derive(Clone, Copy)]
 pub(super) enum Content {
-    /// Index of the first half; the other one comes right after it.
+    /// Index of the first half; the second follows it.
     Halves(u32),
-    /// One triangle or two, from this index on.
+    /// One triangle or two, starting at this index.
     Leaf(u32),
-    /// The root of another part.
+    /// Index of another part, whose root this is.
     Part(u32),
 }
 
@@ -42,13 +42,13 @@ pub(super) enum Content {
 pub(super) struct Branch {
     pub shape: Aabb,
     pub content: Content,
-    /// Triangles below.
+    /// Number of triangles below.
     count: u32,
-    /// Half the area of its box.
+    /// Half the surface area of its box.
     pub area: f32,
-    /// The same of all leaves below together: about the area of their triangles, as most of those are flat boxes.
+    /// Sum of the half areas of all leaves below: roughly the area of their triangles, as most leaves are flat boxes.
     pub surface: f32,
-    /// `cost[i]`: the least expected cost as at most `i + 1` wide subtrees.
+    /// `cost[i]`: the minimum expected cost with at most `i + 1` wide subtrees.
     pub cost: [f32; 7],
 }
 
@@ -59,7 +59,7 @@ impl Branch {
         Self { shape, content, count: node.prim_count, area, surface: area, cost: [area * PACKET_COST; 7] }
     }
 
-    /// Lines of memory that it will take, about: packets are rarely full, and nodes add a tenth.
+    /// Estimated number of lines of memory: packets are rarely full, and nodes add a tenth.
     pub fn lines(&self) -> usize {
         self.count as usize * 5 / 4 + 8
     }
@@ -70,7 +70,7 @@ impl Branch {
     }
 }
 
-/// A part of the binary tree, level by level, with its costs.
+/// A part of the binary tree in breadth-first order, with its costs.
 pub(super) struct Binary {
     pub branches: Vec<Branch>,
 }
@@ -78,8 +78,8 @@ pub(super) struct Binary {
 impl Binary {
     pub fn new(source: &Source, root: u32, cut: &HashMap<u32, u32>, parts: &[Binary], job: Job) -> Result<Self> {
         let mut branches = Vec::new();
-        // Nodes lie all over memory. Level by level it is known early which will be needed, so that memory can be asked for
-        // many at once.
+        // Nodes are scattered over memory. Breadth-first order reveals early which nodes are needed, so many can be
+        // prefetched at once.
         let mut indices = vec![root];
         let mut at = 0;
         while at < indices.len() {
@@ -108,17 +108,17 @@ impl Binary {
                 job.check()?;
             }
             if let Content::Halves(first) = this.branches[at].content {
-                this.weigh(at, first as usize);
+                this.compute_costs(at, first as usize);
             }
         }
         Ok(this)
     }
 
-    /// Costs of a branch from those of its halves.
-    fn weigh(&mut self, at: usize, first: usize) {
+    /// Computes the costs of a branch from those of its halves.
+    fn compute_costs(&mut self, at: usize, first: usize) {
         let (l, r) = (&self.branches[first], &self.branches[first + 1]);
         let (count, surface, area) = (l.count + r.count, l.surface + r.surface, self.branches[at].area);
-        // A leaf costs the same as any number of subtrees.
+        // A leaf costs the same for any number of subtrees.
         let halves = match (l.content, r.content) {
             (Content::Leaf(_), _) => r.cost.map(|cost| cost + l.cost[0]),
             (_, Content::Leaf(_)) => l.cost.map(|cost| cost + r.cost[0]),
@@ -126,16 +126,16 @@ impl Binary {
         };
         let mut cost = [area + halves[6]; 7];
         if count <= WIDTH as u32 {
-            cost[0] = least(cost[0], area * PACKET_COST);
+            cost[0] = min(cost[0], area * PACKET_COST);
         }
         for more in 1..7 {
-            cost[more] = least(cost[more - 1], halves[more - 1]);
+            cost[more] = min(cost[more - 1], halves[more - 1]);
         }
         let branch = &mut self.branches[at];
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
     }
 
-    /// Whether a branch, as one wide subtree, is best a packet.
+    /// Whether a branch represented by a single wide subtree is best a packet.
     pub fn is_packet(&self, at: usize) -> bool {
         let branch = &self.branches[at];
         branch.count <= WIDTH as u32
@@ -143,23 +143,24 @@ impl Binary {
     }
 }
 
-/// `[i]`: the least cost of two halves as `i + 2` wide subtrees together. Without branches, which nothing could predict.
+/// `[i]`: the minimum cost of two halves with `i + 2` wide subtrees in total. Branch-free, since the branches would be
+/// unpredictable.
 fn combine(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
     let mut best = [f32::INFINITY; 7];
     for l in 0..7 {
         for r in 0..7 - l {
-            best[l + r] = least(best[l + r], left[l] + right[r]);
+            best[l + r] = min(best[l + r], left[l] + right[r]);
         }
     }
     best
 }
 
-/// One instruction, unlike `f32::min`: no cost is NaN.
-fn least(a: f32, b: f32) -> f32 {
+/// A single instruction, unlike `f32::min`; costs are never NaN.
+fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The least cost of two halves as `roots` wide subtrees together, and how many of them the left half becomes.
+/// The minimum cost of two halves with `roots` wide subtrees in total, and the number of these for the left half.
 pub(super) fn distribute(left: &[f32; 7], right: &[f32; 7], roots: usize) -> (f32, usize) {
     let mut best = (left[0] + right[(roots - 2).min(6)], 1);
     for k in 2..roots {

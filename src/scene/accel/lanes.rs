@@ -1,52 +1,52 @@
-//! Eight floats side by side: one register of AVX2, or two of the baseline's four lanes.
+//! Eight `f32` lanes: one AVX2 register, or two baseline registers of four.
 //!
-//! Every operation but [`Lanes::mul_add`] rounds as IEEE 754 says, so that whatever is computed without it comes out the
-//! same on every processor.
+//! Every operation except [`Lanes::mul_add`] rounds as IEEE 754 prescribes, so results without it are identical on
+//! every processor.
 
 use glam::{BVec4A, Vec4};
 
-/// Eight values held in rows: 32 bytes that start at a multiple of 32.
+/// Eight values in memory: 32 bytes aligned to 32.
 #[derive(Clone, Copy)]
 #[repr(C, align(32))]
 pub(super) struct Row(pub [f32; 8]);
 
 pub(super) trait Lanes: Copy {
-    /// What comparisons give.
+    /// The result type of comparisons.
     type Mask: Copy;
 
     fn splat(value: f32) -> Self;
     fn load(row: &Row) -> Self;
-    /// The same from any place.
+    /// Loads from an unaligned position.
     fn load_from(values: &[f32; 8]) -> Self;
     fn store(self) -> Row;
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
-    /// Of two values of which one is NaN: `other`.
+    /// If one operand is NaN, the result is `other`.
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
     fn abs(self) -> Self;
-    /// Bits of a mask are replaced by others.
+    /// Replaces the masked bits by those of `others`.
     fn with_bits(self, mask: u32, others: &[u32; 8]) -> Self;
-    /// `self * factor + term`, rounded once or twice: for bounds that have a margin only.
+    /// `self * factor + term`, rounded once or twice: only for bounds that have a margin.
     fn mul_add(self, factor: Self, term: Self) -> Self;
     fn le(self, other: Self) -> Self::Mask;
     fn lt(self, other: Self) -> Self::Mask;
     fn eq(self, other: Self) -> Self::Mask;
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Bit `i` is set where lane `i` is.
+    /// Bit `i` is set if lane `i` is true.
     fn bits(mask: Self::Mask) -> u32;
-    /// Writes `payload[i]` for every lane `i` of `mask`, in order of the lanes; what comes after that, up to the eighth
-    /// place, is overwritten with anything.
+    /// Writes `payload[i]` for every lane `i` in `mask`, packed in lane order; the remaining of eight entries are
+    /// overwritten with arbitrary values.
     ///
     /// # Safety
-    /// There is room for eight at `to`.
+    /// Eight entries must be writable at `to`.
     unsafe fn pick(payload: &[u32; 8], mask: u32, to: *mut u64);
 }
 
-/// Two registers of four: SSE2 on x86-64, NEON on aarch64, scalars elsewhere.
+/// Two registers of four: SSE2 on x86-64, NEON on aarch64, scalar code elsewhere.
 #[derive(Clone, Copy)]
 pub(super) struct Baseline([Vec4; 2]);
 
@@ -170,7 +170,7 @@ impl Lanes for Baseline {
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;
             mask &= mask - 1;
-            // SAFETY: a mask has eight bits at most.
+            // SAFETY: the mask has at most eight bits.
             unsafe {
                 to.write(u64::from(payload[lane]));
                 to = to.add(1);
@@ -187,8 +187,8 @@ mod avx2 {
     use super::{Lanes, Row};
     use std::arch::x86_64::*;
 
-    /// One register of eight. Only code that runs where the processor has AVX2 and FMA may use it: `Accel` checks that
-    /// once, when it is built, and everything below is inlined into functions compiled for these.
+    /// One register of eight lanes. Use it only on processors with AVX2 and FMA: `Accel` checks this once when it is
+    /// built, and everything below is inlined into functions compiled for these instructions.
     #[derive(Clone, Copy)]
     pub struct Avx2(__m256);
 
@@ -213,7 +213,7 @@ mod avx2 {
     impl Lanes for Avx2 {
         type Mask = __m256;
 
-        // SAFETY, throughout: the processor has the instructions, as said above; rows are aligned to 32 bytes.
+        // SAFETY of all blocks below: the processor supports AVX2, as required above; rows are aligned to 32 bytes.
 
         #[inline(always)]
         fn splat(value: f32) -> Self {

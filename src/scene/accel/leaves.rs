@@ -1,8 +1,8 @@
-//! The leaves of the binary tree: triangles with area, in pairs where two make one whole, in an order in which neighbours
-//! in space are neighbours in the list.
+//! The leaves of the binary tree: non-degenerate triangles, paired where two form a quadrilateral, sorted so that
+//! neighbours in space are neighbours in the list.
 //!
-//! Meshes list the two halves of a square one after the other. They lie in almost the same box, so no ray is saved by
-//! telling them apart; as one leaf they halve the work of building.
+//! Meshes store the two halves of a quadrilateral consecutively. Their boxes nearly coincide, so separating them saves
+//! no ray; a shared leaf halves the work of building.
 
 use super::tree::half_area;
 use super::{Job, pages};
@@ -14,24 +14,24 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 
-/// Triangles looked at by one piece of parallel work.
+/// Triangles per unit of parallel work.
 const CHUNK: usize = 4096;
 /// Bits of each coordinate in a Morton code.
 const BITS: u32 = 21;
-/// Extents less than that, of a scene of unit size, are none.
-const THINNEST: f64 = 1e-9;
+/// Lower bound of the extent of a scene scaled to unit size; a flat scene has one layer of cells [rounding].
+const MIN_EXTENT: f64 = 1e-9;
 
 pub(super) struct Leaves {
-    /// Each holds one or two triangles, from its first index on. Boxes are in units of `scale`.
+    /// Each holds one or two triangles, starting at its first index. Boxes are scaled by `scale`.
     pub list: Vec<Bvh2Node>,
-    /// Where the centres lie along a curve through all of space, and their places in the list: sorted.
+    /// Morton codes of the centres with their indices in the list, sorted.
     pub order: Vec<(u64, u32)>,
-    /// What coordinates are multiplied by, so that no area overflows: a power of two, which rounds nothing.
+    /// Scale of the coordinates that prevents overflow of areas: a power of two, which is exact.
     pub scale: f32,
-    /// Bounds of all of them, in the scene's own units.
+    /// Bounds of all leaves, in the scene's own units.
     pub low: Vec3,
     pub high: Vec3,
-    /// Triangles of no area, left out.
+    /// Number of triangles without area, which are left out.
     pub dropped: usize,
 }
 
@@ -88,7 +88,7 @@ impl Chunk {
     fn gather(triangles: &[[Vec3; 3]], first: u32) -> Result<Self> {
         let leaves = try_with_capacity(triangles.len())?;
         let mut chunk = Self { leaves, low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, dropped: 0 };
-        // Half the area of the box of the triangle before, if that is still alone.
+        // Half the surface area of the previous triangle's box, if it is not paired yet.
         let mut alone: Option<f32> = None;
         for (i, corners) in triangles.iter().enumerate() {
             if !has_area(corners) {
@@ -101,7 +101,8 @@ impl Chunk {
             chunk.low = chunk.low.min(this.min);
             chunk.high = chunk.high.max(this.max);
             let area = half_area(&this);
-            // Tested together a pair costs what its common box is met; apart, what each box is.
+            // A pair is tested whenever its common box is hit, single triangles whenever their own boxes are: pair
+            // them if that is cheaper.
             if let Some(before) = alone.take()
                 && let Some(leaf) = chunk.leaves.last_mut()
                 && let both = leaf.aabb().union(&this)
@@ -123,7 +124,7 @@ fn has_area(corners: &[Vec3; 3]) -> bool {
     doubled.is_finite() && doubled > 0.0
 }
 
-/// Cells of space that Morton codes tell apart: the same number along each axis.
+/// The grid of cells that Morton codes index: the same number of cells along each axis.
 struct Grid {
     scale: f32,
     /// In scaled units, as are the cells.
@@ -135,9 +136,9 @@ impl Grid {
     fn over(low: Vec3, high: Vec3) -> Self {
         let extent = high.as_dvec3() - low.as_dvec3();
         let scale = (-extent.max_element().max(f64::MIN_POSITIVE).log2().ceil()).clamp(-126.0, 126.0).exp2();
-        let most = DVec3::splat(f64::from((1 << BITS) - 1));
+        let max_cell = DVec3::splat(f64::from((1 << BITS) - 1));
         // A scene that is flat along an axis has one layer there.
-        let per_unit = (most / (extent * scale).max(DVec3::splat(THINNEST))).as_vec3a();
+        let per_unit = (max_cell / (extent * scale).max(DVec3::splat(MIN_EXTENT))).as_vec3a();
         Self { scale: scale as f32, low: Vec3A::from(low) * scale as f32, per_unit }
     }
 
@@ -147,7 +148,7 @@ impl Grid {
     }
 }
 
-/// The lowest 21 bits of a number, each followed by two zeros.
+/// Spreads the lowest 21 bits of a number, inserting two zeros after each.
 fn spread(number: u32) -> u64 {
     let mut bits = u64::from(number & ((1 << BITS) - 1));
     bits = (bits | bits << 32) & 0x1f_0000_0000_ffff;

@@ -1,7 +1,7 @@
 //! Nodes and packets in one list of cache lines.
 //!
-//! Below the levels that stay in the caches each step of a ray waits for memory, and longer where the step leads to
-//! another page. So a node is followed by its packets, and nodes that rays meet together share a page.
+//! Below the cached levels of the tree, each step of a ray waits for memory, and longer if it leads to another page.
+//! Each node is therefore followed by its packets, and nodes visited together share a page.
 
 use super::node::Node;
 use super::packet::Packet;
@@ -20,15 +20,15 @@ pub(super) struct Lines<List = Pages<Line>> {
     list: List,
 }
 
-/// Lines that more are added to.
+/// A growing list of lines.
 pub(super) type Draft = Lines<Vec<Line>>;
 
-/// What may lie in lines: whole ones, of plain numbers, any bits of which are valid.
+/// Types that may be stored in lines: whole lines of plain numbers, for which any bits are valid.
 ///
 /// # Safety
-/// All fields are of `u32` and `f32`, without padding, and the alignment is that of a line.
+/// All fields must be `u32` or `f32`, without padding, and the alignment must be that of a line.
 pub(super) unsafe trait Plain {}
-// SAFETY: `Node` and `Packet` are rows of eight such numbers, an even number of rows each.
+// SAFETY: `Node` and `Packet` consist of an even number of rows of eight such numbers.
 unsafe impl Plain for Node {}
 // SAFETY: as above.
 unsafe impl Plain for Packet {}
@@ -39,15 +39,15 @@ const fn lines_of<T>() -> usize {
 }
 
 impl Draft {
-    pub fn with_room(len: usize) -> Result<Self> {
+    pub fn with_capacity(len: usize) -> Result<Self> {
         Ok(Self { list: try_with_capacity(len)? })
     }
 
-    /// Appends a node or a packet; gives its line.
+    /// Appends a node or a packet and returns its line.
     pub fn push<T: Plain>(&mut self, item: &T) -> Result<usize> {
         let line = self.list.len();
         make_room(&mut self.list, lines_of::<T>())?;
-        // SAFETY: `T` is plain, and as large and aligned as these.
+        // SAFETY: `T` is `Plain`, and has the size and alignment of these lines.
         self.list.extend_from_slice(unsafe { std::slice::from_raw_parts((&raw const *item).cast(), lines_of::<T>()) });
         Ok(line)
     }
@@ -69,27 +69,27 @@ impl<List: DerefMut<Target = [Line]>> Lines<List> {
         self.list.len()
     }
 
-    /// Memory held.
+    /// Size in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.list)
     }
 
     pub fn get_mut<T: Plain>(&mut self, line: usize) -> &mut T {
         let lines = &mut self.list[line..line + lines_of::<T>()];
-        // SAFETY: `T` is plain, and as large and aligned as these.
+        // SAFETY: `T` is `Plain`, and has the size and alignment of these lines.
         unsafe { &mut *lines.as_mut_ptr().cast() }
     }
 
     /// # Safety
-    /// The same was put at this line.
+    /// A value of type `T` must have been stored at this line.
     #[inline(always)]
     pub unsafe fn get<T: Plain>(&self, line: usize) -> &T {
         debug_assert!(line + lines_of::<T>() <= self.list.len());
-        // SAFETY: the lines are in the list, and `T` is plain.
+        // SAFETY: the lines are in the list, and `T` is `Plain`.
         unsafe { &*self.at(line).cast() }
     }
 
-    /// Asks memory for what starts at a line: a packet, or a node and a line more.
+    /// Prefetches the item at a line: a packet, or a node and one more line.
     #[inline(always)]
     pub fn prefetch(&self, line: usize) {
         pages::prefetch(self.at(line), lines_of::<Packet>());

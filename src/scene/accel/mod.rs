@@ -1,13 +1,13 @@
 //! Acceleration structure over triangles: nearest hits and occlusion.
 //!
-//! Triangles are sorted along a curve through space (`leaves`) and clustered into a binary tree (`cluster`: Benthin et al.
-//! 2024), whose nodes are those of obvhs. It is improved by reinsertion (`reinsert`: Meister and Bittner 2018) and collapsed
-//! into nodes of eight children (`costs`, `collapse`: Ylitie et al. 2017) whose leaves hold up to eight triangles, tested at
-//! once.
+//! Triangles are sorted along a space-filling curve (`leaves`) and clustered into a binary tree (`cluster`: Benthin et
+//! al. 2024) with the nodes of obvhs. The tree is optimised by reinsertion (`reinsert`: Meister and Bittner 2018) and
+//! collapsed into nodes of eight children (`costs`, `collapse`: Ylitie et al. 2017), whose leaves hold up to eight
+//! triangles that are tested together.
 //!
-//! The triangle test is watertight (Woop, Benthin and Wald 2013), the box test conservative to match it: a ray never
-//! slips through a shared edge or vertex. The nearest hit is a function of the triangles alone: equal distances are
-//! decided by the lower triangle index, so neither the shape of the tree nor the processor's vector width shows.
+//! The triangle test is watertight (Woop, Benthin and Wald 2013), and the box test is conservative to match it: a ray
+//! never slips through a shared edge or vertex. The nearest hit depends on the triangles alone: ties in distance are
+//! resolved by the lower triangle index, so neither the shape of the tree nor the processor's vector width affects it.
 //!
 //! Not modelled: motion, instancing, curves.
 
@@ -38,7 +38,7 @@ use packet::{Packet, TriangleRay};
 use stack::{SLACK, Stack, Waiting};
 use std::mem::MaybeUninit;
 
-/// A half-line; distances are in units of `direction`, which need not be of unit length.
+/// A half-line; distances are in units of `direction`, which need not have unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     pub origin: Vec3,
@@ -60,14 +60,14 @@ impl Ray {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     pub t: f32,
-    /// Index into the triangles the structure was built from.
+    /// Index into the list of triangles the structure was built from.
     pub triangle: u32,
     /// Barycentric coordinates of corners 1 and 2.
     pub u: f32,
     pub v: f32,
 }
 
-/// The built structure; it keeps its own copy of the triangles.
+/// The built structure; it holds its own copy of the triangles.
 pub struct Accel {
     lines: Lines,
     root: Child,
@@ -75,48 +75,48 @@ pub struct Accel {
     high: Vec3,
     /// The largest absolute coordinate per axis.
     largest: Vec4,
-    /// The most entries a traversal can have waiting.
+    /// Maximum number of entries on the traversal stack.
     stack_need: usize,
     dropped: usize,
     level: Level,
 }
 
-/// Waiting children kept on the thread's own stack; deeper trees take theirs from the heap.
+/// Traversal stack entries kept on the thread's stack; deeper trees allocate theirs on the heap.
 const SHORT_STACK: usize = 128;
 
 impl Accel {
-    /// Builds the structure. Triangles of no area (or of corners that are not finite) cannot be hit; they are left out
-    /// and counted. To be called on the library's own pool: the builder uses the pool it finds itself on.
+    /// Builds the structure. Degenerate triangles (without area or with non-finite corners) cannot be hit; they are
+    /// left out and counted. Call it on the library's own pool: the builder uses the current pool.
     pub fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Self> {
         build::build(triangles, job)
     }
 
-    /// The nearest hit that `accept` does not refuse.
+    /// The nearest hit that `accept` approves.
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(&Hit) -> bool) -> Option<Hit> {
         self.search::<false>(ray, &mut accept)
     }
 
-    /// Whether anything that `accept` does not refuse lies between the origin and `t_max`.
+    /// Whether any surface that `accept` approves lies between the origin and `t_max`.
     pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(&Hit) -> bool) -> bool {
         self.search::<true>(ray, &mut accept).is_some()
     }
 
-    /// Corners of the bounding box; both zero where there is nothing.
+    /// Corners of the bounding box; both zero if there are no triangles.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         (self.low, self.high)
     }
 
-    /// Triangles of no area that were left out.
+    /// Number of degenerate triangles that were left out.
     pub fn dropped(&self) -> usize {
         self.dropped
     }
 
-    /// Memory held, in bytes.
+    /// Memory used, in bytes.
     pub fn bytes(&self) -> usize {
         self.lines.bytes()
     }
 
-    /// The nearest hit, or, if `ANY`, the first that is found.
+    /// The nearest hit, or, with `ANY`, the first one found.
     #[inline(always)]
     fn search<const ANY: bool>(&self, ray: &Ray, accept: &mut impl FnMut(&Hit) -> bool) -> Option<Hit> {
         if self.root.is_empty() {
@@ -137,7 +137,7 @@ impl Accel {
         stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
         match self.level {
-            // SAFETY: the processor has the instructions of its level.
+            // SAFETY: the processor supports its level.
             #[cfg(target_arch = "x86_64")]
             Level::Avx512 => unsafe { self.traverse_avx512::<ANY>(ray, accept, stack) },
             // SAFETY: as above.
@@ -147,9 +147,9 @@ impl Accel {
         }
     }
 
-    /// The same instructions in the encoding of AVX-512, with its 32 registers and operands that are spread as they are
-    /// read: a little faster. Its wider registers and its masks are not: both bounds of a node's boxes in one register
-    /// of sixteen, leaves of sixteen triangles, and children sorted in a register have all been slower than this.
+    /// The same instructions in AVX-512 encoding, with its 32 registers and broadcast operands: slightly faster. Its
+    /// wider registers and masks are not: both bounds of a node's boxes in one register of sixteen, leaves of sixteen
+    /// triangles, and children sorted in a register were all measured to be slower.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
     fn traverse_avx512<const ANY: bool>(
@@ -172,7 +172,7 @@ impl Accel {
         self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
     }
 
-    /// Visits boxes nearest first; if `ANY`, from the last lane to the first, which is how they promise most.
+    /// Visits boxes nearest first; with `ANY`, from the last lane to the first, in order of falling benefit.
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,
@@ -189,8 +189,8 @@ impl Accel {
         let mut child = self.root;
         loop {
             if child.is_packet() {
-                // Test eight triangles; only a hit that is accepted shortens the ray.
-                // SAFETY: children tell where nodes and packets were put.
+                // Test eight triangles; only an accepted hit shortens the ray.
+                // SAFETY: children store the lines at which nodes and packets were written.
                 let packet = unsafe { self.lines.get::<Packet>(child.line()) };
                 let (mut mask, hits) = packet.intersect::<L>(&triangle_ray, t_max);
                 if mask != 0 {
@@ -207,7 +207,7 @@ impl Accel {
                     }
                 }
             } else {
-                // Test eight boxes; go on with one of those that are hit, the nearest if that matters.
+                // Test eight boxes and descend into one of those hit, the nearest unless `ANY`.
                 // SAFETY: as above.
                 let node = unsafe { self.lines.get::<Node>(child.line()) };
                 let (mut mask, near) = node.intersect(&node_ray, t_max);
@@ -228,7 +228,7 @@ impl Accel {
                     continue;
                 }
             }
-            // Take the next child that could still hold a nearer hit, or an equal one of lower index.
+            // Pop the next child that could hold a nearer hit, or an equal one of lower index.
             child = loop {
                 let Some((near, next)) = stack.pop() else { return best };
                 if ANY || near <= t_max {
@@ -241,7 +241,7 @@ impl Accel {
         }
     }
 
-    /// Asks memory for the child that is next.
+    /// Prefetches the child on top of the stack.
     #[inline(always)]
     fn prefetch(&self, stack: &Stack) {
         if let Some((_, next)) = stack.top() {
@@ -250,7 +250,7 @@ impl Accel {
     }
 }
 
-/// The lowest lane of a mask that is not empty, which is then taken from it.
+/// Removes and returns the lowest lane of a non-empty mask.
 #[inline(always)]
 fn take_lowest(mask: &mut u32) -> usize {
     let lane = mask.trailing_zeros() as usize & 7;
@@ -258,7 +258,7 @@ fn take_lowest(mask: &mut u32) -> usize {
     lane
 }
 
-/// The highest lane of a mask that is not empty, which is then taken from it.
+/// Removes and returns the highest lane of a non-empty mask.
 #[inline(always)]
 fn take_highest(mask: &mut u32) -> usize {
     let lane = mask.ilog2() as usize & 7;

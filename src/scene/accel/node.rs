@@ -1,10 +1,11 @@
-//! Nodes of eight children and the conservative test of a ray against their boxes.
+//! Nodes of eight children, and the conservative test of a ray against their boxes.
 
 use super::aligned::{Aligned, finite};
 use super::lanes::{Lanes, Row};
 use glam::{Vec3, Vec4};
 
-/// What a node points to: another node, a packet of triangles, or nothing. Both are told by the line they start at.
+/// A child reference: another node, a packet of triangles, or empty. Nodes and packets are identified by their first
+/// line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Child(u32);
 
@@ -16,7 +17,7 @@ impl Default for Child {
 
 impl Child {
     pub const EMPTY: Self = Self(u32::MAX);
-    /// Lines that can be told from one another, and from an empty child.
+    /// Maximum number of lines that references can address.
     pub const LINES: usize = (1 << 31) - 1;
     const PACKET: u32 = 1 << 31;
 
@@ -50,27 +51,27 @@ impl Child {
         (self.0 & !Self::PACKET) as usize
     }
 
-    /// The same child, where all lines are moved by a number of them.
+    /// The child with its line number shifted.
     pub fn moved(self, lines: usize) -> Self {
         if self.is_empty() { self } else { Self(self.0 + lines as u32) }
     }
 }
 
-/// Eight boxes side by side, in four lines of the cache. The test of a ray reads all the bounds, so the lines of these
-/// are asked for at once; with the children at their head none is left to be waited for after the test.
+/// Eight boxes in SoA layout, in four cache lines. The ray test reads all bounds, so these lines are fetched together;
+/// the children at their head are then available without another wait.
 #[derive(Clone)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    /// Bits of a [`Child`] each, so that they can be moved eight at a time.
+    /// Bits of a [`Child`] each, so that eight can be moved at once.
     pub children: [u32; 8],
-    /// `bounds[2 * axis]` are the low ends, `bounds[2 * axis + 1]` the high ends.
+    /// `bounds[2 * axis]` are the lower bounds, `bounds[2 * axis + 1]` the upper bounds.
     pub bounds: [Row; 6],
-    /// Fills the last line.
+    /// Padding of the last line.
     unused: [u32; 8],
 }
 
 impl Node {
-    /// No children: every box is inside out, so no ray hits it.
+    /// A node without children: every box is inverted, so no ray hits it.
     pub fn empty() -> Self {
         let (low, high) = (Row([f32::INFINITY; 8]), Row([f32::NEG_INFINITY; 8]));
         Self { bounds: [low, high, low, high, low, high], children: [Child::EMPTY.0; 8], unused: [0; 8] }
@@ -89,12 +90,12 @@ impl Node {
         Child(self.children[lane & 7])
     }
 
-    /// Mask of the boxes a ray may meet before `t_max`, and where it enters each. The last bits differ between
+    /// Mask of the boxes a ray may hit before `t_max`, and its entry distances. The last bits differ between
     /// processors, which the margin of [`NodeRay`] covers.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &NodeRay<L>, t_max: f32) -> (u32, L) {
         let plane = |start: usize, axis: usize, shift: L| {
-            // SAFETY: `near_start` is that of one of six rows, and so is that of its neighbour.
+            // SAFETY: `near_start` is the offset of one of six rows, and so is that of its neighbour.
             L::load(unsafe { &*self.bounds.as_ptr().byte_add(start) }).mul_add(ray.scale[axis], shift)
         };
         let enter = |axis: usize| plane(ray.near_start[axis], axis, ray.near_shift[axis]);
@@ -105,16 +106,16 @@ impl Node {
     }
 }
 
-/// Sixteen rounding errors, of 2^-24 each.
+/// Sixteen rounding errors of 2^-24 each [rounding].
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
-/// A ray prepared for boxes: the distance to a plane is `plane * scale + shift`.
+/// A ray prepared for box tests: the distance to a plane is `plane * scale + shift`.
 ///
-/// The triangle test works on rounded coordinates and may report a hit a few units in the last place outside the box of
-/// its triangle; so the near planes are moved towards the ray and the far planes away, as section 3.3 of Woop et al.
-/// asks for. The margin is counted in units of the largest coordinate met, so it follows the scale of the scene.
+/// The triangle test works on rounded coordinates and may report a hit a few units in the last place outside the
+/// triangle's box. The near planes are therefore moved towards the ray and the far planes away from it, as section 3.3
+/// of Woop et al. requires. The margin is relative to the largest coordinate, so it follows the scale of the scene.
 pub(super) struct NodeRay<L> {
-    /// Byte of [`Node::bounds`] at which the row starts through which the ray enters, per axis.
+    /// Per axis, the byte offset in [`Node::bounds`] of the row through which the ray enters.
     near_start: [usize; 3],
     scale: [L; 3],
     near_shift: [L; 3],
@@ -124,11 +125,11 @@ pub(super) struct NodeRay<L> {
 impl<L: Lanes> NodeRay<L> {
     #[inline(always)]
     pub fn new(ray: &Aligned, largest: Vec4) -> Self {
-        let reach = ray.origin.abs() + largest;
-        let dominant = Vec4::select(ray.is_dominant, reach, Vec4::ZERO).max_element();
-        let margin = (reach + Vec4::splat(dominant)) * MARGIN;
+        let magnitude = ray.origin.abs() + largest;
+        let dominant = Vec4::select(ray.is_dominant, magnitude, Vec4::ZERO).max_element();
+        let margin = (magnitude + Vec4::splat(dominant)) * MARGIN;
         let scale = ray.inverse;
-        // Finite, whatever the ray: an infinity could make a NaN of an empty box, and a NaN is met.
+        // Keep the shifts finite for any ray: an infinity could give NaN for an empty box, and NaN counts as a hit.
         let (middle, margin) = (-ray.origin * scale, margin * scale.abs());
         let (near, far) = (finite(middle - margin), finite(middle + margin));
         let is_negative = ray.direction.is_negative_bitmask() as usize;

@@ -1,26 +1,27 @@
-//! Eight triangles side by side, and the watertight test of a ray against them (Woop, Benthin and Wald 2013).
+//! Packets of eight triangles, and the watertight ray test against them (Woop, Benthin and Wald 2013).
 
 use super::Hit;
 use super::aligned::Aligned;
 use super::lanes::{Lanes, Row};
 use glam::Vec3;
 
-/// Hits nearer than this share of a triangle's depth along the ray are lost in rounding: sixteen errors of 2^-24.
-const NEAREST: f32 = 1.0 / (1 << 20) as f32;
+/// Hits nearer than this share of a triangle's depth along the ray are rounding errors: sixteen errors of 2^-24
+/// [rounding].
+const MIN_DISTANCE: f32 = 1.0 / (1 << 20) as f32;
 
-/// Triangles a packet holds at most.
+/// Maximum number of triangles in a packet.
 pub(super) const WIDTH: usize = 8;
 
 #[derive(Clone)]
 #[repr(C, align(64))]
 pub(super) struct Packet {
-    /// `corners[corner][axis]` holds that coordinate of eight triangles.
+    /// `corners[corner][axis]` holds one coordinate of eight triangles.
     corners: [[Row; 3]; 3],
     ids: [u32; WIDTH],
 }
 
 impl Packet {
-    /// One to eight triangles. Free lanes are filled with NaN, which nothing hits.
+    /// Packs one to eight triangles. Unused lanes are filled with NaN, which no ray hits.
     pub fn new(triangles: &[[Vec3; 3]], ids: &[u32]) -> Self {
         let mut packet = Self { corners: [[Row([f32::NAN; 8]); 3]; 3], ids: [u32::MAX; WIDTH] };
         for (lane, &id) in ids.iter().enumerate() {
@@ -34,7 +35,7 @@ impl Packet {
         packet
     }
 
-    /// Mask of the triangles hit at distances in `(0, t_max]`, distances within rounding of 0 left out.
+    /// Mask of the triangles hit at distances in `(0, t_max]`, excluding distances within rounding error of 0.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits<L>) {
         let [x, y, z] = self.sheared::<L>(ray);
@@ -44,25 +45,26 @@ impl Packet {
         if L::bits(hit) == 0 {
             return (0, PacketHits { t: zero, u: zero, v: zero });
         }
-        // Only those that came out as zero are settled in f64: the neighbour across the edge has the same value with the
-        // other sign, whichever way it was found. (A zero between edges of unlike signs is outside either way.)
+        // Recompute zeros in `f64`: the adjacent triangle obtains the same value with the opposite sign, in either
+        // precision. (A zero between edges of opposite signs is outside in any case.)
         if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
             edge = self.settled_edges(ray);
             hit = inside(&edge);
         }
-        // Distances, from those of the corners. A determinant of zero gives a NaN or an infinity, which fail below.
+        // Interpolate the distance from those of the corners. A determinant of zero yields NaN or infinity, which fail
+        // below.
         let corner = z.map(|z| z.mul(L::splat(ray.shear[2])));
         let reciprocal = L::splat(1.0).div(edge[0].add(edge[1]).add(edge[2]));
         let (b0, u, v) = (edge[0].mul(reciprocal), edge[1].mul(reciprocal), edge[2].mul(reciprocal));
         let t = b0.mul(corner[0]).add(u.mul(corner[1])).add(v.mul(corner[2]));
-        // A hit nearer than its own rounding error is the surface the ray starts on.
+        // A hit nearer than its own rounding error lies on the surface where the ray starts.
         let farthest = corner[0].abs().max(corner[1].abs()).max(corner[2].abs());
-        let far_enough = farthest.mul(L::splat(NEAREST)).lt(t);
+        let far_enough = farthest.mul(L::splat(MIN_DISTANCE)).lt(t);
         let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));
         (L::bits(hit), PacketHits { t, u, v })
     }
 
-    /// Coordinates of the corners where the ray starts at the origin and runs along the third axis.
+    /// Coordinates of the corners after shearing, so that the ray starts at the origin and runs along the third axis.
     #[inline(always)]
     fn sheared<L: Lanes>(&self, ray: &TriangleRay) -> [[L; 3]; 3] {
         let relative = |corner: usize, k: usize| {
@@ -75,8 +77,9 @@ impl Packet {
         [[sheared(0, 0), sheared(1, 0), sheared(2, 0)], [sheared(0, 1), sheared(1, 1), sheared(2, 1)], z]
     }
 
-    /// The edge functions with their zeros computed without cancellation: products of two `f32` are exact in `f64`, so the
-    /// sign is. It starts from the corners again, so that those who need it not need not keep them.
+    /// The edge functions, with zeros recomputed without cancellation: products of two `f32` are exact in `f64`, hence
+    /// so is the sign. Recomputes everything from the corners, so that the common path need not keep intermediate
+    /// values.
     #[cold]
     #[inline(never)]
     fn settled_edges<L: Lanes>(&self, ray: &TriangleRay) -> [L; 3] {
@@ -101,7 +104,7 @@ impl Packet {
     }
 }
 
-/// Scaled barycentric coordinates: on which side of each edge the ray passes.
+/// Scaled barycentric coordinates: the side of each edge on which the ray passes.
 #[inline(always)]
 fn edges<L: Lanes>(x: &[L; 3], y: &[L; 3]) -> [L; 3] {
     let side = |a: usize, b: usize| x[a].mul(y[b]).sub(y[a].mul(x[b]));
@@ -111,9 +114,9 @@ fn edges<L: Lanes>(x: &[L; 3], y: &[L; 3]) -> [L; 3] {
 #[inline(always)]
 fn inside<L: Lanes>(edge: &[L; 3]) -> L::Mask {
     let zero = L::splat(0.0);
-    let least = edge[0].min(edge[1]).min(edge[2]);
-    let most = edge[0].max(edge[1]).max(edge[2]);
-    L::or(zero.le(least), most.le(zero))
+    let min = edge[0].min(edge[1]).min(edge[2]);
+    let max = edge[0].max(edge[1]).max(edge[2]);
+    L::or(zero.le(min), max.le(zero))
 }
 
 pub(super) struct PacketHits<L> {
@@ -122,7 +125,7 @@ pub(super) struct PacketHits<L> {
     v: L,
 }
 
-/// The same as rows that can be indexed.
+/// The hits in memory, indexable by lane.
 pub(super) struct HitRows {
     t: Row,
     u: Row,
@@ -144,9 +147,9 @@ impl HitRows {
     }
 }
 
-/// A ray prepared for triangles: axes permuted so that the longest component of its direction is the third.
+/// A ray prepared for triangle tests: axes are permuted so that the dominant one is the third.
 pub(super) struct TriangleRay {
-    /// Permuted, as is `shear`.
+    /// Permuted, like `shear`.
     origin: [f32; 3],
     axes: [usize; 3],
     shear: [f32; 3],
@@ -157,7 +160,7 @@ impl TriangleRay {
     pub fn new(ray: &Aligned) -> Self {
         let z = ray.dominant_axis();
         let (origin, d, inverse) = (ray.origin.to_array(), ray.direction.to_array(), ray.inverse.to_array()[z]);
-        // The two axes after it in turn, from tables of two bits each: 1, 2, 0 and 2, 0, 1.
+        // Look up the two following axes in tables of two bits each: 1, 2, 0 and 2, 0, 1.
         let (x, y) = (0b00_10_01 >> (2 * z) & 3, 0b01_00_10 >> (2 * z) & 3);
         Self {
             origin: [origin[x], origin[y], origin[z]],

@@ -1,8 +1,8 @@
-//! Memory: lists that may be too large for it, and what makes it fast.
+//! Fallible allocation of large lists, on huge pages.
 //!
-//! Rays touch the finished structure all over the place, and where it is many times larger than what the processor's page tables reach,
-//! looking up pages costs as much as reading them. On Linux it is therefore put on huge pages, which the system grants
-//! to those who ask.
+//! Rays access the finished structure at random. If it is much larger than the address range of the processor's TLB,
+//! looking up pages costs as much as reading them. On Linux it is therefore allocated on huge pages, which the system
+//! grants on request.
 
 use crate::error::Result;
 use crate::image::pages::{HUGE, prefer_huge};
@@ -12,28 +12,28 @@ use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// Bytes from which on a huge page takes no longer to get than the small ones it replaces.
-const WORTH: usize = HUGE / 4;
+/// Size in bytes from which a huge page is no slower to obtain than the small pages it replaces.
+const MIN_HUGE: usize = HUGE / 4;
 
-/// A finished list that starts with a huge page, if it is long enough for one.
+/// A finished list that starts on a huge page if it is long enough.
 pub(super) struct Pages<T> {
-    room: Vec<MaybeUninit<T>>,
+    storage: Vec<MaybeUninit<T>>,
     first: usize,
     len: usize,
 }
 
 impl<T> Default for Pages<T> {
     fn default() -> Self {
-        Self { room: Vec::new(), first: 0, len: 0 }
+        Self { storage: Vec::new(), first: 0, len: 0 }
     }
 }
 
 impl<T: Send + Sync + Copy> Pages<T> {
-    /// All parts one after the other, copied in parallel.
+    /// Concatenates all parts, copying in parallel.
     pub fn join(parts: &[&[T]], job: Job) -> Result<Self> {
         let len = parts.iter().map(|part| part.len()).sum();
-        let (mut room, first) = room_on_huge_pages(len)?;
-        let mut rest = &mut room[first..first + len];
+        let (mut storage, first) = storage_on_huge_pages(len)?;
+        let mut rest = &mut storage[first..first + len];
         let mut targets = Vec::with_capacity(parts.len());
         for &part in parts {
             let (target, after) = rest.split_at_mut(part.len());
@@ -45,7 +45,7 @@ impl<T: Send + Sync + Copy> Pages<T> {
             target.iter_mut().zip(part).for_each(|(target, item)| _ = target.write(*item));
             Ok(())
         })?;
-        Ok(Self { room, first, len })
+        Ok(Self { storage, first, len })
     }
 }
 
@@ -54,58 +54,59 @@ impl<T> Deref for Pages<T> {
 
     #[inline(always)]
     fn deref(&self) -> &[T] {
-        // SAFETY: `join` wrote that many items there.
-        unsafe { std::slice::from_raw_parts(self.room.as_ptr().add(self.first).cast(), self.len) }
+        // SAFETY: `join` initialised `len` items from `first` on.
+        unsafe { std::slice::from_raw_parts(self.storage.as_ptr().add(self.first).cast(), self.len) }
     }
 }
 
 impl<T> DerefMut for Pages<T> {
     fn deref_mut(&mut self) -> &mut [T] {
         // SAFETY: as above.
-        unsafe { std::slice::from_raw_parts_mut(self.room.as_mut_ptr().add(self.first).cast(), self.len) }
+        unsafe { std::slice::from_raw_parts_mut(self.storage.as_mut_ptr().add(self.first).cast(), self.len) }
     }
 }
 
-/// Room for a list, and where in it the list is to start. What lies around it is never touched, and so takes no memory.
-fn room_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> {
+/// Uninitialised storage for a list, and the index at which the list starts. The surrounding memory is never touched,
+/// so it occupies no physical memory.
+fn storage_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> {
     const { assert!(HUGE.is_multiple_of(size_of::<T>())) };
     let bytes = len * size_of::<T>();
-    // The last page is a huge one too where most of its small ones would be needed.
-    let huge = if bytes % HUGE >= WORTH { bytes.next_multiple_of(HUGE) } else { bytes / HUGE * HUGE };
+    // Round up to a huge page if most of its small pages would be needed.
+    let huge = if bytes % HUGE >= MIN_HUGE { bytes.next_multiple_of(HUGE) } else { bytes / HUGE * HUGE };
     let around = if huge == 0 { 0 } else { 2 * HUGE / size_of::<T>() };
-    let mut room = Vec::<MaybeUninit<T>>::new();
-    make_room(&mut room, len.saturating_add(around))?;
-    // SAFETY: such items need not be initialised.
-    unsafe { room.set_len(len + around) };
+    let mut storage = Vec::<MaybeUninit<T>>::new();
+    make_room(&mut storage, len.saturating_add(around))?;
+    // SAFETY: `MaybeUninit` items need not be initialised.
+    unsafe { storage.set_len(len + around) };
     if huge == 0 {
-        return Ok((room, 0));
+        return Ok((storage, 0));
     }
-    let first = (room.as_ptr() as usize).wrapping_neg() % HUGE / size_of::<T>();
-    prefer_huge(&room[first..first + huge / size_of::<T>()]);
-    Ok((room, first))
+    let first = (storage.as_ptr() as usize).wrapping_neg() % HUGE / size_of::<T>();
+    prefer_huge(&storage[first..first + huge / size_of::<T>()]);
+    Ok((storage, first))
 }
 
-/// Copies of an item, written in parallel: it is the first writing of a page that takes time, and may take much of it.
+/// Copies of an item, written in parallel: the first write to a page is slow.
 pub(super) fn filled<T: Copy + Send + Sync>(len: usize, item: T, job: Job) -> Result<Vec<T>> {
     let mut list = try_with_capacity(len)?;
-    let room = &mut list.spare_capacity_mut()[..len];
-    room.par_chunks_mut(HUGE / size_of::<T>()).try_for_each(|room| {
+    let storage = &mut list.spare_capacity_mut()[..len];
+    storage.par_chunks_mut(HUGE / size_of::<T>()).try_for_each(|storage| {
         job.check()?;
-        room.fill(MaybeUninit::new(item));
+        storage.fill(MaybeUninit::new(item));
         Ok(())
     })?;
-    // SAFETY: all of it was just written.
+    // SAFETY: all items were just written.
     unsafe { list.set_len(len) };
     Ok(list)
 }
 
-/// Asks memory for a number of cache lines from an item on, which will be needed soon.
+/// Prefetches a number of cache lines from an item on.
 #[inline(always)]
 pub(super) fn prefetch<T>(first: *const T, lines: usize) {
     #[cfg(target_arch = "x86_64")]
     for line in 0..lines {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: a hint; it reads nothing, whatever the address.
+        // SAFETY: a prefetch is a hint and valid for any address.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(first.cast::<i8>().wrapping_add(64 * line)) };
     }
     #[cfg(not(target_arch = "x86_64"))]

@@ -1,9 +1,9 @@
 //! Optimisation of the binary tree by reinsertion (Meister and Bittner 2018, "Parallel Reinsertion for Bounding Volume
-//! Hierarchy Optimization"): a subtree is taken out and put where the boxes of the tree have the least area together.
+//! Hierarchy Optimization"): a subtree is removed and inserted where the total area of all boxes is smallest.
 //!
-//! The best places are searched for in parallel, in the tree as it is; then the moves are made one after the other, those
-//! that gain most first, but for those that touch what another has changed. The order of the search differs from the
-//! paper's: of two children the one that promises more is entered first, and neither that can promise no gain.
+//! The best positions are searched for in parallel in the unchanged tree; then the moves are applied sequentially,
+//! largest gain first, skipping moves that touch nodes changed by another. The order of the search differs from the
+//! paper: of two children the more promising is entered first, and neither if it promises no gain.
 
 use super::pages;
 use super::tree::{Pair, Tree, half_area};
@@ -15,14 +15,14 @@ use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Pairs of nodes looked at by one piece of parallel work, and moves made between two looks at the job.
+/// Pairs of nodes per unit of parallel work, and moves applied between two checks for cancellation.
 const CHUNK: usize = 256;
-/// Pairs counted by one piece of parallel work.
-const COUNTED: usize = 1 << 15;
-/// Bits of an area that tell its size well enough: the exponent, and a few of the fraction.
+/// Pairs counted per unit of parallel work.
+const COUNT_CHUNK: usize = 1 << 15;
+/// Leading bits of an area used as its histogram bin: the exponent and a few bits of the mantissa.
 const SIZE_BITS: u32 = 8 + 4;
 
-/// A subtree, the node beside which it is better, and the area by which all boxes together shrink.
+/// A move: a subtree, its better sibling, and the decrease of the total area.
 #[derive(Clone, Copy)]
 struct Move {
     from: u32,
@@ -39,7 +39,7 @@ fn pair(node: u32) -> usize {
     node as usize / 2
 }
 
-/// Areas are not negative: their bits sort as they do.
+/// The histogram bin of an area. Non-negative floats sort as their bits do.
 fn size(area: f32) -> usize {
     (area.to_bits() >> (31 - SIZE_BITS)) as usize
 }
@@ -54,8 +54,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// For each share of all nodes the area that so many have or exceed: about, and rather fewer.
-    pub fn areas_of_largest<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
+    /// For each share of all nodes, the area that approximately (and at most) this share reaches.
+    pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];
             pairs.iter().flat_map(|pair| &pair.0).for_each(|node| counts[size(half_area(node.aabb()))] += 1);
@@ -65,7 +65,7 @@ impl<'a> Reinsertion<'a> {
             a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
             a
         };
-        let counts = self.tree.pairs.par_chunks(COUNTED).map(count).reduce_with(add).unwrap_or_default();
+        let counts = self.tree.pairs.par_chunks(COUNT_CHUNK).map(count).reduce_with(add).unwrap_or_default();
         let largest = size(half_area(self.aabb(Tree::ROOT)));
         shares.map(|share| {
             let mut left = (share * self.tree.len() as f32) as u32;
@@ -75,14 +75,14 @@ impl<'a> Reinsertion<'a> {
         })
     }
 
-    /// Tries to move all nodes of at least an area.
-    pub fn round(&mut self, least: f32, job: Job) -> Result<()> {
+    /// Tries to move all nodes of at least the given area.
+    pub fn round(&mut self, min_area: f32, job: Job) -> Result<()> {
         let search = |(i, pairs): (usize, &[Pair])| {
             job.check()?;
             let (mut moves, mut stack) = (Vec::new(), Vec::new());
             let first = (2 * CHUNK * i) as u32;
             for (from, node) in (first..).zip(pairs.iter().flat_map(|pair| &pair.0)) {
-                if from > Tree::ROOT && half_area(node.aabb()) >= least {
+                if from > Tree::ROOT && half_area(node.aabb()) >= min_area {
                     let this = self.best_move(from, &mut stack);
                     if this.gain > 0.0 {
                         moves.push(this);
@@ -110,14 +110,15 @@ impl<'a> Reinsertion<'a> {
         self.tree[node].aabb()
     }
 
-    /// Where a subtree is best: its parent goes, the boxes on the way up shrink, and those on the way down grow.
+    /// The best position of a subtree. Its parent disappears, the boxes on the way up shrink, and those on the way
+    /// down grow.
     fn best_move(&self, from: u32, waiting: &mut Vec<Waiting>) -> Move {
         let this = self.aabb(from);
         let best = Move { from, to: 0, gain: 0.0 };
         let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
-        // What is gained on the way up to the pivot, and the box of what stays below it, as long as that is smaller.
+        // The gain on the way up to the pivot, and the box of what remains below it, as long as that box is smaller.
         let mut gained = half_area(self.aabb(parent));
         let mut rest = Some(*self.aabb(beside));
         loop {
@@ -130,7 +131,8 @@ impl<'a> Reinsertion<'a> {
                 gained += less;
                 rest = (less > 0.0).then_some(smaller);
             }
-            // Even a place that made no other box grow would need one of the subtree's size above it.
+            // Stop if no gain is possible: even where no other box grows, the new parent is at least as large as the
+            // subtree.
             if pivot == Tree::ROOT || gained - search.area <= search.best.gain {
                 return search.best;
             }
@@ -146,7 +148,8 @@ impl<'a> Reinsertion<'a> {
             return;
         }
         changed.iter().for_each(|&node| self.touched[node as usize] = true);
-        // The sibling takes the parent's place, the node at the new place the sibling's, and a new parent of both its.
+        // The sibling replaces the parent, the node at the target replaces the sibling, and a new parent replaces the
+        // target.
         let stays = self.tree[beside];
         let joined = self.tree[to];
         self.put(parent, stays);
@@ -163,7 +166,7 @@ impl<'a> Reinsertion<'a> {
         }
     }
 
-    /// Boxes from a node up, as far as they change.
+    /// Refits boxes from a node upwards until they no longer change.
     fn refit_above(&mut self, mut node: u32) {
         while node != Tree::ROOT {
             node = self.parent(node);
@@ -177,10 +180,10 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// What is gained above two siblings, and the first of them.
+/// The gain above two siblings, and the index of the first.
 type Waiting = (f32, u32);
 
-/// The search for the best place of a subtree.
+/// The search for the best position of a subtree.
 struct Search<'a> {
     tree: &'a Tree,
     this: &'a Aabb,
@@ -190,18 +193,18 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// All places beside a node or below it.
+    /// Examines all positions beside a node or below it.
     fn below(&mut self, gained: f32, node: u32) {
         self.beside(gained, node);
         while let Some((gained, first)) = self.waiting.pop() {
-            // Better places may have been found since.
+            // Skip: better positions may have been found since it was pushed.
             if gained - self.area <= self.best.gain {
                 continue;
             }
             let len = self.waiting.len();
             self.beside(gained, first);
             self.beside(gained, first + 1);
-            // What promises more is next.
+            // Visit the more promising one next.
             if let [.., a, b] = &mut self.waiting[len..]
                 && a.0 > b.0
             {
@@ -210,8 +213,8 @@ impl Search<'_> {
         }
     }
 
-    /// The place beside a node; those below it wait, if any could be better than the best. A parent there has at least the
-    /// area of the subtree.
+    /// Examines the position beside a node; pushes its children if any position below could beat the best one. A new
+    /// parent there has at least the area of the subtree.
     #[inline(always)]
     fn beside(&mut self, gained: f32, to: u32) {
         let node = &self.tree[to];
@@ -236,7 +239,7 @@ mod tests {
     use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
     use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-    /// The same tree, whose root is node 0 there.
+    /// Converts the tree, whose root is node 0 in obvhs.
     fn tree_of(bvh: &Bvh2) -> Tree {
         let mut nodes = vec![Bvh2Node::default()];
         nodes.extend(&bvh.nodes);
@@ -265,12 +268,12 @@ mod tests {
         let mut tree = tree_of(&peer);
         let area_of_all = |nodes: &[Bvh2Node]| nodes.iter().map(|node| node.aabb().half_area()).sum::<f32>();
         let before = area_of_all(&peer.nodes);
-        // The implementation of obvhs, which does not order its search, on the same nodes.
+        // Compare with the implementation of obvhs, which does not order its search, on the same nodes.
         ReinsertionOptimizer::default().run(&mut peer, 0.5, Some(vec![1.0, 0.2, 0.1, 0.0]));
         let monitor = Monitor::default();
         let mut reinsertion = Reinsertion::new(&mut tree, monitor.job()).unwrap();
-        for least in reinsertion.areas_of_largest([0.5, 0.1, 0.05, 0.0]) {
-            reinsertion.round(least, monitor.job()).unwrap();
+        for min_area in reinsertion.area_thresholds([0.5, 0.1, 0.05, 0.0]) {
+            reinsertion.round(min_area, monitor.job()).unwrap();
         }
         let nodes: Vec<Bvh2Node> = tree.pairs.iter().flat_map(|pair| pair.0).collect();
         let (after, after_peer) = (area_of_all(&nodes), area_of_all(&peer.nodes));

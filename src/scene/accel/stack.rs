@@ -1,30 +1,30 @@
-//! Children that wait to be visited.
+//! The traversal stack.
 //!
-//! How many can ever wait is known once a structure is built, so that room is not checked again for every ray.
+//! Its maximum depth is known once a structure is built, so no bounds are checked per ray.
 
 use super::lanes::{Lanes, Row};
 use super::node::Child;
 use std::mem::MaybeUninit;
 
-/// A child, below the bits of where the ray enters its box: distances from 0 up sort as their bits do.
+/// A child with the bits of its entry distance above it: non-negative distances sort as their bits do.
 pub(super) type Waiting = u64;
 
-/// Places that may be written beyond those in use.
+/// Entries beyond those in use that may be overwritten.
 pub(super) const SLACK: usize = 8;
 
 pub(super) struct Stack<'a> {
-    places: &'a mut [MaybeUninit<Waiting>],
+    entries: &'a mut [MaybeUninit<Waiting>],
     len: usize,
 }
 
 impl<'a> Stack<'a> {
-    /// `places` has room for all that can wait, and `SLACK` more.
+    /// `entries` must hold the maximum depth plus `SLACK` entries.
     #[inline(always)]
-    pub fn new(places: &'a mut [MaybeUninit<Waiting>]) -> Self {
-        Self { places, len: 0 }
+    pub fn new(entries: &'a mut [MaybeUninit<Waiting>]) -> Self {
+        Self { entries, len: 0 }
     }
 
-    /// The child put down last, and where the ray enters its box.
+    /// The last child pushed, and its entry distance.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<(f32, Child)> {
         let top = self.top()?;
@@ -38,16 +38,17 @@ impl<'a> Stack<'a> {
         Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
     }
 
-    /// Puts down the children in a mask, whatever their distances.
+    /// Pushes the children in a mask in lane order.
     #[inline(always)]
     pub fn push_all<L: Lanes>(&mut self, children: &[u32; 8], mask: u32) {
-        debug_assert!(self.len + SLACK <= self.places.len());
-        // SAFETY: there is room for eight beyond those that wait.
-        unsafe { L::pick(children, mask, self.places.as_mut_ptr().add(self.len).cast()) };
+        debug_assert!(self.len + SLACK <= self.entries.len());
+        // SAFETY: there are eight entries beyond the current depth.
+        unsafe { L::pick(children, mask, self.entries.as_mut_ptr().add(self.len).cast()) };
         self.len += mask.count_ones() as usize;
     }
 
-    /// Puts down the child `first` and those in a mask, but for the nearest, which is returned; the next nearest is on top.
+    /// Pushes the child `first` and the children in a mask, except the nearest, which is returned; the next nearest is
+    /// on top.
     #[inline(always)]
     pub fn push_all_but_nearest(&mut self, near: &Row, children: &[u32; 8], first: usize, mut mask: u32) -> Child {
         let entry = |lane: usize| u64::from(near.0[lane & 7].to_bits()) << 32 | u64::from(children[lane & 7]);
@@ -57,29 +58,29 @@ impl<'a> Stack<'a> {
             let other = entry(super::take_lowest(&mut mask));
             let farther = nearest.max(other);
             nearest = nearest.min(other);
-            // Sink below those that are nearer.
-            let mut place = self.len;
-            while place > bottom && self.read(place - 1) < farther {
-                self.write(place, self.read(place - 1));
-                place -= 1;
+            // Insertion sort: sink below the nearer ones.
+            let mut index = self.len;
+            while index > bottom && self.read(index - 1) < farther {
+                self.write(index, self.read(index - 1));
+                index -= 1;
             }
-            self.write(place, farther);
+            self.write(index, farther);
             self.len += 1;
         }
         Child::from_bits(nearest as u32)
     }
 
     #[inline(always)]
-    fn read(&self, place: usize) -> Waiting {
-        debug_assert!(place < self.len);
-        // SAFETY: every place below `len` is in the list and was written.
-        unsafe { self.places.get_unchecked(place).assume_init() }
+    fn read(&self, index: usize) -> Waiting {
+        debug_assert!(index < self.len);
+        // SAFETY: every entry below `len` is in the list and was written.
+        unsafe { self.entries.get_unchecked(index).assume_init() }
     }
 
     #[inline(always)]
-    fn write(&mut self, place: usize, entry: Waiting) {
-        debug_assert!(place < self.places.len());
-        // SAFETY: `places` has room for all that can wait.
-        unsafe { self.places.get_unchecked_mut(place).write(entry) };
+    fn write(&mut self, index: usize, entry: Waiting) {
+        debug_assert!(index < self.entries.len());
+        // SAFETY: `entries` holds the maximum depth.
+        unsafe { self.entries.get_unchecked_mut(index).write(entry) };
     }
 }

@@ -13,7 +13,7 @@ fn random_vec(rng: &mut Rng) -> Vec3 {
     Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) * 2.0 - 1.0
 }
 
-/// The six walls of a box, each of `n * n` squares of two triangles.
+/// The six walls of a box, each divided into `n * n` squares of two triangles.
 fn tessellated_box(n: usize, low: Vec3, high: Vec3) -> Vec<[Vec3; 3]> {
     let mut triangles = Vec::new();
     for axis in 0..3 {
@@ -68,7 +68,7 @@ fn hits_are_those_of_testing_every_triangle_on_every_kind_of_vector_unit() {
             let mut origin = random_vec(&mut rng) * 1.5;
             let mut direction = random_vec(&mut rng);
             if i % 3 == 0 {
-                // Along an axis, from points of the grid: everything that can be degenerate is.
+                // Rays along an axis from grid points: all degenerate cases at once.
                 origin = (origin * 4.0).round() / 4.0;
                 direction = Vec3::AXES[i % 9 / 3] * if i % 2 == 0 { 1.0 } else { -1.0 };
             }
@@ -91,7 +91,7 @@ fn hits_are_those_of_testing_every_triangle_on_every_kind_of_vector_unit() {
 fn no_ray_escapes_a_closed_box_through_its_edges_and_vertices() {
     let mut rng = Rng::new(2, &[]);
     let mut escaped = 0;
-    // The last but one keeps 16 steps of rounding per square; in the last, squares shrink to lines and are dropped.
+    // The last but one keeps 16 rounding steps per square; in the last, squares collapse to lines and are dropped.
     for (scale, offset) in [
         (1.0, Vec3::ZERO),
         (1e-4, Vec3::ZERO),
@@ -105,7 +105,7 @@ fn no_ray_escapes_a_closed_box_through_its_edges_and_vertices() {
         let accel = build(&triangles);
         for _ in 0..200_000 {
             let [a, b, c] = triangles[rng.below(triangles.len())];
-            // A vertex, a point of an edge, or a point of the diagonal two triangles share.
+            // A vertex, a point on an edge, or a point on the diagonal that two triangles share.
             let target = match rng.below(3) {
                 0 => a,
                 1 => a.lerp(b, rng.next_f32()),
@@ -149,7 +149,7 @@ fn nothing_needles_and_nonsense_are_survived() {
 
 #[test]
 fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
-    // Sizes from 1e-12 to 1e12: the tree cannot be balanced.
+    // Sizes from 1e-12 to 1e12, for which the tree cannot be balanced.
     let triangles: Vec<[Vec3; 3]> = (0..2000)
         .map(|i| {
             let size = 10f32.powf(-12.0 + i as f32 * 0.012);
@@ -162,8 +162,8 @@ fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
     assert_eq!(accel.closest(&ray, |_| true).unwrap().triangle, 0);
 }
 
-/// A room of twelve large triangles with a finely divided block in it: large enough to be built in parts, with parts of
-/// very unlike sizes.
+/// A room of twelve large triangles with a finely divided block in it: large enough to be built in parts, of very
+/// different sizes.
 fn room_with_block() -> Vec<[Vec3; 3]> {
     let mut triangles = tessellated_box(1, Vec3::splat(-3.0), Vec3::splat(3.0));
     triangles.extend(tessellated_box(34, Vec3::new(-0.5, -3.0, 0.2), Vec3::new(0.7, 0.4, 1.1)));
@@ -211,7 +211,7 @@ fn the_structure_is_the_same_to_the_bit_on_any_number_of_threads() {
     let triangles = room_with_block();
     let [a, b] = [1, 3].map(|threads| Pool::new(threads).unwrap().run(|| build(&triangles)));
     assert_eq!((a.root, a.stack_need), (b.root, b.stack_need));
-    // As numbers of unsigned bits: free lanes are NaN.
+    // Compare as unsigned bits: unused lanes are NaN.
     assert!(a.lines.as_slice() == b.lines.as_slice());
 }
 
@@ -240,7 +240,7 @@ fn few_triangles_among_broken_ones_are_found_at_every_scale() {
         for count in [1, 5] {
             let square = |i: usize| [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| (p + Vec3::new(0.0, 0.0, i as f32)) * scale);
             let mut triangles: Vec<[Vec3; 3]> = (0..count).map(square).collect();
-            // A corner that is no number, a point, a line.
+            // A NaN corner, a point, and a line.
             triangles.insert(1, [Vec3::NAN, Vec3::X, Vec3::Y]);
             triangles.insert(0, [Vec3::X * scale; 3]);
             triangles.push([Vec3::ZERO, Vec3::X * scale, Vec3::X * 2.0 * scale]);
@@ -282,20 +282,20 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
     triangles.extend((0..30_000).map(|_| [0; 3].map(|_| place + random_vec(&mut rng))));
     let start = std::time::Instant::now();
     let accel = build(&triangles);
-    // In the square of their number: minutes.
+    // An algorithm of quadratic time would take minutes.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
     let ray = Ray::new(place + Vec3::Z * 9.0, Vec3::NEG_Z);
     assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
 }
 
-/// Three million triangles in a room, and the same with one far away, from where they all lie in one cell of space.
+/// Three million triangles in a room, and the same with one more far away, relative to which they all lie in one cell.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_cancel_is_heard_within_50_ms_while_three_million_triangles_are_built() {
-    /// Nanoseconds this thread has run, to a few milliseconds; what else the machine does does not count.
+    /// CPU time of this thread in nanoseconds, to a few milliseconds; load on the machine does not count.
     fn now() -> u64 {
-        let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
-        told.split_whitespace().next().unwrap().parse().unwrap()
+        let schedstat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+        schedstat.split_whitespace().next().unwrap().parse().unwrap()
     }
     #[derive(Default)]
     struct Silence {
@@ -315,7 +315,7 @@ fn a_cancel_is_heard_within_50_ms_while_three_million_triangles_are_built() {
         };
         let mut monitor = Monitor::default();
         monitor.at_check = Some(Box::new(at_check));
-        // One thread, which does all, is silent the longest.
+        // A single thread, which does all the work, has the longest interval between checks.
         Pool::new(1).unwrap().run(|| Accel::build(&triangles, monitor.job())).unwrap();
         let longest = silence.lock().unwrap().longest as f64 * 1e-6;
         assert!(longest > 0.0 && longest < 50.0, "{longest} ms");

@@ -1,4 +1,4 @@
-//! Typed arrays in buffers (glTF 2.0, section 3.6.2), sparse ones included.
+//! Typed arrays in buffers (glTF 2.0, section 3.6.2), including sparse ones.
 
 use super::container::{File, missing};
 use crate::error::{Error, ErrorKind, Result};
@@ -7,10 +7,10 @@ use gltf::json::accessor::{self, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
 
-/// Longest array that no bytes of the file stand for: a sparse one over zeros.
+/// Maximum length of an array without data in the file: a sparse array over zeros.
 const MAX_UNBACKED: usize = 1 << 20;
 
-/// Elements of one type, `stride` bytes apart.
+/// Elements of one type at intervals of `stride` bytes.
 struct Strided<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -20,7 +20,7 @@ struct Strided<'a> {
 }
 
 impl<'a> Strided<'a> {
-    /// `count` elements from `offset` of a buffer view; an error if they do not all lie in it.
+    /// A view of `count` elements from `offset` of a buffer view; an error if they exceed it.
     fn new(
         file: &'a File,
         view: Index<buffer::View>,
@@ -105,12 +105,12 @@ fn layout(accessor: &accessor::Accessor) -> Result<(ComponentType, usize)> {
     }
 }
 
-/// The number of elements an accessor claims to have; nothing else about it is checked.
+/// The number of elements that an accessor declares; nothing else is checked.
 pub fn count(file: &File, index: Index<accessor::Accessor>) -> Result<u64> {
     Ok(find(file, index)?.count.0)
 }
 
-/// Reads vectors of `N` numbers; integers are scaled to `[0, 1]` or `[-1, 1]` if the accessor says so.
+/// Reads vectors of `N` numbers; normalised integers are scaled to `[0, 1]` or `[-1, 1]`.
 pub fn vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
     read_vectors(file, index).map_err(|e| e.within(format_args!("accessor {}", index.value())))
 }
@@ -121,7 +121,7 @@ fn read_vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -
     if components != N {
         return Err(Error::format(format!("it has {components} components where {N} are expected")));
     }
-    let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count is beyond all memory"))?;
+    let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count exceeds all memory"))?;
     let strided = |view, offset, count| {
         Strided::new(file, view, offset, kind, components, count)
             .map(|strided| Strided { normalized: accessor.normalized, ..strided })
@@ -152,7 +152,7 @@ fn read_vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -
     Ok(out)
 }
 
-/// Where a sparse accessor deviates, and its values there.
+/// The indices at which a sparse accessor deviates, and its values there.
 fn sparse_parts<'a>(
     file: &'a File,
     sparse: &accessor::sparse::Sparse,
@@ -161,7 +161,7 @@ fn sparse_parts<'a>(
     let Checked::Valid(kind) = &sparse.indices.component_type else {
         return Err(Error::format("the componentType of its sparse indices is unknown"));
     };
-    let count = usize::try_from(sparse.count.0).map_err(|_| Error::format("its sparse count is beyond all memory"))?;
+    let count = usize::try_from(sparse.count.0).map_err(|_| Error::format("its sparse count exceeds all memory"))?;
     let at = Strided::new(file, sparse.indices.buffer_view, sparse.indices.byte_offset.0, kind.0, 1, count)?;
     Ok((at, strided(sparse.values.buffer_view, sparse.values.byte_offset.0, count)?))
 }
@@ -174,7 +174,7 @@ pub fn indices(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<u32>
         let (Some(view), 1) = (accessor.buffer_view, components) else {
             return Err(Error::format("indices must be scalars in a buffer view"));
         };
-        let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count is beyond all memory"))?;
+        let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count exceeds all memory"))?;
         let source = Strided::new(file, view, accessor.byte_offset.map_or(0, |o| o.0), kind, 1, count)?;
         let mut out = try_vec(count, 0)?;
         for (i, o) in out.iter_mut().enumerate() {

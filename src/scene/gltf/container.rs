@@ -1,4 +1,5 @@
-//! The outer layers of a file: GLB chunks, buffers and images inside the file, in `data:` URIs, or beside it.
+//! The outer layers of a file: GLB chunks; buffers and images embedded in the file, in `data:` URIs, or in separate
+//! files.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_with_capacity;
@@ -10,7 +11,7 @@ const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: &[u8] = b"JSON";
 const BINARY_CHUNK: &[u8] = b"BIN\0";
 
-/// A parsed file with the bytes of all its buffers.
+/// A parsed file with the contents of all its buffers.
 pub struct File<'a> {
     pub root: Root,
     buffers: Vec<Cow<'a, [u8]>>,
@@ -63,7 +64,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// The bytes a URI stands for.
+    /// The bytes that a URI refers to.
     pub fn resolve(&self, uri: &str) -> Result<Vec<u8>> {
         if let Some(data) = uri.strip_prefix("data:") {
             let (kind, payload) = data.split_once(',').ok_or_else(|| Error::format("a data: URI without a comma"))?;
@@ -75,12 +76,12 @@ impl<'a> File<'a> {
         let relative = safe_path(uri)?;
         let base = self.base.ok_or_else(|| {
             Error::argument(format!(
-                "the file refers to {uri:?} beside it: say in which folder that is, or load by path"
+                "the file refers to {uri:?} beside it: give the folder of that file, or load by path"
             ))
         })?;
         let path = base.join(relative);
         let failed = |e: std::io::Error| Error::new(ErrorKind::Io, format!("{}: {e}", path.display()));
-        // A device or a pipe might never end.
+        // Refuse devices and pipes, which might never end.
         if !std::fs::metadata(&path).map_err(failed)?.is_file() {
             return Err(Error::new(ErrorKind::Io, format!("{} is not a regular file", path.display())));
         }
@@ -92,7 +93,7 @@ pub fn missing(kind: &str, index: usize, count: usize) -> Error {
     Error::format(format!("the file refers to {kind} {index}, but has {count}"))
 }
 
-/// Splits a GLB into its JSON and binary chunks; anything else is taken as JSON.
+/// Splits a GLB into its JSON and binary chunks; other input is treated as JSON.
 fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     if !bytes.starts_with(MAGIC) {
         return Ok((bytes, None));
@@ -112,7 +113,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
         let size = word(at).ok_or_else(truncated)? as usize;
         let (kind, start) = (&bytes[at + 4..at + 8], at + 8);
         let end = start.checked_add(size).filter(|&end| end <= length).ok_or_else(truncated)?;
-        // Unknown chunks are passed over, as the specification asks.
+        // Skip unknown chunks, as the specification requires.
         match kind {
             JSON_CHUNK if json.is_none() => json = Some(&bytes[start..end]),
             BINARY_CHUNK if binary.is_none() => binary = Some(&bytes[start..end]),
@@ -125,7 +126,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
 
 /// A relative path that cannot leave its folder.
 fn safe_path(uri: &str) -> Result<PathBuf> {
-    let refused = |why: &str| Error::format(format!("the outside file {uri:?} {why}"));
+    let refused = |why: &str| Error::format(format!("the external file {uri:?} {why}"));
     let bytes = decode_percent(uri).ok_or_else(|| refused("is not validly percent-encoded"))?;
     let name = String::from_utf8(bytes).map_err(|_| refused("is not valid UTF-8"))?;
     if name.contains(['\\', ':', '\0']) {
@@ -156,7 +157,7 @@ fn decode_percent(text: &str) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// RFC 4648, section 4; padding is optional.
+/// Decodes base64 (RFC 4648, section 4); padding is optional.
 fn decode_base64(text: &str) -> Result<Vec<u8>> {
     let digits = text.trim_end_matches('=');
     let mut out = try_with_capacity(digits.len() / 4 * 3 + 3)?;

@@ -1,4 +1,4 @@
-//! Writes a scene as one GLB file.
+//! Writes a scene as a single GLB file.
 
 use super::import::IES;
 use super::material::transform_matrix;
@@ -10,21 +10,22 @@ use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, Text
 use glam::{Mat3, Quat, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
-/// Numbers of the specification (glTF 2.0, 5.1.3, 5.11.5, 5.26).
+/// Constants of the specification (glTF 2.0, 5.1.3, 5.11.5, 5.26).
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Distance of the near plane of cameras in metres; a path tracer has none, but the format wants one.
+/// Distance of the cameras' near plane in metres: required by the format, but unused by a path tracer [convention].
 const NEAR: f32 = 0.01;
 
-/// Encodes a scene as GLB: one node for each mesh, camera and light, textures as embedded PNG.
+/// Encodes a scene as GLB, with one node per mesh, camera and light, and textures as embedded PNG.
 ///
-/// An emission texture brighter than 1 is scaled to a peak of 1, and `KHR_materials_emissive_strength` carries the rest;
-/// PNG then has 8 bits for each channel. Luminaires take their distributions along as IES files (`EXT_lights_ies`). Meshes without triangles and the environment are left out: glTF has no place for
-/// them. Errors: whatever [`Scene::validate`] finds; `Unsupported` for a texture transform with shear or a file of
-/// more than 4 GiB.
+/// An emission texture brighter than 1 is scaled to a peak of 1, and `KHR_materials_emissive_strength` carries the
+/// factor; PNG stores it with 8 bits per channel. The distributions of luminaires are embedded as IES files
+/// (`EXT_lights_ies`). Meshes without triangles and the environment are left out, because glTF cannot represent them.
+/// Errors: those of [`Scene::validate`]; `Unsupported` for a texture transform with shear or a file of more than 4
+/// GiB.
 pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     scene.validate()?;
     let mut writer = Writer::default();
@@ -42,10 +43,10 @@ pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     for (i, light) in scene.lights.iter().enumerate() {
         writer.light(scene, i, light)?;
     }
-    writer.finish()
+    writer.into_glb()
 }
 
-/// An image as written: its texture, how its bytes are meant, and what its values are divided by.
+/// An image as written: its texture, its encoding, and the divisor of its values.
 type ImageKey = (usize, Encoding, f32);
 
 #[derive(Default)]
@@ -60,7 +61,7 @@ struct Writer {
     meshes: Vec<Value>,
     cameras: Vec<Value>,
     lights: Vec<Value>,
-    /// IES files, of those distributions of the scene that have been written.
+    /// IES files of the scene's distributions written so far.
     profiles: Vec<Value>,
     profile_keys: Vec<usize>,
     nodes: Vec<Value>,
@@ -74,7 +75,7 @@ impl Writer {
         }
     }
 
-    /// Appends bytes, aligned to 4 as every accessor wants, and returns the index of their buffer view.
+    /// Appends bytes, padded to the alignment of 4 that accessors require, and returns the index of their buffer view.
     fn view(&mut self, bytes: &[u8], target: Option<u32>) -> Result<usize> {
         let out_of_memory = |_| Error::new(ErrorKind::OutOfMemory, "could not allocate the GLB file");
         self.binary.try_reserve(bytes.len() + 3).map_err(out_of_memory)?;
@@ -118,7 +119,7 @@ impl Writer {
         if !mesh.normals.is_empty() {
             attributes.insert("NORMAL".into(), self.accessor(&mesh.normals, "VEC3", FLOAT, None)?.into());
         }
-        // Sets are numbered without gaps: where the second is alone, the first is written as zeros.
+        // Texture coordinate sets must be numbered without gaps: if only the second exists, write zeros as the first.
         let [first, second] = &mesh.uvs;
         if !first.is_empty() {
             attributes.insert("TEXCOORD_0".into(), self.accessor(first, "VEC2", FLOAT, None)?.into());
@@ -176,7 +177,7 @@ impl Writer {
         Ok(())
     }
 
-    /// A luminaire as `EXT_lights_ies` has it: its axis along -z of its node, C = 0 along x.
+    /// A luminaire as in `EXT_lights_ies`: its axis along -z of its node, C = 0 along x.
     fn luminaire(
         &mut self,
         scene: &Scene,
@@ -237,7 +238,7 @@ impl Writer {
             out["normalTexture"]["scale"] = material.normal_scale.into();
         }
 
-        // The texture is brought to a peak of 1 and the factor likewise; the strength carries both.
+        // Scale the texture and the factor to a peak of 1; the strength carries the product of both scales.
         let mut extensions = Map::new();
         let mut emission = material.emission;
         if let Some(reference) = material.emission_texture {
@@ -284,14 +285,14 @@ impl Writer {
         Ok(info)
     }
 
-    /// Each image has a texture and a sampler of its own, all three with the same index.
+    /// Writes an image with its own texture and sampler; all three have the same index.
     fn image(&mut self, scene: &Scene, key: ImageKey) -> Result<usize> {
         let (index, encoding, peak) = key;
         let texture = &scene.textures[index];
         let png = match encoding {
             Encoding::Srgb => io::encode_png(&texture.image, 1.0 / peak)?,
             Encoding::Linear => {
-                // The encoder applies the sRGB curve; its inverse first leaves the bytes linear.
+                // The encoder applies the sRGB curve; apply its inverse first so that the bytes stay linear.
                 let mut image = texture.image.clone();
                 let alpha = if image.channels == 4 { 3 } else { usize::MAX };
                 let channels = image.channels;
@@ -313,14 +314,14 @@ impl Writer {
         Ok(number)
     }
 
-    fn finish(mut self) -> Result<Vec<u8>> {
+    fn into_glb(mut self) -> Result<Vec<u8>> {
         let samplers: Vec<Value> = self.textures.iter_mut().map(|texture| texture["sampler"].take()).collect();
         for (i, texture) in self.textures.iter_mut().enumerate() {
             texture["sampler"] = i.into();
         }
         let mut root = Map::new();
         root.insert("asset".into(), json!({ "version": "2.0", "generator": "luxfer" }));
-        // A scene without nodes is not valid glTF; a file without scenes is.
+        // glTF requires scenes to have nodes, but allows files without scenes.
         if !self.nodes.is_empty() {
             let nodes: Vec<usize> = (0..self.nodes.len()).collect();
             root.insert("scene".into(), 0.into());
@@ -358,7 +359,7 @@ impl Writer {
     }
 }
 
-/// Puts the two chunks into a GLB container (glTF 2.0, section 4.4).
+/// Packs the two chunks into a GLB container (glTF 2.0, section 4.4).
 fn pack(root: &Value, binary: &[u8]) -> Result<Vec<u8>> {
     let mut text = root.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -384,13 +385,13 @@ fn pack(root: &Value, binary: &[u8]) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// A colour with a peak of 1, and its scale.
+/// A colour scaled to a peak of 1, and the scale.
 fn split_peak(colour: Vec3) -> (Vec3, f32) {
     let peak = colour.max_element();
     if peak > 0.0 { (colour / peak, peak) } else { (Vec3::ZERO, 0.0) }
 }
 
-/// Offset, rotation and scale whose product is the transform.
+/// The offset, rotation and scale whose product is the transform.
 fn decompose(transform: Mat3) -> Result<(Vec2, f32, Vec2)> {
     let (first, second) = (transform.x_axis.truncate(), transform.y_axis.truncate());
     let rotation = (-first.y).atan2(first.x);

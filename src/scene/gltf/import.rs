@@ -1,4 +1,4 @@
-//! Nodes, meshes, cameras and lights of a file, brought into world space.
+//! Converts the nodes, meshes, cameras and lights of a file to world space.
 
 use super::Budget;
 use super::accessor;
@@ -18,10 +18,10 @@ use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Most vertices, and most triangles, of all meshes together once instances are written out.
+/// Maximum number of vertices, and of triangles, of all meshes including instances.
 const MAX_ELEMENTS: u64 = 1 << 26;
 
-/// Luminaires that were measured, as IES files.
+/// The extension for measured luminaires as IES files.
 pub const IES: &str = "EXT_lights_ies";
 
 const EXTENSIONS: [&str; 8] = [
@@ -35,10 +35,10 @@ const EXTENSIONS: [&str; 8] = [
     "KHR_texture_transform",
 ];
 
-/// Reads a GLB or glTF file held in memory; outside files it names are looked up in `base` and below.
+/// Reads a GLB or glTF file held in memory; external files it refers to are resolved relative to `base`.
 ///
-/// Errors: `Format` for broken, truncated or lying files, `Unsupported` for what this library does not do, `Io` for
-/// outside files that cannot be read, and what the budget says.
+/// Errors: `Format` for broken, truncated or inconsistent files, `Unsupported` for features this library lacks, `Io`
+/// for unreadable external files, and errors of the budget.
 pub fn import(bytes: &[u8], base: Option<&Path>, budget: Budget) -> Result<Scene> {
     let file = File::parse(bytes, base)?;
     if let Some(unknown) = file.root.extensions_required.iter().find(|e| !EXTENSIONS.contains(&e.as_str())) {
@@ -70,16 +70,16 @@ struct Importer<'a> {
     file: &'a File<'a>,
     budget: Budget<'a>,
     scene: Scene,
-    /// Made when the first primitive without a material is met.
+    /// Created for the first primitive without a material.
     default_material: Option<usize>,
-    /// Number of each IES file that has been read; its distribution of the scene has the same index.
+    /// Index of each IES file read so far; its distribution in the scene has the same position.
     profiles: Vec<usize>,
     vertices: u64,
     triangles: u64,
 }
 
 impl Importer<'_> {
-    /// Visits every node of the default scene once, parents first, in the order of the file.
+    /// Visits every node of the default scene once, parents first, in file order.
     fn nodes(&mut self) -> Result<()> {
         let file = self.file;
         let mut visited = try_vec(file.root.nodes.len(), false)?;
@@ -131,7 +131,7 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// A luminaire whose axis is -z of its node and whose C = 0 is x; its file is read once.
+    /// A luminaire with its axis along -z of its node and C = 0 along x; each IES file is read once.
     fn luminaire(&mut self, reference: &Value, transform: DMat4) -> Result<()> {
         let extensions = self.file.root.extensions.as_ref();
         let profiles =
@@ -151,10 +151,10 @@ impl Importer<'_> {
         let multiplier = reference.get("multiplier").and_then(Value::as_f64).unwrap_or(1.0) as f32;
         let channel = |c: usize| reference.get("color").and_then(|v| v.get(c)?.as_f64()).unwrap_or(1.0) as f32;
         let axes = [DVec3::NEG_Z, DVec3::X].map(|axis| transform.transform_vector3(axis).normalize_or_zero());
-        // Nodes that shear leave no right angle.
+        // Restore the right angle, which nodes with shear destroy.
         let c0 = (axes[1] - axes[0] * axes[0].dot(axes[1])).normalize_or_zero();
         if axes[0] == DVec3::ZERO || c0 == DVec3::ZERO {
-            return Err(Error::format("its node is scaled to nothing"));
+            return Err(Error::format("its node is scaled to zero"));
         }
         self.scene.lights.push(PunctualLight::Luminaire {
             position: transform.w_axis.truncate().as_vec3(),
@@ -188,7 +188,7 @@ impl Importer<'_> {
         let extras = extras.into_iter().filter_map(|(semantic, bytes)| attribute(semantic).map(|_| bytes));
         self.reserve(positions, 12 + extras.sum::<u64>(), primitive.indices, mode)?;
 
-        // Vertices; each attribute must have one value for each position.
+        // Read the vertices; each attribute must have one value per position.
         let mut positions = bring_in(accessor::vectors(self.file, positions)?, |p: [f32; 3]| {
             transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3()
         })?;
@@ -199,7 +199,7 @@ impl Importer<'_> {
             }
             Err(Error::format(format!("{count} positions, but {len} values of {what}")))
         };
-        // Normals are turned by the cofactor matrix: the inverse transpose, but for scale, and finite for flat scalings.
+        // Transform normals by the cofactor matrix: the inverse transpose up to scale, but finite for flat scalings.
         let linear = DMat3::from_mat4(transform);
         let flipped = linear.determinant() < 0.0;
         let cofactor = DMat3::from_cols(
@@ -222,7 +222,7 @@ impl Importer<'_> {
             }
         }
 
-        // Triangles of all three kinds, with their winding restored after a reflection.
+        // Form triangles of all three modes, restoring their winding after a reflection.
         let indices = match primitive.indices {
             Some(index) => accessor::indices(self.file, index)?,
             None => try_collect(0..count as u32)?,
@@ -248,7 +248,7 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// Counts what a primitive will add before anything is allocated: instances multiply what a small file holds.
+    /// Counts the output of a primitive before allocating it: instances multiply the contents of a small file.
     fn reserve(
         &mut self,
         positions: Index<json::Accessor>,
@@ -282,10 +282,10 @@ impl Importer<'_> {
         let Some(perspective) = &camera.perspective else { return Ok(()) };
         let axis = |v: DVec3| {
             let axis = transform.transform_vector3(v).try_normalize();
-            axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to nothing")))
+            axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to zero")))
         };
         let forward = axis(DVec3::NEG_Z)?;
-        // A scaling that is not uniform shears the axes; up is made orthogonal again.
+        // Non-uniform scaling shears the axes: make up orthogonal again.
         let up = axis(DVec3::Y)?;
         let up = (up - forward * forward.dot(up)).try_normalize();
         let up = up.ok_or_else(|| Error::format(format!("camera {name:?} has parallel axes")))?;
@@ -300,7 +300,7 @@ impl Importer<'_> {
     }
 }
 
-/// The nodes to start from: those of the default or first scene, or where there is none, those that are nobody's child.
+/// The root nodes: those of the default or first scene, or else all nodes that are nobody's child.
 fn roots(file: &File) -> Result<Vec<usize>> {
     let root = &file.root;
     let number = root.scene.map_or(0, |s| s.value());
@@ -351,14 +351,14 @@ fn triangulate(mode: Mode, indices: &[u32]) -> Result<Vec<[u32; 3]>> {
             _ => [indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]],
         };
     }
-    // Strips join their parts with triangles that have no area.
+    // Drop degenerate triangles, which join the parts of strips.
     if mode != Mode::Triangles {
         triangles.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
     }
     Ok(triangles)
 }
 
-/// Gives vertices whose normal has no direction the mean normal of the faces around them.
+/// Replaces zero normals by the mean normal of the adjacent faces.
 fn mend_normals(positions: &[Vec3], normals: &mut [Vec3], triangles: &[[u32; 3]]) -> Result<()> {
     if !normals.contains(&Vec3::ZERO) {
         return Ok(());
@@ -381,7 +381,7 @@ fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {
     let strength = Vec3::from(light.color) * light.intensity;
     let direction = || {
         let direction = transform.transform_vector3(DVec3::NEG_Z).try_normalize();
-        direction.map(|d| d.as_vec3()).ok_or_else(|| Error::format("its node is scaled to nothing"))
+        direction.map(|d| d.as_vec3()).ok_or_else(|| Error::format("its node is scaled to zero"))
     };
     match light.type_ {
         Checked::Valid(Type::Point) => Ok(PunctualLight::Point { position, intensity: strength }),
@@ -389,7 +389,7 @@ fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {
             Ok(PunctualLight::Directional { direction: direction()?, illuminance: strength })
         }
         Checked::Valid(Type::Spot) => {
-            let spot = light.spot.as_ref().ok_or_else(|| Error::format("a spot light without its cone"))?;
+            let spot = light.spot.as_ref().ok_or_else(|| Error::format("a spot light without cone angles"))?;
             Ok(PunctualLight::Spot {
                 position,
                 direction: direction()?,

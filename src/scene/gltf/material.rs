@@ -10,17 +10,17 @@ use glam::{Mat3, Vec2, Vec3};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, extensions, material, texture};
 
-/// Where the bytes of an image are. Writers that do not share images often share their bytes.
+/// Location of an image's bytes. Exporters that do not share images often share their bytes.
 #[derive(Clone, Copy, PartialEq)]
 enum Source {
     View(usize),
     Image(usize),
 }
 
-/// What makes two uses of a texture the same texture here.
+/// The properties by which two texture uses share one texture.
 type Key = (Source, Encoding, [Wrap; 2]);
 
-/// Reads materials in order and collects the textures they use.
+/// Reads materials in order and collects their textures.
 pub struct Materials<'a> {
     file: &'a File<'a>,
     budget: Budget<'a>,
@@ -34,14 +34,14 @@ impl<'a> Materials<'a> {
         Self { file, budget, textures: Vec::new(), keys: Vec::new(), pixels: 0 }
     }
 
-    /// Factors just outside their range, as some writers leave them, are brought back into it.
+    /// Reads a material, clamping factors that lie slightly outside their range, as some exporters write.
     pub fn read(&mut self, index: usize, json: &material::Material) -> Result<Material> {
         let pbr = &json.pbr_metallic_roughness;
         let [r, g, b, alpha] = pbr.base_color_factor.0;
         let extensions = json.extensions.as_ref();
         let transmission = extensions.and_then(|e| e.transmission.as_ref()).map_or(0.0, |t| t.transmission_factor.0);
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
-        // The extension allows 0 for surfaces that reflect everything; such a surface is taken for ordinary glass.
+        // The extension allows 0 for surfaces that reflect everything; treat these as ordinary glass.
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),
@@ -92,7 +92,7 @@ impl<'a> Materials<'a> {
         Ok(TextureRef { texture, uv_set, transform: transform.map_or(Mat3::IDENTITY, matrix) })
     }
 
-    /// The index of a texture in the scene, decoded at its first use.
+    /// The index of a texture in the scene; decodes it at its first use.
     fn texture(&mut self, index: Index<texture::Texture>, encoding: Encoding) -> Result<usize> {
         let root = &self.file.root;
         let json = root.get(index).ok_or_else(|| missing("texture", index.value(), root.textures.len()))?;
@@ -110,7 +110,7 @@ impl<'a> Materials<'a> {
             return Ok(known);
         }
 
-        // The same image decoded for another purpose or wrapping is a texture of its own.
+        // An image decoded with another encoding or wrapping becomes a separate texture.
         let decoded = match (image.buffer_view, &image.uri) {
             (Some(view), _) => self.decode(self.file.view(view)?, encoding),
             (None, Some(uri)) => self.file.resolve(uri).and_then(|bytes| self.decode(&bytes, encoding)),
@@ -124,7 +124,7 @@ impl<'a> Materials<'a> {
         Ok(self.textures.len() - 1)
     }
 
-    /// Decodes an image once its header is known to leave room for it.
+    /// Decodes an image after checking the size in its header against the budget.
     fn decode(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
         let (width, height, channels) = io::probe(bytes)?;
         let pixels = width as u64 * height as u64;
@@ -151,8 +151,8 @@ fn matrix(transform: &extensions::texture::TextureTransform) -> Mat3 {
     transform_matrix(transform.offset.0.into(), transform.rotation.0, transform.scale.0.into())
 }
 
-/// `translation × rotation × scale`; a positive angle turns counter-clockwise as seen with v running down, as the text
-/// of `KHR_texture_transform` and the renderers have it (the GLSL in its text turns the other way).
+/// `translation × rotation × scale`; a positive angle rotates counter-clockwise with v running down, as in the prose
+/// of `KHR_texture_transform` and in renderers (the GLSL in its text rotates the other way).
 pub fn transform_matrix(offset: Vec2, rotation: f32, scale: Vec2) -> Mat3 {
     let (s, c) = rotation.sin_cos();
     Mat3::from_cols(Vec3::new(c, -s, 0.0) * scale.x, Vec3::new(s, c, 0.0) * scale.y, offset.extend(1.0))

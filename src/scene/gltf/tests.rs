@@ -13,7 +13,7 @@ fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
     super::import(bytes, base, UNLIMITED)
 }
 
-/// One of everything the format can hold.
+/// One of each object that the format can hold.
 fn scene() -> Scene {
     let colour = Image::from_fn(4, 2, |x, y| [x as f32 / 3.0, y as f32, 0.5, 1.0]).unwrap();
     let lights = Image::from_fn(4, 4, |x, y| [if (x + y) % 3 == 0 { 8.0 } else { 0.0 }, 2.0, 0.5]).unwrap();
@@ -106,7 +106,7 @@ fn a_scene_survives_the_way_out_and_in() {
         assert_eq!((&a.name, a.alpha_mode, a.double_sided), (&b.name, b.alpha_mode, b.double_sided));
         let numbers = |m: &Material| [m.alpha, m.metallic, m.roughness, m.normal_scale, m.transmission, m.ior];
         assert_eq!((a.base_color, numbers(a)), (b.base_color, numbers(b)));
-        // Textures may be scaled against their factors; 8 bits of sRGB keep 1 % of the peak.
+        // Scale may move between textures and factors; 8 bits of sRGB resolve 1 % of the peak.
         for v in 0..8 {
             let uv = Vec2::new(v as f32 / 8.0, 0.6);
             let look = |scene: &Scene, reference: Option<TextureRef>| {
@@ -137,7 +137,7 @@ fn a_scene_survives_the_way_out_and_in() {
     assert!(import(&export(&Scene::default()).unwrap(), None).unwrap().meshes.is_empty());
 }
 
-/// Luminaires take their distributions along, once, and hang as they did.
+/// Luminaires keep their orientation and their distributions, each of which is written once.
 #[test]
 fn luminaires_survive_the_way_out_and_in() {
     let measured = |planes: usize| Luminaire {
@@ -173,7 +173,7 @@ fn luminaires_survive_the_way_out_and_in() {
         assert!(a.iter().zip(b).all(|(a, b)| near(*a, b)), "{a:?} {b:?}");
         assert_eq!(measured_a, measured_b);
     }
-    // Files that lie are refused, whatever they lie about.
+    // Inconsistent files are rejected.
     let broken = |from: &str, to: &str| {
         let at = glb.windows(from.len()).position(|w| w == from.as_bytes()).unwrap();
         let mut bytes = glb.clone();
@@ -185,7 +185,7 @@ fn luminaires_survive_the_way_out_and_in() {
     assert!(broken("\"bufferView\"", "\"bufferWiew\"").message.contains("no file"));
 }
 
-/// A glTF file of one triangle under a node, changed by the test.
+/// A glTF file with one triangle under a node, edited by the test.
 fn triangle_file(edit: impl FnOnce(&mut Value)) -> Vec<u8> {
     // Three positions, then the indices 0 1 2 as bytes.
     let uri = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA==";
@@ -214,7 +214,7 @@ fn transforms_are_applied_and_reflections_keep_their_front() {
     assert_eq!(plain.meshes[0].corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y]);
     assert_eq!((plain.meshes[0].name.as_str(), plain.materials[0].name.as_str()), ("Tri", "Default"));
 
-    // A child mirrored in x under a parent that is moved, turned by 90° about z, and scaled.
+    // A child mirrored in x, under a parent that is translated, rotated by 90° about z, and scaled.
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let nested = triangle_file(|f| {
         f["nodes"] = json!([
@@ -246,7 +246,7 @@ fn strips_fans_and_sparse_accessors() {
     assert_eq!(with_mode(4).unwrap(), [[0, 1, 2]]);
     assert_eq!(with_mode(1), None, "lines are passed over");
 
-    // One position replaced, over a base and over zeros.
+    // One position replaced by a sparse accessor, over a base array and over zeros.
     for base in [true, false] {
         let file = triangle_file(|f| {
             f["accessors"][0]["sparse"] = json!({
@@ -320,11 +320,11 @@ fn lying_files_are_errors_that_say_why() {
 fn a_budget_is_asked_for_all_that_will_be_made() {
     let glb = export(&scene()).unwrap();
     let asked = Cell::new(0);
-    let read = |most: u64| {
+    let read = |limit: u64| {
         asked.set(0);
         super::import(&glb, None, &|bytes| {
             asked.set(asked.get() + bytes);
-            if asked.get() <= most { Ok(()) } else { Err(Error::new(ErrorKind::OutOfMemory, "enough")) }
+            if asked.get() <= limit { Ok(()) } else { Err(Error::new(ErrorKind::OutOfMemory, "enough")) }
         })
     };
     let whole = read(u64::MAX).unwrap();
@@ -335,8 +335,8 @@ fn a_budget_is_asked_for_all_that_will_be_made() {
     let textures = whole.textures.iter().map(|t| size_of_val(&t.image.data[..]));
     let needed = meshes.chain(textures).sum::<usize>() as u64;
     assert_eq!(asked.get(), needed);
-    for most in [0, needed / 2, needed - 1] {
-        assert_eq!(read(most).unwrap_err().kind, ErrorKind::OutOfMemory, "{most} of {needed}");
+    for limit in [0, needed / 2, needed - 1] {
+        assert_eq!(read(limit).unwrap_err().kind, ErrorKind::OutOfMemory, "{limit} of {needed}");
     }
 }
 
@@ -344,7 +344,7 @@ fn a_budget_is_asked_for_all_that_will_be_made() {
 fn a_vertex_that_is_no_number_is_named() {
     let mut glb = export(&scene()).unwrap();
     let json_length = u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
-    // Images come first; the file's layout is known to the JSON alone.
+    // Images come first; only the JSON knows the file's layout.
     let root: Value = serde_json::from_slice(&glb[20..20 + json_length]).unwrap();
     let view = &root["bufferViews"][root["accessors"][0]["bufferView"].as_u64().unwrap() as usize];
     let at = 28 + json_length + view["byteOffset"].as_u64().unwrap() as usize + 12;
@@ -354,7 +354,7 @@ fn a_vertex_that_is_no_number_is_named() {
     assert!(error.message.contains("vertex 1"), "{error}");
 }
 
-/// Whatever happens to the bytes of a file, reading it ends, with a scene that is valid or an error.
+/// For arbitrary corruption of its bytes, reading a file ends with a valid scene or an error.
 #[test]
 fn broken_bytes_never_panic() {
     let glb = export(&scene()).unwrap();
@@ -367,7 +367,8 @@ fn broken_bytes_never_panic() {
         let mut rng = Rng::new(42, &[round]);
         let mut broken = glb.clone();
         for _ in 0..1 + rng.below(4) {
-            // Mostly the JSON, where the meaning is; digits become other digits often enough to lie well.
+            // Mostly corrupt the JSON, which holds the structure; replace digits by digits often enough to create
+            // inconsistencies.
             let at = if rng.below(4) == 0 { rng.below(glb.len()) } else { 20 + rng.below(json_length) };
             broken[at] = match rng.below(3) {
                 _ if broken[at].is_ascii_digit() => b'0' + rng.below(10) as u8,

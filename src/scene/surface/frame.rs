@@ -1,38 +1,39 @@
-//! The rectangle around a planar patch, with axes that do not depend on how its triangles are stored.
+//! The bounding rectangle of a planar patch, with axes independent of how its triangles are stored.
 
 use crate::geometry::polygon;
 use glam::{DVec2, DVec3};
 
-/// Axes within this angle of a world axis are taken to mean it: 1°.
+/// Axes within 1° of a world axis snap to it [convention].
 const COS_SNAP: f64 = 0.999_847_695;
-/// The rectangle along the world axes wins unless another is smaller by this share.
-const WORTH_TURNING: f64 = 1e-3;
-/// Planes at more than 45° to the horizontal are walls.
+/// The rectangle along the world axes is preferred unless another has an area smaller by this share [origin not
+/// recorded].
+const MIN_SAVING: f64 = 1e-3;
+/// Planes at more than 45° to the horizontal are walls [convention].
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 pub struct Frame {
-    /// Where u = v = 0.
+    /// The point with u = v = 0.
     pub origin: DVec3,
     pub u: DVec3,
     pub v: DVec3,
     pub size: DVec2,
 }
 
-/// The smallest rectangle around points of the plane through `centre` at right angles to the unit `normal`, which
-/// points at the viewer: u runs to the viewer's right, v down.
+/// The smallest bounding rectangle of points in the plane through `centre` with the unit `normal`, which points at the
+/// viewer: u runs to the viewer's right, v down.
 pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
     let upright = upright(normal);
     let turned = smallest(points, centre, upright, normal);
     let (aligned_frame, turned_frame) = (bound(points, centre, upright, normal), bound(points, centre, turned, normal));
     let aligned = turned.dot(upright) >= COS_SNAP
-        || turned_frame.size.element_product() > (1.0 - WORTH_TURNING) * aligned_frame.size.element_product();
+        || turned_frame.size.element_product() > (1.0 - MIN_SAVING) * aligned_frame.size.element_product();
     if aligned { aligned_frame } else { turned_frame }
 }
 
 /// The direction of u along the world axes.
 fn upright(normal: DVec3) -> DVec3 {
     let candidate = if normal.y.abs() < WALL {
-        // On a wall v is as near to straight down as can be; u = normal × v.
+        // On a wall, v is as close to straight down as possible; u = normal × v.
         let down = DVec3::NEG_Y - normal * DVec3::NEG_Y.dot(normal);
         normal.cross(down)
     } else {
@@ -41,12 +42,12 @@ fn upright(normal: DVec3) -> DVec3 {
     candidate.normalize_or(normal.any_orthonormal_vector())
 }
 
-/// v for a given u: `u × v = -normal`.
+/// v for a given u, such that `u × v = -normal`.
 fn down_of(u: DVec3, normal: DVec3) -> DVec3 {
     u.cross(normal)
 }
 
-/// The rectangle around points with its sides along a given u.
+/// The bounding rectangle with its sides along a given u.
 pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
     let v = down_of(u, normal);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
@@ -58,8 +59,8 @@ pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame 
     Frame { origin: centre + u * low.x + v * low.y, u, v, size: high - low }
 }
 
-/// Direction of u of the rectangle of least area, turned from `upright` by at most 45°. One of its sides lies along
-/// an edge of the convex hull (Freeman and Shapira 1975).
+/// Direction of u of the rectangle of minimum area, rotated from `upright` by at most 45°. One side of that rectangle
+/// lies along an edge of the convex hull (Freeman and Shapira 1975).
 fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> DVec3 {
     let v = down_of(upright, normal);
     let flat = points.iter().map(|p| DVec2::new((*p - centre).dot(upright), (*p - centre).dot(v)));
@@ -78,7 +79,7 @@ fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> D
             best = (area, edge);
         }
     }
-    // Of the four directions along the sides, the one nearest to upright.
+    // Of the four directions along the sides, take the one nearest to upright.
     let edge = best.1;
     let turns = [edge, edge.perp(), -edge, -edge.perp()];
     let nearest = turns.into_iter().fold(edge, |a, b| if b.x > a.x + 1e-12 { b } else { a });
@@ -102,7 +103,7 @@ mod tests {
             let slack = if degrees == 0.5 { 0.06 } else { 1e-9 };
             let (long, short) = (frame.size.max_element(), frame.size.min_element());
             assert!((long - 3.0).abs() < slack && (short - 2.0).abs() < slack, "{degrees}: {}", frame.size);
-            // Half a degree snaps to the world's axes.
+            // Half a degree snaps to the world axes.
             assert!((degrees > 1.0) != (frame.u == DVec3::X), "{degrees}: {}", frame.u);
             assert!(frame.u.x >= WALL - 1e-9);
         }
@@ -111,7 +112,7 @@ mod tests {
     #[test]
     fn frames_are_oriented_as_seen_from_the_room() {
         let square = |u: DVec3, v: DVec3| [DVec3::ZERO, u, u + v, v];
-        // A ceiling, a floor, and the wall behind which -z lies.
+        // A ceiling, a floor, and two walls.
         for (normal, u, v) in [
             (DVec3::NEG_Y, DVec3::X, DVec3::NEG_Z),
             (DVec3::Y, DVec3::X, DVec3::Z),

@@ -1,18 +1,19 @@
-//! Target surfaces: a planar patch chosen by name, and emission laid onto it.
+//! Target surfaces: a planar patch selected by name, and an emissive texture mapped onto it.
 //!
-//! The paper (section 7) lays the light texture over a surface the user picks. Real ceilings are rarely one rectangle:
-//! they are slabs with two sides and edges, or single sheets wound either way. [`find`] gathers the triangles of the
-//! named object, groups them into planes ([`patch`](self)), takes the plane and the side from which most of the room is
-//! seen, and fits a rectangle in that plane. [`place`] splits the patch off and lays a texture over the rectangle.
+//! The paper (section 7) maps the light texture onto a surface the user picks. Real ceilings are rarely single
+//! rectangles: they are slabs with two sides and edges, or single sheets wound either way. [`find`] collects the
+//! triangles of the named object, groups them into planes ([`patch`](self)), selects the plane and the side from which
+//! most of the room is visible, and fits a rectangle in that plane. [`place`] splits off the patch and maps a texture
+//! onto the rectangle.
 //!
-//! Not modelled: curved surfaces. A vault is cut down to its largest planar part; how much bends away from that is told
-//! ([`Surface::bent`]).
+//! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area
+//! that slopes away from it.
 
+mod facing;
 mod frame;
 mod name;
 mod patch;
 mod place;
-mod room;
 #[cfg(test)]
 mod tests;
 
@@ -23,32 +24,33 @@ use crate::error::{Error, Result};
 use crate::image::try_collect;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-/// A planar patch of the scene with a frame of its own.
+/// A planar patch of the scene with its own frame.
 ///
-/// As seen from the room, u runs to the right and v runs down, as texture coordinates do, so that a texture is not
-/// mirrored: `u × v = -normal`. On walls v points down as far as it can; on floors and ceilings u points along +x as
-/// far as it can, so that a ceiling is seen as by someone who faces -z and looks up.
+/// Seen from the room, u runs right and v runs down, like texture coordinates, so that a texture is not mirrored: `u ×
+/// v = -normal`. On walls v points down as far as possible. On floors and ceilings u points along +x as far as
+/// possible: a ceiling appears as to a person who faces -z and looks up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// (mesh, triangle) of every triangle of the patch, ascending.
+    /// (mesh, triangle) of every triangle of the patch, in ascending order.
     pub triangles: Vec<(usize, usize)>,
-    /// Corner of the bounding rectangle where u = v = 0.
+    /// Corner of the bounding rectangle with u = v = 0.
     pub origin: Vec3,
     /// Unit directions of u and v; `u × v` points away from the room.
     pub u_axis: Vec3,
     pub v_axis: Vec3,
-    /// Unit normal into the room: the side that will emit.
+    /// Unit normal into the room; this side will emit.
     pub normal: Vec3,
     /// Extent along u and v in metres.
     pub size: Vec2,
     /// Area of the triangles in m².
     pub area: f32,
-    /// Area of what was named besides and slopes from this plane by 5 to 75 degrees, in m²: as of a vault, which gets no light.
+    /// Area in m² of the other named triangles that slope from this plane by 5 to 75 degrees, as in a vault; they get
+    /// no light.
     pub bent: f32,
 }
 
 impl Surface {
-    /// The same patch with its axes turned by an angle from u towards v, in the rectangle around it along these.
+    /// The patch with its axes rotated by an angle from u towards v, and its bounding rectangle along these axes.
     pub fn turned(&self, scene: &Scene, angle: f64) -> Result<Self> {
         let turn = DVec2::from_angle(angle);
         let u = self.u_axis.as_dvec3() * turn.x + self.v_axis.as_dvec3() * turn.y;
@@ -67,10 +69,11 @@ fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<DVec3>> {
     try_collect(triangles.iter().flat_map(|&(m, t)| scene.meshes[m].corners(t).map(|p| p.as_dvec3())))
 }
 
-/// Finds the planar patch of the object or material of that name which faces the room.
+/// Finds the planar patch that faces the room, of the object or material with the given name.
 ///
-/// Object names are tried first, then material names: exactly, then without regard to case, then as part of one name
-/// only. The scene must be valid. Errors: `NotFound` with the names there are; `Degenerate` if the object has no area.
+/// Object names are tried first, then material names: exact matches, then case-insensitive ones, then substrings of a
+/// single name. The scene must be valid. Errors: `NotFound`, listing the existing names; `Degenerate` if the object
+/// has no area.
 pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     let meshes = name::find(scene, name)?;
     let triangles =
@@ -78,9 +81,9 @@ pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     from_list(scene, &triangles).map_err(|e| e.within(format_args!("surface {name:?}")))
 }
 
-/// The planar patch among the given (mesh, triangle) pairs which faces the room; the others are left out.
+/// The planar patch that faces the room among the given (mesh, triangle) pairs; other triangles are left out.
 ///
-/// Errors: `InvalidArgument` if a pair is not in the scene; `Degenerate` if there is no area.
+/// Errors: `InvalidArgument` if a pair is not in the scene; `Degenerate` if the triangles have no area.
 pub fn from_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
     check_triangles(scene, triangles)?;
     let mut triangles = try_collect(triangles.iter().copied())?;
@@ -101,15 +104,15 @@ fn check_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<()> {
 }
 
 fn from_list(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
-    // Planes of the object, largest first; of those, the one and the side of it that sees most of the room.
+    // Group the triangles into planes; choose the plane, and the side of it, from which most of the room is visible.
     let patches = patch::planes(scene, triangles)?;
-    let (chosen, normal) = room::facing(scene, &patches)?;
+    let (chosen, normal) = facing::facing(scene, &patches)?;
     let chosen = &patches[chosen];
     let bent = patch::bent(scene, triangles, normal);
     let mut triangles = chosen.triangles.clone();
     triangles.sort_unstable();
 
-    // The rectangle around it, in its plane.
+    // Fit the bounding rectangle in the plane.
     let frame = frame::fit(&corners(scene, &triangles)?, chosen.centre, normal);
     if frame.size.min_element() <= 0.0 || !frame.size.is_finite() {
         return Err(Error::degenerate("the surface has no extent in one direction; it must have an area"));

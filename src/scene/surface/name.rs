@@ -1,12 +1,12 @@
-//! Objects and materials by name.
+//! Lookup of objects and materials by name.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Scene;
 
-/// How many names an error message lists.
+/// Maximum number of names that an error message lists.
 const LISTED: usize = 10;
 
-/// The meshes that belong to an object, or failing that a material, of that name. Meshes without triangles do not count.
+/// The meshes of the object, or else of the material, with the given name. Meshes without triangles are ignored.
 pub fn find(scene: &Scene, name: &str) -> Result<Vec<usize>> {
     let objects: Vec<(usize, &str)> = scene
         .meshes
@@ -50,13 +50,13 @@ fn not_found(name: &str, why: &str, names: &[&str]) -> Error {
     Error::new(ErrorKind::NotFound, format!("{name:?} {why}; {hint}"))
 }
 
-/// The names without empty ones and repetitions, in order of appearance.
+/// The distinct non-empty names, in order of appearance.
 fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen = std::collections::HashSet::new();
     names.filter(|n| !n.is_empty() && seen.insert(*n)).collect()
 }
 
-/// Sorts names by how many pairs of neighbouring letters they share with the wanted one (Dice 1945).
+/// Sorts names by the share of letter pairs in common with the wanted name (Dice 1945).
 fn closest<'a>(wanted: &str, mut names: Vec<&'a str>) -> Vec<&'a str> {
     let pairs = |text: &str| -> Vec<(char, char)> { text.chars().zip(text.chars().skip(1)).collect() };
     let target = pairs(wanted);

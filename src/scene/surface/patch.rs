@@ -6,38 +6,39 @@ use crate::scene::Scene;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// How far a triangle may be turned against its plane: 2°.
+/// Maximum angle between a triangle and its plane: 2° [origin not recorded].
 const COS_ANGLE: f64 = 0.999_390_827;
-/// How far its corners may be off the plane, relative to the diagonal of the object.
+/// Maximum distance of its corners from the plane, relative to the diagonal of the object [origin not recorded].
 const OFFSET: f64 = 5e-4;
-/// Edge of a cell of directions: about 2°.
+/// Side of a cell in the grid of directions: about 2° [origin not recorded].
 const DIRECTION_CELL: f64 = 0.035;
-/// Directions that are looked at, largest area first.
+/// Maximum number of directions examined, largest area first.
 const DIRECTIONS: usize = 32;
-/// Planes that are handed on, and the least area of one relative to the largest.
+/// Maximum number of planes returned, and the minimum area of a plane relative to the largest [origin not recorded].
 const PLANES: usize = 16;
-const LEAST_AREA: f64 = 0.05;
+const MIN_AREA: f64 = 0.05;
 
-/// Cosines of 75 and of 5 degrees: between them a triangle is neither a plane's nor an edge's.
-const BENT: [f64; 2] = [0.258_819_045, 0.996_194_698];
+/// Cosines of 75 and 5 degrees: triangles between them belong neither to the plane nor to the edges of a slab [origin
+/// not recorded].
+const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
-/// Triangles that lie in one plane.
+/// Coplanar triangles.
 pub struct Patch {
     pub triangles: Vec<(usize, usize)>,
-    /// Unit; its sign means nothing yet.
+    /// Unit normal; its sign has no meaning yet.
     pub normal: DVec3,
     /// Centroid.
     pub centre: DVec3,
-    /// m².
+    /// Area in m².
     pub area: f64,
-    /// How far corners may be off the plane, in metres.
+    /// Maximum distance of corners from the plane, in metres.
     pub tolerance: f64,
 }
 
 #[derive(Clone, Copy)]
 struct Facet {
     id: (usize, usize),
-    /// Twice its length is the area.
+    /// A normal vector whose length is the area.
     area_vector: DVec3,
     area: f64,
     centre: DVec3,
@@ -46,8 +47,8 @@ struct Facet {
 
 /// The planes among the triangles, largest first; small ones are left out.
 ///
-/// Orientation is taken without sign, since sheets may be wound either way. Directions are counted in cells of a
-/// grid, weighted by area; in the heaviest ones the planes are found along the direction's offset.
+/// Normals are compared without sign, since sheets may be wound either way. Directions are accumulated in the cells of
+/// a grid, weighted by area. Along the directions of the heaviest cells, planes are found by their offsets.
 pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
     let facets = try_collect(triangles.iter().filter_map(|&id| facet(scene, id)))?;
     let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));
@@ -58,7 +59,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
     }
     let tolerance = OFFSET * (high - low).length();
 
-    // Area in each cell of directions, opposite ones taken together.
+    // Accumulate the area in each cell of directions, combining opposite directions.
     let mut cells: BTreeMap<[i32; 3], (f64, DVec3)> = BTreeMap::new();
     for f in &facets {
         let direction = unsigned(f.area_vector / f.area);
@@ -69,7 +70,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
     let mut directions: Vec<(f64, DVec3)> = cells.into_values().collect();
     directions.sort_by(|a, b| b.0.total_cmp(&a.0));
 
-    // Planes along each direction. A triangle belongs to the first plane that takes it.
+    // Find planes along each direction. A triangle belongs to the first plane that accepts it.
     let mut free = vec![true; facets.len()];
     let mut patches: Vec<Patch> = Vec::new();
     for &(_, direction) in directions.iter().take(DIRECTIONS) {
@@ -77,7 +78,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
         while let Some(members) = heaviest(&facets, &free, direction, tolerance) {
             let largest = patches.iter().map(|p| p.area).fold(0.0, f64::max);
             let patch = gather(&facets, &members, tolerance);
-            if patch.area < LEAST_AREA * largest || patches.len() >= DIRECTIONS * PLANES {
+            if patch.area < MIN_AREA * largest || patches.len() >= DIRECTIONS * PLANES {
                 break;
             }
             members.iter().for_each(|&i| free[i] = false);
@@ -86,7 +87,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
     }
     patches.sort_by(|a, b| b.area.total_cmp(&a.area));
     let largest = patches.first().ok_or_else(no_area)?.area;
-    patches.retain(|p| p.area >= LEAST_AREA * largest);
+    patches.retain(|p| p.area >= MIN_AREA * largest);
     patches.truncate(PLANES);
     Ok(patches)
 }
@@ -95,9 +96,9 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
 pub fn bent(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
     let slopes = |f: &Facet| {
         let cosine = f.area_vector.dot(normal).abs() / f.area;
-        BENT[0] < cosine && cosine < BENT[1]
+        SLOPED[0] < cosine && cosine < SLOPED[1]
     };
-    // Not `sum`, which begins at -0.
+    // `sum` would start at -0.
     triangles.iter().filter_map(|&id| facet(scene, id)).filter(slopes).fold(0.0, |sum, f| sum + f.area)
 }
 
@@ -109,14 +110,14 @@ fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {
     (area > 0.0 && area.is_finite()).then_some(Facet { id, area_vector, area, centre: (a + b + c) / 3.0, corners })
 }
 
-/// The direction or its opposite, whichever comes first by a fixed rule.
+/// The direction or its opposite, chosen by a fixed rule.
 fn unsigned(direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();
     let leading = direction.to_array().into_iter().find(|c| c.abs() > 0.5 * largest).unwrap_or(1.0);
     direction * leading.signum()
 }
 
-/// The free facets of the heaviest plane at right angles to a direction.
+/// The unassigned facets of the plane of largest area perpendicular to a direction.
 fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -> Option<Vec<usize>> {
     let mut offsets: Vec<(f64, usize)> = facets
         .iter()
@@ -126,7 +127,7 @@ fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -
         .collect();
     offsets.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
 
-    // A window of twice the tolerance slides over the sorted offsets.
+    // Slide a window of twice the tolerance over the sorted offsets.
     let (mut first, mut area) = (0, 0.0);
     let mut best = (0.0, 0..0);
     for last in 0..offsets.len() {
@@ -144,7 +145,7 @@ fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -
         return None;
     }
 
-    // The plane's own normal and offset decide who belongs to it: the cell's direction is only near.
+    // Refine membership by the plane's own normal and offset: the cell's direction is only approximate.
     let members: Vec<usize> = window.iter().map(|w| w.1).collect();
     let plane = gather(facets, &members, tolerance);
     let belongs = |f: &Facet| {

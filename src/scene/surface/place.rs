@@ -1,4 +1,4 @@
-//! Lays a light texture onto a surface.
+//! Maps a light texture onto a surface.
 
 use super::{Surface, check_triangles};
 use crate::error::{Error, Result};
@@ -6,21 +6,21 @@ use crate::image::Image;
 use crate::scene::{Material, Mesh, Scene, Texture, TextureRef, Wrap};
 use glam::{Vec2, Vec3};
 
-/// Where the emission went.
+/// The mesh and material that now emit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
     /// Index of the mesh that now holds the patch.
     pub mesh: usize,
-    /// Index of its material; its `emission` scales the texture.
+    /// Index of its material, whose `emission` scales the texture.
     pub material: usize,
 }
 
-/// Lays an emissive texture over the bounding rectangle of a surface: the patch becomes a mesh of its own with a second
+/// Maps an emissive texture onto the bounding rectangle of a surface. The patch becomes a separate mesh with a second
 /// set of texture coordinates and a copy of its material that emits `strength × texture` (cd/m²).
 ///
-/// The patch's front faces the room, and only the front emits. The meshes it came from keep their place in the list and
-/// their other triangles. A patch over several meshes takes the material of the one with most of it. Errors:
-/// `InvalidArgument` for a surface of another scene, or a texture or strength that is negative or not finite.
+/// The front of the patch faces the room, and only the front emits. The original meshes keep their index and their
+/// other triangles. A patch that spans several meshes takes the material of the mesh with the largest share. Errors:
+/// `InvalidArgument` for a surface of another scene, or for a negative or non-finite texture or strength.
 pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec3) -> Result<Placed> {
     check_triangles(scene, &surface.triangles)?;
     if !strength.is_finite() || strength.min_element() < 0.0 {
@@ -54,7 +54,7 @@ pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec
     Ok(Placed { mesh: scene.meshes.len() - 1, material: scene.materials.len() - 1 })
 }
 
-/// The mesh that holds most of the surface's area.
+/// The mesh with the largest share of the surface's area.
 fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
     let mut areas = vec![0.0f64; scene.meshes.len()];
     for &(mesh, triangle) in &surface.triangles {
@@ -65,7 +65,7 @@ fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
     if area > 0.0 { Ok(mesh) } else { Err(Error::argument("surface has no triangles with an area; find it again")) }
 }
 
-/// Moves the surface's triangles into a flat mesh of their own.
+/// Moves the surface's triangles into a separate flat mesh.
 fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
     let mut patch = Mesh::default();
     let has_uv = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].uvs[0].is_empty());
@@ -76,7 +76,7 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
         if (b - a).cross(c - a).dot(surface.normal) < 0.0 {
             corners.swap(1, 2);
         }
-        // Corners are not shared: the patch is flat, and few triangles make up a ceiling.
+        // Vertices are not shared: the patch is flat, and a ceiling has few triangles.
         let first = patch.positions.len() as u32;
         patch.triangles.push([first, first + 1, first + 2]);
         for i in corners {
@@ -89,7 +89,7 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
             }
         }
     }
-    // Triangles leave their meshes from the back, so that those still to go keep their place.
+    // Remove the triangles from their meshes.
     let mut leaving = surface.triangles.clone();
     leaving.sort_unstable();
     leaving.dedup();
@@ -107,7 +107,7 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
     patch
 }
 
-/// Lays a horizontal sheet of diffuse white over the top of the scene's bounding box, for models without a ceiling;
+/// Adds a horizontal sheet of diffuse white on top of the scene's bounding box, for models without a ceiling, and
 /// returns the index of its mesh. Errors: `Degenerate` if the scene has no triangles or no extent.
 pub fn cover(scene: &mut Scene, name: &str) -> Result<usize> {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);

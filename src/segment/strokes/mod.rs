@@ -7,7 +7,7 @@ pub use image::from_image;
 pub use text::parse;
 
 use crate::error::{Error, Result, check_range};
-use crate::image::make_room;
+use crate::image::{make_room, try_collect};
 use glam::DVec2;
 
 /// One stroke of the brush: the pixels it covers (`y * width + x`) and what they are examples of.
@@ -74,6 +74,17 @@ impl StrokeSet {
     /// The same, one by one.
     pub fn plane_strokes(&self) -> impl Iterator<Item = &Stroke> {
         self.plane.iter().chain(self.lights.iter().filter(|s| s.positive))
+    }
+
+    /// The examples of the second phase: no stroke of the plane lies on a light, but where one of the lights crosses it.
+    pub fn light_examples(&self) -> Result<Vec<Stroke>> {
+        let mut of_lights = try_collect(self.lights.iter().flat_map(|s| s.pixels.iter().copied()))?;
+        of_lights.sort_unstable();
+        let beside = |s: &Stroke| -> Result<Stroke> {
+            let pixels = s.pixels.iter().copied().filter(|p| of_lights.binary_search(p).is_err());
+            Ok(Stroke { pixels: try_collect(pixels)?, positive: false })
+        };
+        self.plane.iter().map(beside).chain(self.lights.iter().cloned().map(Ok)).collect()
     }
 }
 

@@ -1,16 +1,16 @@
-//! Sums of light by number, of which a path touches few.
+//! Sums of light by index, of which a path changes only a few.
 
 use glam::Vec3A;
 
 #[derive(Default)]
-pub struct Ledger {
+pub struct SparseSums {
     sums: Vec<Vec3A>,
-    /// A bit for each sum that may differ from none.
+    /// A bit for each sum that may differ from zero.
     touched: Vec<u64>,
 }
 
-impl Ledger {
-    /// Begins anew with as many sums.
+impl SparseSums {
+    /// Clears the sums and provides at least `count` of them.
     #[inline]
     pub fn begin(&mut self, count: usize) {
         self.drain(|_, _| ());
@@ -26,7 +26,7 @@ impl Ledger {
         self.touched[number / 64] |= 1 << (number % 64);
     }
 
-    /// Takes the sums that were added to, in the order of their numbers.
+    /// Takes and clears the changed sums in the order of their indices.
     #[inline]
     pub fn drain(&mut self, mut take: impl FnMut(usize, Vec3A)) {
         for (word, bits) in self.touched.iter_mut().enumerate() {
@@ -46,18 +46,18 @@ mod tests {
 
     #[test]
     fn sums_are_taken_once_in_order_and_nothing_is_left() {
-        let mut ledger = Ledger::default();
-        ledger.begin(200);
+        let mut sums = SparseSums::default();
+        sums.begin(200);
         for (number, light) in [(130, 1.0), (3, 2.0), (64, 4.0), (3, 8.0), (199, 16.0)] {
-            ledger.add(number, Vec3A::splat(light));
+            sums.add(number, Vec3A::splat(light));
         }
         let mut taken = Vec::new();
-        ledger.drain(|number, light| taken.push((number, light.x)));
+        sums.drain(|number, light| taken.push((number, light.x)));
         assert_eq!(taken, [(3, 10.0), (64, 4.0), (130, 1.0), (199, 16.0)]);
-        ledger.drain(|number, _| panic!("{number} was taken before"));
-        // What was left behind does not show in the next.
-        ledger.add(5, Vec3A::ONE);
-        ledger.begin(10);
-        ledger.drain(|number, _| panic!("{number} was forgotten"));
+        sums.drain(|number, _| panic!("{number} was taken before"));
+        // Sums that were not taken do not show after `begin`.
+        sums.add(5, Vec3A::ONE);
+        sums.begin(10);
+        sums.drain(|number, _| panic!("{number} was forgotten"));
     }
 }

@@ -1,4 +1,5 @@
-//! From coarse to fine (§3.4): on each level match and vote a few times, then go on from the doubled field.
+//! The coarse-to-fine loop (§3.4): alternate matching and voting on each level, then continue on the next finer level
+//! from the upsampled field.
 
 use super::animate::{keep, moved};
 use super::finder::Nearest;
@@ -14,18 +15,18 @@ use crate::job::Job;
 use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, origin, unpack, vote};
 use crate::rng::hash;
 
-/// Up to this many pairs of patches the first field is found by comparing all.
+/// Maximum number of patch pairs for which the initial field is found by exhaustive comparison.
 const EXHAUSTIVE: usize = 1 << 24;
 
 pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
     let halved = usize::from(!problem.is_of(input.artwork));
-    // A frame that keeps what it can of the one before, or a result to start from, needs the finest level only.
+    // Continuing from a previous frame or result needs only the finest level.
     let moved = match (input.previous, input.motion) {
         (Some(before), Some(motion)) => Some(moved(&checked_size(before, problem)?, motion, problem, halved, job)?),
         _ => None,
     };
     let goes_on = input.previous.is_some() && (moved.is_none() || params.coherence == 1.0);
-    // Build the pyramid; the coarsest level keeps at least five patches' widths.
+    // Build the pyramid; the coarsest level is at least five patches wide.
     let levels = match params.mode {
         Mode::LitSphere => 1,
         _ if goes_on => 1,
@@ -37,7 +38,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         coarser.push(next);
     }
 
-    // A level costs four times the next coarser one.
+    // A level costs four times as much as the next coarser one.
     let cost = |l: usize| 0.25f64.powi(l as i32);
     let total: f64 = (0..levels).map(cost).sum();
     let mut done = 0.0;
@@ -50,7 +51,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
         done += cost(l);
-        // A level that is done is not needed any more.
+        // Release levels that are done.
         let popped = if l > 0 { coarser.pop() } else { None };
         let problem = popped.as_ref().unwrap_or(problem);
         let seed = hash(params.seed, &[l as u64]);
@@ -59,18 +60,19 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         let mut level = Level::new(problem, &weights, 1.0, seed, job.part(0.0, 0.01))?;
         if level.allowed.is_empty() {
             return Err(Error::degenerate(
-                "no exemplar patch can be used: source_mask and pixels that are no numbers leave none".to_string(),
+                "no exemplar patch can be used: every patch is outside source_mask or has a pixel that is not finite"
+                    .to_string(),
             ));
         }
 
-        // Start from the coarser field, or from guides alone.
+        // Start from the coarser field, or from the guides alone.
         let (width, height) = (level.wanted.width, level.wanted.height);
         let mut current = match field.take() {
             Some(coarse) if l + 1 < levels => coarse.upsample(width, height, &level.allowed)?,
             Some(previous) => checked(previous, &level)?,
             None => by_guides_alone(problem, params, seed, job.part(0.0, 0.1))?,
         };
-        // What the frame before has made stays where it fits.
+        // Keep the matches of the previous frame where they fit.
         let kept = match &moved {
             Some(moved) if l == 0 => {
                 let mut moved = checked(moved.try_clone()?, &level)?;
@@ -86,7 +88,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
         paint(&mut picture, &current, problem, how, job.part(0.1, 0.12), |_| true)?;
 
-        // Match and vote.
+        // Alternate matching and voting.
         let iterations = match (params.mode, l) {
             (Mode::LitSphere, _) => 0,
             (Mode::Greedy, _) => 1,
@@ -105,8 +107,8 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                 let n = iterations as f64;
                 job.part(0.12 + 0.88 * (k as f64 + from) / n, 0.12 + 0.88 * (k as f64 + to) / n)
             };
-            // Only where the picture changed since the last iteration can a distance have changed; but the first polish
-            // looks for matches where the budget gave them.
+            // Only patches over changed pixels can have changed distances; but the first polishing iteration rematches
+            // all patches assigned under the budget.
             let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
             let anew = k == 0 || polishes && k == params.finest_iterations;
             let mut changed = if anew {
@@ -140,7 +142,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                 }
             }
             report.energy.push(energy(&current, &level));
-            // The greedy mode paints as it goes.
+            // The greedy mode paints while it matches.
             let how = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
             match params.mode {
                 Mode::Greedy => restore_known(&mut picture, problem),
@@ -153,8 +155,8 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             let usage = Usage::of(&current, &level)?;
             drop(level);
             let mut image = picture.try_clone()?;
-            let made = Made { field: &current, problem, artwork: input.artwork, known: input.known };
-            finish(&mut image, &picture, made, job.part(1.0, 1.0), |_| true)?;
+            let provenance = Provenance { field: &current, problem, artwork: input.artwork, known: input.known };
+            decode_into(&mut image, &picture, provenance, job.part(1.0, 1.0), |_| true)?;
             let report = Report {
                 levels: reports,
                 usage,
@@ -173,7 +175,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     Err(Error::new(crate::error::ErrorKind::Internal, "the pyramid has no levels"))
 }
 
-/// The nearest exemplar patch of each target patch that has changed; the others have found theirs.
+/// Finds the nearest exemplar patch of each target patch that has changed; the others are up to date.
 fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, round: usize, job: Job) -> Result<()> {
     let changed = |i: usize| changed[i];
     let search = level.forward();
@@ -182,7 +184,7 @@ fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, 
     if params.mode != Mode::Occurrence || params.occurrence == 0.0 {
         return nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), changed);
     }
-    // What is used costs, wherever that is: any match may change.
+    // Usage penalties depend on all matches: any match may change.
     let patch = level.problem.patch;
     let weight = f64::from(params.occurrence) * level.unit() / (patch * patch) as f64;
     let occurrence = Occurrence::new(field, &level.allowed, patch, weight)?;
@@ -190,7 +192,7 @@ fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, 
     nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), |i| level.wanted.contains_index(i))
 }
 
-/// A field that follows the guides only; among equals the same relative position wins, so that equal guides give the
+/// An initial field by the guides only. Ties prefer the same relative position, so that equal guides yield the
 /// identity.
 fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> Result<Field> {
     let level = Level::new(problem, params, 0.0, seed, job.part(0.0, 0.01))?;
@@ -204,16 +206,16 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
         let nearest = Nearest::new(&level, params, job.part(0.05, 0.4))?;
         nearest.forward(&search, &mut field, 0, job.part(0.4, 1.0), wanted)?;
     } else {
-        let reach = level.allowed.width.max(level.allowed.height);
+        let radius = level.allowed.width.max(level.allowed.height);
         for k in 0..8 {
-            let sweep = Sweep { index: k, reach, fresh: 16 };
+            let sweep = Sweep { index: k, radius, initial_samples: 16 };
             search.sweep(&mut field, sweep, job.part(0.05 + 0.11 * k as f64, 0.05 + 0.11 * (k + 1) as f64), wanted)?;
         }
     }
     Ok(field)
 }
 
-/// A field from outside: of the size that the target asks for.
+/// Checks that an external field has the size of the target, and copies it.
 fn checked_size(field: &Field, problem: &Problem) -> Result<Field> {
     let target = &problem.guides.target;
     let (width, height) = (target.width + 1 - problem.patch, target.height + 1 - problem.patch);
@@ -227,7 +229,7 @@ fn checked_size(field: &Field, problem: &Problem) -> Result<Field> {
     field.try_clone()
 }
 
-/// A field from outside, its matches inside the exemplar.
+/// Checks that the matches of an external field lie inside the exemplar.
 fn checked(field: Field, level: &Level) -> Result<Field> {
     let outside = |&at: &u32| {
         let (x, y) = unpack(at);
@@ -239,7 +241,7 @@ fn checked(field: Field, level: &Level) -> Result<Field> {
     Ok(field)
 }
 
-/// Votes for the pixels for which `wanted` holds, and puts back what is known.
+/// Votes for the pixels for which `wanted` holds, and restores known pixels.
 pub(super) fn paint(
     picture: &mut Image,
     field: &Field,
@@ -270,25 +272,25 @@ fn decode(picture: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// What an encoded picture was made of.
-pub(super) struct Made<'a> {
+/// The inputs that produced an encoded picture.
+pub(super) struct Provenance<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,
-    /// The artwork and what is known of the target, linear.
+    /// The artwork and the known part of the target, linear.
     pub artwork: &'a Image,
     pub known: Option<&'a Image>,
 }
 
-/// Puts the pixels of an encoded picture for which `wanted` holds into `image`, in linear colour. Those that all patches
-/// agree on, and known ones, are copied and not decoded, so that they are the artwork's to the bit.
-pub(super) fn finish(
+/// Decodes the pixels of a picture for which `wanted` holds into `image`, in linear colour. Pixels on which all
+/// patches agree, and known pixels, are copied from the linear originals, so that they equal them to the bit.
+pub(super) fn decode_into(
     image: &mut Image,
     picture: &Image,
-    made: Made,
+    provenance: Provenance,
     job: Job,
     wanted: impl Fn(usize) -> bool + Sync,
 ) -> Result<()> {
-    let Made { field, problem, artwork, known } = made;
+    let Provenance { field, problem, artwork, known } = provenance;
     let (width, channels, whole) = (image.width, image.channels, problem.is_of(artwork));
     let left_out = |i: usize| whole && problem.target_mask.as_ref().is_some_and(|mask| !mask[i]);
     exec::for_rows(&mut image.data, width * channels, job, |y, row| {

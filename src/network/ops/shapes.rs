@@ -1,15 +1,15 @@
-//! Shapes: given, read, joined and split. Most of these move no number.
+//! Operators on shapes: reshape, query, join and split. Most of them move no data.
 
 use super::super::tensor::{Data, Tensor, count, normal_axis};
 use super::Call;
 use super::gather::shape_from;
 use crate::error::{Error, Result};
 
-/// 0 stands for the input's own size, -1 for what is left.
+/// Reshapes; 0 stands for the input's own size, -1 for the remaining size.
 pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let wanted = call.input(1)?.as_integers()?;
-    let wrong = || Error::format(format!("a tensor of shape {:?} cannot take shape {wanted:?}", x.shape));
+    let wrong = || Error::format(format!("a tensor of shape {:?} cannot be reshaped to {wanted:?}", x.shape));
     let mut shape = Vec::with_capacity(wanted.len());
     let mut open = None;
     for (k, &size) in wanted.iter().enumerate() {
@@ -28,7 +28,7 @@ pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     x.reshaped(shape)
 }
 
-/// Two axes: those before one, and the rest.
+/// Flattens to two axes: those before `axis`, and the rest.
 pub fn flatten(axis: i64, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let rank = x.shape.len() as i64;
@@ -60,7 +60,7 @@ pub fn unsqueeze(axes: &Option<Vec<i64>>, call: &Call) -> Result<Tensor> {
     let mut old = x.shape.iter();
     let sizes = is_new.iter().map(|&is_new| if is_new { Some(1) } else { old.next().copied() });
     let shape: Option<Vec<usize>> = sizes.collect();
-    x.reshaped(shape.ok_or_else(|| Error::format(format!("axes are {axes:?}; one is there twice")))?)
+    x.reshaped(shape.ok_or_else(|| Error::format(format!("axes are {axes:?}; no axis may occur twice")))?)
 }
 
 pub fn concat(axis: i64, call: &Call) -> Result<Tensor> {
@@ -91,14 +91,14 @@ pub fn concat(axis: i64, call: &Call) -> Result<Tensor> {
     Ok(match &first.data {
         Data::Floats(_) => {
             let parts: Vec<&[f32]> = tensors.iter().map(|t| t.as_floats()).collect::<Result<_>>()?;
-            let mut out = call.room.vec(total, 0.0)?;
+            let mut out = call.budget.vec(total, 0.0)?;
             out.clear();
             joined(&parts, outer, &mut out);
             Tensor::floats(shape, out)
         }
         Data::Integers(_) => {
             let parts: Vec<&[i64]> = tensors.iter().map(|t| t.as_integers()).collect::<Result<_>>()?;
-            let mut out = call.room.vec(total, 0)?;
+            let mut out = call.budget.vec(total, 0)?;
             out.clear();
             joined(&parts, outer, &mut out);
             Tensor::integers(shape, out)
@@ -112,14 +112,14 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
     let size = x.shape[axis];
     let sizes: Vec<usize> = match call.integers(sizes, 1)? {
         Some(sizes) => sizes.iter().filter_map(|&n| usize::try_from(n).ok()).collect(),
-        // Even parts, the last one what is left.
+        // Split evenly; the last part takes the remainder.
         None => {
             let even = size.div_ceil(call.outputs.max(1));
             (0..call.outputs).map(|k| even.min(size.saturating_sub(k * even))).collect()
         }
     };
     if sizes.iter().try_fold(0usize, |sum, &n| sum.checked_add(n)) != Some(size) {
-        return Err(Error::format(format!("parts of {sizes:?} do not make an axis of {size}")));
+        return Err(Error::format(format!("parts of {sizes:?} do not sum to an axis of {size}")));
     }
     let after: usize = x.shape[axis + 1..].iter().product();
     let mut parts = Vec::new();
@@ -131,13 +131,13 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
         let range = start * after..(start + part) * after;
         parts.push(match &x.data {
             Data::Floats(values) => {
-                let mut out = call.room.vec(count(&shape)?, 0.0)?;
+                let mut out = call.budget.vec(count(&shape)?, 0.0)?;
                 out.clear();
                 values.chunks_exact(stride.max(1)).for_each(|chunk| out.extend_from_slice(&chunk[range.clone()]));
                 Tensor::floats(shape, out)
             }
             Data::Integers(values) => {
-                let mut out = call.room.vec(count(&shape)?, 0)?;
+                let mut out = call.budget.vec(count(&shape)?, 0)?;
                 out.clear();
                 values.chunks_exact(stride.max(1)).for_each(|chunk| out.extend_from_slice(&chunk[range.clone()]));
                 Tensor::integers(shape, out)
@@ -164,11 +164,11 @@ pub fn filled(value: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(match &value.data {
         Data::Floats(values) => {
             let value = values.first().copied().unwrap_or(0.0);
-            Tensor::floats(shape, call.room.vec(total, value)?)
+            Tensor::floats(shape, call.budget.vec(total, value)?)
         }
         Data::Integers(values) => {
             let value = values.first().copied().unwrap_or(0);
-            Tensor::integers(shape, call.room.vec(total, value)?)
+            Tensor::integers(shape, call.budget.vec(total, value)?)
         }
     })
 }
@@ -184,7 +184,7 @@ pub fn range(call: &Call) -> Result<Tensor> {
         if !steps.is_finite() {
             return Err(wrong());
         }
-        let mut out = call.room.vec(steps as usize, start)?;
+        let mut out = call.budget.vec(steps as usize, start)?;
         out.iter_mut().enumerate().for_each(|(i, v)| *v += i as f32 * delta);
         return Ok(Tensor::floats(vec![out.len()], out));
     }
@@ -196,7 +196,7 @@ pub fn range(call: &Call) -> Result<Tensor> {
     }
     let delta = i128::from(delta);
     let steps = if (span > 0) == (delta > 0) { (span.abs() + delta.abs() - 1) / delta.abs() } else { 0 };
-    let mut out = call.room.vec(usize::try_from(steps).map_err(|_| wrong())?, start)?;
+    let mut out = call.budget.vec(usize::try_from(steps).map_err(|_| wrong())?, start)?;
     out.iter_mut().enumerate().for_each(|(i, v)| *v = v.wrapping_add((i as i64).wrapping_mul(delta as i64)));
     Ok(Tensor::integers(vec![out.len()], out))
 }

@@ -9,17 +9,17 @@ use crate::job::Job;
 pub const LANES: usize = 8;
 
 /// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
-/// differences is the weighted one of Eq. 1.
+/// differences equals the weighted sum of Eq. 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Features {
+pub struct QuantisedImage {
     pub width: usize,
     pub height: usize,
-    /// Samples per pixel, a multiple of [`LANES`]; those beyond the channels are 0.
+    /// Samples per pixel, a multiple of [`LANES`]; samples beyond the channels are 0.
     pub lanes: usize,
     pub data: Vec<i16>,
 }
 
-impl Features {
+impl QuantisedImage {
     pub fn new(width: usize, height: usize, channels: usize) -> Result<Self> {
         let lanes = channels.div_ceil(LANES) * LANES;
         Ok(Self { width, height, lanes, data: try_vec(width * height * lanes, 0)? })
@@ -29,7 +29,7 @@ impl Features {
         self.width * self.lanes
     }
 
-    /// Quantises the channels of `image`, in `[0, 1]`, into consecutive channels of this one from `first` on.
+    /// Quantises the channels of `image`, in `[0, 1]`, into consecutive channels from `first` on.
     pub fn fill(&mut self, first: usize, quantisers: &[Quantiser], image: &Image, job: Job) -> Result<()> {
         let (lanes, row_len) = (self.lanes, self.row_len());
         exec::for_rows(&mut self.data, row_len, job, |y, row| {
@@ -42,7 +42,7 @@ impl Features {
     }
 }
 
-/// What turns a value in `[0, 1]` into a weighted integer.
+/// Converts a value in `[0, 1]` to a weighted integer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiser {
     scale: f32,
@@ -56,15 +56,15 @@ impl Quantiser {
         weights.iter().map(|w| Self { scale: (w.sqrt() * unit).min(32_000.0) as f32 }).collect()
     }
 
-    /// Integer that a value of 1 at weight 1 becomes.
+    /// The integer that a value of 1 at weight 1 becomes.
     pub fn unit(weights: &[f64], patch: usize) -> f64 {
         let total: f64 = weights.iter().sum();
-        // Rounding can lengthen each difference by one step; two per cent leave room for that.
+        // Rounding can lengthen each difference by one step; two percent leave room for that.
         (0.98 * f64::from(i32::MAX) / ((patch * patch) as f64 * total)).sqrt()
     }
 
     pub fn quantise(self, value: f32) -> i16 {
-        // Rounds, since it is not negative; without a call into the C library.
+        // Rounds to nearest, as the value is non-negative, without calling the C library.
         (value.clamp(0.0, 1.0) * self.scale + 0.5) as i16
     }
 }

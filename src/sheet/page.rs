@@ -1,4 +1,4 @@
-//! Where things are on the page.
+//! The layout of the page: picture and marks.
 
 use super::Params;
 use crate::error::{Error, Result};
@@ -6,12 +6,12 @@ use crate::geometry::Homography;
 use crate::image::MAX_SIDE;
 use glam::{DMat3, DVec2};
 
-/// Radius of a mark and its distance from the picture, in millimetres.
+/// Radius of a mark, and its distance from the picture, in millimetres [convention].
 const RADIUS: f64 = 4.5;
 const CLEARANCE: f64 = 2.5;
 
-/// Places of the marks in the rectangle on whose border they stand: four corners and the middles of four sides, both in
-/// order around it, then two that no rotation or reflection takes to another mark.
+/// Positions of the marks on the border of a rectangle: four corners and four midpoints of sides, each in cyclic
+/// order, and two marks that break the symmetry: no rotation or reflection maps them to other marks [convention].
 const MARKS: [[f64; 2]; 10] = [
     [0.0, 0.0],
     [1.0, 0.0],
@@ -26,10 +26,10 @@ const MARKS: [[f64; 2]; 10] = [
 ];
 
 /// The page in pixels.
-pub struct Layout {
+pub struct Page {
     pub width: usize,
     pub height: usize,
-    /// Centres of the marks, in the order of [`MARKS`], and their radius.
+    /// Centres of the marks in the order of [`MARKS`], and their radius.
     pub marks: [DVec2; 10],
     pub radius: f64,
     /// Top-left corner and size of the picture, x and y.
@@ -37,35 +37,35 @@ pub struct Layout {
     pub size: [f64; 2],
 }
 
-impl Layout {
+impl Page {
     pub fn new(params: &Params, picture_width: usize, picture_height: usize) -> Result<Self> {
         let dot = params.dpi / 25.4;
-        let page = (params.paper * dot).round();
-        if page.max_element() > MAX_SIDE as f64 {
+        let extent = (params.paper * dot).round();
+        if extent.max_element() > MAX_SIDE as f64 {
             return Err(Error::argument(format!(
                 "the sheet would have {} x {} pixels; at most {MAX_SIDE} are possible: lower dpi",
-                page.x, page.y
+                extent.x, extent.y
             )));
         }
         let low = DVec2::splat((params.margin + RADIUS) * dot);
-        // On corners of pixels, so that their quadrants are drawn exactly.
-        let marks = MARKS.map(|m| (low + DVec2::from(m) * (page - 2.0 * low)).round());
+        // Round to pixel corners, so that the quadrants are drawn exactly.
+        let marks = MARKS.map(|m| (low + DVec2::from(m) * (extent - 2.0 * low)).round());
         let inner = DVec2::splat((params.margin + 2.0 * RADIUS + CLEARANCE) * dot);
-        let room = page - 2.0 * inner;
-        if picture_width == 0 || picture_height == 0 || room.min_element() < 4.0 * RADIUS * dot {
+        let available = extent - 2.0 * inner;
+        if picture_width == 0 || picture_height == 0 || available.min_element() < 4.0 * RADIUS * dot {
             return Err(Error::argument(format!(
-                "paper of {} x {} mm has no room for a picture of {picture_width} x {picture_height} pixels between its \
-                 marks",
+                "paper of {} x {} mm has no space for a picture of {picture_width} x {picture_height} pixels between \
+                 its marks",
                 params.paper.x, params.paper.y
             )));
         }
-        // As large as fits, in the middle, on whole pixels.
+        // Place the picture in the centre, as large as possible, on whole pixels.
         let picture = DVec2::new(picture_width as f64, picture_height as f64);
-        let size = (picture * (room / picture).min_element()).round().max(DVec2::ONE);
-        let corner = ((page - size) / 2.0).round();
+        let size = (picture * (available / picture).min_element()).round().max(DVec2::ONE);
+        let corner = ((extent - size) / 2.0).round();
         Ok(Self {
-            width: page.x as usize,
-            height: page.y as usize,
+            width: extent.x as usize,
+            height: extent.y as usize,
             marks,
             radius: RADIUS * dot,
             corner: corner.to_array(),
@@ -79,13 +79,13 @@ impl Layout {
         Homography(DMat3::from_translation(self.corner.into()) * DMat3::from_scale(scale))
     }
 
-    /// How bright a pixel of the page is by its marks alone: 1 beside them.
+    /// Brightness of a pixel of the page due to its marks alone; 1 away from them.
     pub fn mark_shade(&self, x: usize, y: usize) -> f32 {
         let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         if self.marks.iter().all(|m| m.distance(centre) > self.radius + 1.0) {
             return 1.0;
         }
-        // The share of the pixel that is black.
+        // Supersample the share of the pixel that is black.
         let mut black = 0;
         for i in 0..16 {
             let p = DVec2::new(x as f64 + (i % 4) as f64 / 4.0 + 0.125, y as f64 + (i / 4) as f64 / 4.0 + 0.125);

@@ -1,43 +1,45 @@
-//! Four pixels side by side, as registers hold them.
+//! SIMD lanes: four neighbouring pixels of one or three channels in vector registers.
 //!
-//! Whatever the level of instructions, the same is done in the same order, so that sums are the same to the bit.
+//! Every instruction set performs the operations in the same order, so sums are identical to the bit.
 
 use super::taps::TAPS;
 use glam::{Vec4, Vec4Swizzles};
 
-/// Most samples that [`Four::load`] reads of three channels: four pixels and what follows them.
-pub const MOST_READ: usize = 16;
+/// Most samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after them that fill
+/// the register.
+pub const MAX_READ: usize = 16;
 
-/// Four pixels side by side of one channel or of three.
-pub trait Four: Copy {
+/// Four neighbouring pixels with one channel or three.
+pub trait PixelLanes: Copy {
     const CHANNELS: usize;
-    /// Samples that are read at once.
+    /// Number of samples that one load reads.
     const READ: usize;
 
     /// # Safety
-    /// There are as many samples as are read.
+    /// At least [`Self::READ`] samples must be readable at `from`.
     unsafe fn load(from: *const f32) -> Self;
-    /// A hint that what is there will be read soon; any address will do.
+    /// Hints that the memory at `from` will be read soon; any address is allowed.
     #[inline(always)]
     fn prefetch(_from: *const f32) {}
-    /// The weight of each pixel for all of its channels.
+    /// Broadcasts the weight of each pixel to all its channels.
     fn spread(weights: &[f32; TAPS]) -> Self;
     fn splat(value: f32) -> Self;
     fn mul(self, other: Self) -> Self;
     fn add(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
-    /// The sum of the four for each channel, and lanes that mean nothing; likewise the next two.
+    /// The sum over the four pixels for each channel; the remaining lanes are undefined. The same holds for the next
+    /// two.
     fn sum(self) -> Vec4;
-    fn least(self) -> Vec4;
-    fn greatest(self) -> Vec4;
+    fn min_over_pixels(self) -> Vec4;
+    fn max_over_pixels(self) -> Vec4;
 }
 
 /// One channel.
 #[derive(Clone, Copy)]
-pub struct One(Vec4);
+pub struct GreyLanes(Vec4);
 
-impl One {
+impl GreyLanes {
     #[inline(always)]
     fn fold(self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Vec4 {
         let pairs = f(self.0, self.0.zwxy());
@@ -45,13 +47,13 @@ impl One {
     }
 }
 
-impl Four for One {
+impl PixelLanes for GreyLanes {
     const CHANNELS: usize = 1;
     const READ: usize = 4;
 
     #[inline(always)]
     unsafe fn load(from: *const f32) -> Self {
-        // SAFETY: the caller's.
+        // SAFETY: by the contract of `load`.
         Self(Vec4::from_array(unsafe { from.cast::<[f32; 4]>().read_unaligned() }))
     }
 
@@ -91,21 +93,21 @@ impl Four for One {
     }
 
     #[inline(always)]
-    fn least(self) -> Vec4 {
+    fn min_over_pixels(self) -> Vec4 {
         self.fold(Vec4::min)
     }
 
     #[inline(always)]
-    fn greatest(self) -> Vec4 {
+    fn max_over_pixels(self) -> Vec4 {
         self.fold(Vec4::max)
     }
 }
 
 /// Three channels in three registers of four.
 #[derive(Clone, Copy)]
-pub struct Three([Vec4; 3]);
+pub struct RgbLanes([Vec4; 3]);
 
-impl Three {
+impl RgbLanes {
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Self {
         Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
@@ -120,13 +122,13 @@ impl Three {
     }
 }
 
-impl Four for Three {
+impl PixelLanes for RgbLanes {
     const CHANNELS: usize = 3;
     const READ: usize = 12;
 
     #[inline(always)]
     unsafe fn load(from: *const f32) -> Self {
-        // SAFETY: the caller's.
+        // SAFETY: by the contract of `load`.
         let samples = unsafe { from.cast::<[[f32; 4]; 3]>().read_unaligned() };
         Self(samples.map(Vec4::from_array))
     }
@@ -168,33 +170,33 @@ impl Four for Three {
     }
 
     #[inline(always)]
-    fn least(self) -> Vec4 {
+    fn min_over_pixels(self) -> Vec4 {
         self.fold(Vec4::min)
     }
 
     #[inline(always)]
-    fn greatest(self) -> Vec4 {
+    fn max_over_pixels(self) -> Vec4 {
         self.fold(Vec4::max)
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-pub use avx512::Wide;
+pub use avx512::RgbLanesAvx512;
 
 #[cfg(target_arch = "x86_64")]
 mod avx512 {
-    use super::{Four, MOST_READ, TAPS};
+    use super::{MAX_READ, PixelLanes, TAPS};
     use glam::Vec4;
     use std::arch::x86_64::*;
 
-    /// Three channels in one register of sixteen. Only code that runs where the processor has AVX-512 may use it: everything
-    /// below is inlined into a function compiled for that.
+    /// Three channels in one register of sixteen lanes. Use it only in code that runs on a processor with AVX-512:
+    /// everything below is inlined into a function compiled for it.
     #[derive(Clone, Copy)]
-    pub struct Wide(__m512);
+    pub struct RgbLanesAvx512(__m512);
 
-    // SAFETY, throughout: the processor has the instructions, as said above.
+    // SAFETY of all blocks below: the processor supports AVX-512, as required above.
 
-    /// The first pixel with the third and the second with the fourth, then both.
+    /// Combines the first pixel with the third and the second with the fourth, then the two results.
     macro_rules! fold {
         ($of:expr, $eight:ident, $four:ident) => {
             unsafe {
@@ -208,9 +210,9 @@ mod avx512 {
         };
     }
 
-    impl Four for Wide {
+    impl PixelLanes for RgbLanesAvx512 {
         const CHANNELS: usize = 3;
-        const READ: usize = MOST_READ;
+        const READ: usize = MAX_READ;
 
         #[inline(always)]
         unsafe fn load(from: *const f32) -> Self {
@@ -262,12 +264,12 @@ mod avx512 {
         }
 
         #[inline(always)]
-        fn least(self) -> Vec4 {
+        fn min_over_pixels(self) -> Vec4 {
             fold!(self, _mm256_min_ps, _mm_min_ps)
         }
 
         #[inline(always)]
-        fn greatest(self) -> Vec4 {
+        fn max_over_pixels(self) -> Vec4 {
             fold!(self, _mm256_max_ps, _mm_max_ps)
         }
     }

@@ -1,4 +1,4 @@
-//! Which side of which plane faces the room.
+//! Selects the plane, and the side of it, that faces the room.
 
 use super::patch::Patch;
 use crate::error::{Error, Result};
@@ -6,26 +6,26 @@ use crate::rng::Rng;
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 
-/// Probes sent from each side of each plane.
-const PROBES: usize = 128;
-/// Triangles that share a bounding box.
+/// Rays cast from each side of each plane.
+const RAYS: usize = 128;
+/// Triangles per bounding box.
 const CHUNK: usize = 64;
-/// How much more a side counts that all cameras are on.
+/// Weight of the share of cameras in front of a side [origin not recorded].
 const CAMERA_WEIGHT: f64 = 4.0;
 
 /// The plane that faces the room, and its unit normal into the room.
 ///
-/// A side sees the room where rays that leave it travel a good way, measured against the size of the plane, and then
-/// land on something. The upper side of a ceiling looks into the void; the inside of a slab ends at once. The score of a
-/// side is its area times the mean of `min(1, distance / √area)`, with 0 for a ray that lands nowhere; cameras in
-/// front add to it. Where nothing else is in the scene, the side decides from which the triangles are counter-clockwise.
+/// A side faces the room if rays leaving it travel far, relative to the size of the plane, and then hit a surface.
+/// Rays from the upper side of a ceiling hit nothing; rays inside a slab end at once. The score of a side is its area
+/// times the mean of `min(1, distance / √area)`, where a ray that hits nothing counts 0, increased by the share of
+/// cameras in front of it. In an otherwise empty scene, the side wins from which the triangles are counter-clockwise.
 pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     let chunks = chunks(scene);
     let mut best: Option<(f64, usize, DVec3)> = None;
     for (i, patch) in patches.iter().enumerate() {
         for normal in [wound(scene, patch), -wound(scene, patch)] {
             let score = patch.area
-                * sight(scene, &chunks, patch, normal)
+                * visibility(scene, &chunks, patch, normal)
                 * (1.0 + CAMERA_WEIGHT * cameras(scene, patch, normal));
             if best.is_none_or(|(b, ..)| score > b) {
                 best = Some((score, i, normal));
@@ -35,7 +35,7 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     best.map(|(_, i, normal)| (i, normal)).ok_or_else(|| Error::degenerate("the surface has no area"))
 }
 
-/// The plane's normal on the side that most of its area is wound towards.
+/// The plane's normal on the side towards which most of its area is wound.
 fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
     let signed: f64 = patch
         .triangles
@@ -48,15 +48,15 @@ fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
     if signed < 0.0 { -patch.normal } else { patch.normal }
 }
 
-/// Share of the cameras that are in front.
+/// The share of the cameras in front of the plane.
 fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
     let in_front = scene.cameras.iter().filter(|c| (c.position.as_dvec3() - patch.centre).dot(normal) > 0.0).count();
     in_front as f64 / scene.cameras.len().max(1) as f64
 }
 
-/// How much of the scene is seen from one side of a plane, in `[0, 1]`.
-fn sight(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
-    // Areas summed up, to choose triangles by.
+/// Visibility of the scene from one side of a plane, in `[0, 1]`.
+fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
+    // Prefix sums of areas, to sample triangles in proportion to area.
     let mut sums = Vec::with_capacity(patch.triangles.len());
     let mut sum = 0.0;
     for &(mesh, triangle) in &patch.triangles {
@@ -64,12 +64,13 @@ fn sight(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
         sum += (b - a).cross(c - a).length();
         sums.push(sum);
     }
-    let reach = patch.area.sqrt();
+    let scale = patch.area.sqrt();
     let (u, v) = normal.any_orthonormal_pair();
     let mut seen = 0.0;
-    for probe in 0..PROBES {
-        // A point uniform in area, a direction by the cosine to the normal (Malley's method).
-        let mut rng = Rng::new(0, &[probe as u64]);
+    for ray in 0..RAYS {
+        // Sample a point uniformly by area, and a direction in proportion to its cosine to the normal (Malley's
+        // method).
+        let mut rng = Rng::new(0, &[ray as u64]);
         let at = sums.partition_point(|s| *s < rng.next_f64() * sum).min(sums.len() - 1);
         let (mesh, triangle) = patch.triangles[at];
         let [a, b, c] = scene.meshes[mesh].corners(triangle).map(|p| p.as_dvec3());
@@ -78,16 +79,16 @@ fn sight(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
         let (radius2, angle) = (rng.next_f64(), std::f64::consts::TAU * rng.next_f64());
         let (s, t) = angle.sin_cos();
         let direction = (u * t + v * s) * radius2.sqrt() + normal * (1.0 - radius2).sqrt();
-        // The plane's own triangles lie within four tolerances of each other.
+        // Start beyond the plane's own triangles, which lie within four tolerances of each other.
         let start = point + normal * (4.0 * patch.tolerance);
         if let Some(distance) = nearest(scene, chunks, start.as_vec3(), direction.as_vec3()) {
-            seen += (f64::from(distance) / reach).min(1.0);
+            seen += (f64::from(distance) / scale).min(1.0);
         }
     }
-    seen / PROBES as f64
+    seen / RAYS as f64
 }
 
-/// A run of triangles of one mesh and the box around them: neighbours in a file are mostly neighbours in space.
+/// A run of triangles of one mesh with its bounding box; neighbours in a file are mostly neighbours in space.
 struct Chunk {
     mesh: usize,
     triangles: std::ops::Range<usize>,
@@ -116,7 +117,7 @@ fn nearest(scene: &Scene, chunks: &[Chunk], origin: Vec3, direction: Vec3) -> Op
     let inverse = direction.recip();
     let mut closest = f32::INFINITY;
     for chunk in chunks {
-        // Slabs; the max and min ignore the NaN of a ray that runs inside a face of the box.
+        // Slab test; `max` and `min` ignore the NaN of a ray inside a face of the box.
         let (a, b) = ((chunk.low - origin) * inverse, (chunk.high - origin) * inverse);
         let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
         if near > far || near > closest {
@@ -132,7 +133,7 @@ fn nearest(scene: &Scene, chunks: &[Chunk], origin: Vec3, direction: Vec3) -> Op
     closest.is_finite().then_some(closest)
 }
 
-/// Möller and Trumbore (1997), both sides.
+/// Ray-triangle test of Möller and Trumbore (1997), two-sided.
 fn hit(origin: Vec3, direction: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Option<f32> {
     let (ab, ac) = (b - a, c - a);
     let p = direction.cross(ac);

@@ -1,0 +1,77 @@
+//! The parameters of relighting, and the geometry of a target.
+
+use super::sided::Sense;
+use crate::error::{Result, check_range};
+use glam::Vec3;
+
+/// The quantity of the target to match with the photo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Outgoing diffuse light of the target, its albedo included, as a photo shows it.
+    Outgoing,
+    /// Incident light, as reflected by a white target.
+    Incident,
+}
+
+/// How a target of many points is matched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fit {
+    /// By its mean, as in the paper: a single colour.
+    Mean,
+    /// Point by point in the least squares sense, the limit of gradient descent on texels (Lipp et al. 2024). Bright
+    /// points have more weight: without other light, the solution is dimmer by `1 / (1 + CV²)`, where CV is the
+    /// coefficient of variation of the response over the target.
+    LeastSquares,
+}
+
+/// The geometry of a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place<'a> {
+    /// A surface: (mesh, triangle) of each of its triangles, whose winding faces the side to match. Its lamps are
+    /// excluded.
+    Surface(&'a [(usize, usize)]),
+    /// A calculation grid: a parallelogram of a corner and two edges, on the side of `normal`. Its light is that of a
+    /// white surface there, illuminance / π.
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
+}
+
+/// The parameters of relighting.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    pub quantity: Quantity,
+    /// Used by [`super::run`] only, like `sense`.
+    pub fit: Fit,
+    /// Whether the target of each channel is exact or a limit; clipped pixels of a photo give lower limits. A channel
+    /// with a limit gets the mean scale of the exact channels if that satisfies the limit, and its limit otherwise.
+    pub sense: [Sense; 3],
+    /// Largest number of paths, in `[1024, 1 << 30]`.
+    pub paths: u32,
+    /// Stop when the largest relative half-width of the 95 % intervals is below this value, in `[0, 1]`; 0 = never.
+    pub target_error: f32,
+    /// Stop after this many milliseconds; 0 = never.
+    pub time_budget_ms: u32,
+    pub seed: u64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            quantity: Quantity::Outgoing,
+            fit: Fit::Mean,
+            sense: [Sense::Exactly; 3],
+            paths: 1 << 20,
+            target_error: 0.01,
+            time_budget_ms: 0,
+            seed: 1,
+        }
+    }
+}
+
+impl Params {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("paths", self.paths, 1024, 1 << 30)?;
+        check_range("target_error", self.target_error, 0.0, 1.0)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,46 @@
+//! The solution of relighting: the scale of the emission.
+
+use glam::DVec3;
+
+/// Whether the target is met in one colour channel, and if not, why.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TargetStatus {
+    /// The target is met.
+    Met,
+    /// Other lights alone exceed the target: the emission is off in this channel.
+    TooBright,
+    /// All lamps at their upper bounds are too dim, or goals contradict each other.
+    TooDim,
+    /// No light of this channel reaches the target, so the channel cannot be solved; it gets the mean scale of the
+    /// solved channels.
+    Dark,
+}
+
+/// The scale of the emission with its confidence interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Multiplier of the emission per channel, ≥ 0.
+    pub scale: DVec3,
+    /// Half-widths of the 95 % confidence intervals of `scale`.
+    pub half_width: DVec3,
+    pub status: [TargetStatus; 3],
+    /// Mean radiance of the target under the unscaled emission, in cd/m².
+    pub response: DVec3,
+    /// Mean radiance of the target under all other light, in cd/m².
+    pub background: DVec3,
+    /// Colour error of the target: the CIEDE2000 difference that 95 % of errors stay below, at the exposure that shows
+    /// the target as a middle grey.
+    pub delta_e: f64,
+    /// Number of paths traced.
+    pub paths: u32,
+}
+
+impl Solution {
+    /// The largest relative half-width among the channels that met their target; 0 without such channels.
+    pub fn error(&self) -> f64 {
+        (0..3)
+            .filter(|&c| self.status[c] == TargetStatus::Met && self.scale[c] > 0.0)
+            .map(|c| self.half_width[c] / self.scale[c])
+            .fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,54 @@
+//! Materials prepared for tracing: parameters that no texture varies are computed once.
+
+use super::bsdf::Substance;
+use crate::scene::Material;
+use glam::Vec3;
+
+/// A material with the result of its analysis.
+#[derive(Clone, Copy, Debug)]
+pub struct CompiledMaterial {
+    /// Its parameters, valid where no texture varies them.
+    pub substance: Substance,
+    /// Whether textures vary the parameters.
+    pub is_textured: bool,
+    /// Whether it may have layers besides the diffuse one.
+    pub layered: bool,
+    /// Whether it has a normal map that is not neutral.
+    pub has_normal_map: bool,
+    /// Whether its opacity may be below 1.
+    pub has_alpha: bool,
+    /// Whether light may pass straight through it, by opacity or by transmission.
+    pub lets_light_through: bool,
+}
+
+impl CompiledMaterial {
+    /// A copy that assumes every shading feature.
+    pub fn without_analysis(&self) -> Self {
+        Self {
+            is_textured: true,
+            layered: true,
+            has_normal_map: true,
+            has_alpha: true,
+            lets_light_through: true,
+            ..*self
+        }
+    }
+}
+
+/// Converts metallic-roughness parameters to layers (glTF 2.0, appendix B.2).
+pub fn substance(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> Substance {
+    let base = base.clamp(Vec3::ZERO, Vec3::ONE);
+    let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
+    let transmission = material.transmission.clamp(0.0, 1.0);
+    let dielectric_f0 = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
+    // An index of refraction of 1 is no interface: it does not reflect at grazing angles either.
+    let has_interface = material.ior > 1.0;
+    Substance {
+        diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),
+        f0: Vec3::splat(dielectric_f0).lerp(base, metallic),
+        f90: if has_interface { 1.0 } else { metallic },
+        roughness,
+        transmission: base * ((1.0 - metallic) * transmission),
+        dielectric_f0,
+    }
+}

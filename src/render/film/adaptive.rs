@@ -1,0 +1,166 @@
+//! Adaptive sampling: decides how many paths each tile gets in the next pass.
+//!
+//! The first passes make a coarse image, then a few paths for every pixel, then twice as many, and so on: points are
+//! stratified best at powers of two. With an error target, each tile gets a count of its own after
+//! [`MIN_UNIFORM_PATHS`] paths. For a target on the error of the whole image, the number of paths is proportional to
+//! the standard deviation of a tile's paths (Neyman 1934), absolute or relative to its radiance; for a target on the
+//! error of each pixel, it follows from the tile's own error. Each pass doubles the paths of the tiles that lack most
+//! of theirs.
+//!
+//! A small variance by chance must not stop the sampling of a tile: it is small where no bright path has been found
+//! yet, and the image would become too dark. Decisions are therefore made for whole tiles, with regard to their
+//! neighbours (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global
+//! illumination"). The tests and `benches/error_control.rs` measure the remaining bias.
+
+use super::canvas::Canvas;
+use super::clock::Clock;
+use super::grid::coarse_stride;
+use super::pass::Pass;
+use super::statistics::{Statistics, whole};
+use crate::error::Result;
+use crate::image::try_vec;
+use crate::job::Job;
+use crate::render::params::Params;
+
+/// Paths per pixel of the first complete pass. [judged, not recorded]
+const FIRST_PASS_PATHS: u32 = 4;
+/// Paths per pixel before the first adaptive decision. [judged, not recorded]
+const MIN_UNIFORM_PATHS: u32 = 16;
+/// Largest number of paths per pixel in a tile, relative to `samples`. Without a limit, light that few paths find (a
+/// caustic, the glossy reflection of a small lamp) would take all paths. [judged, not recorded]
+const MAX_TILE_RATIO: u32 = 64;
+/// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [judged, not
+/// recorded]
+const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
+
+/// Chooses the passes of a render.
+pub struct AdaptiveSampler<'p> {
+    params: &'p Params,
+    /// Stride and paths per pixel of the last uniform pass.
+    stride: usize,
+    uniform_paths: u32,
+}
+
+impl<'p> AdaptiveSampler<'p> {
+    pub fn new(params: &'p Params) -> Self {
+        Self { params, stride: 2 * coarse_stride(params.width, params.height), uniform_paths: 0 }
+    }
+
+    /// The next pass; `None` if all targets are met or the time is over.
+    pub fn next(&mut self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
+        let Params { samples, target_error, relative_error, pixel_error, .. } = *self.params;
+        if self.uniform_paths > 0 && clock.is_over() {
+            return Ok(None);
+        }
+        // Refine the coarse image down to one path per pixel.
+        if self.stride > 1 {
+            self.stride /= 2;
+            self.uniform_paths = 1;
+            return self.uniform(canvas, 1);
+        }
+        let has_target = target_error > 0.0 || relative_error > 0.0 || pixel_error > 0.0;
+        if has_target && self.uniform_paths >= MIN_UNIFORM_PATHS.min(samples) {
+            return self.adaptive_pass(canvas, clock, job);
+        }
+        if self.uniform_paths >= samples {
+            return Ok(None);
+        }
+        // Double the paths of all pixels, within the time budget.
+        let doubled =
+            if self.uniform_paths < FIRST_PASS_PATHS { FIRST_PASS_PATHS } else { self.uniform_paths.saturating_mul(2) };
+        let affordable = clock.affordable_ratio().map_or(u32::MAX, |times| {
+            let more = (f64::from(self.uniform_paths) * times) as u32 / FIRST_PASS_PATHS * FIRST_PASS_PATHS;
+            self.uniform_paths.saturating_add(more.max(FIRST_PASS_PATHS))
+        });
+        self.uniform_paths = doubled.min(affordable.max(FIRST_PASS_PATHS)).min(samples);
+        self.uniform(canvas, self.uniform_paths)
+    }
+
+    fn uniform(&self, canvas: &Canvas, count: u32) -> Result<Option<Pass>> {
+        Ok(Some(Pass { stride: self.stride, ..Pass::uniform(canvas.grid.tiles(), count)? }))
+    }
+
+    /// A pass that doubles the paths of the tiles with the largest need.
+    fn adaptive_pass(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
+        let statistics = canvas.statistics(|_, _| 1.0, job)?;
+        let target_paths = self.target_paths(canvas, &statistics, job)?;
+        let whole = whole(&statistics);
+
+        // Sum up the missing paths, limited by `samples` and the time budget.
+        let max_paths = self.params.samples.saturating_mul(MAX_TILE_RATIO);
+        let missing = |tile: usize| {
+            (target_paths[tile].min(f64::from(max_paths)) - f64::from(statistics[tile].max_paths)).max(0.0)
+                * f64::from(statistics[tile].pixels)
+        };
+        let mut budget: f64 = (0..statistics.len()).map(missing).sum();
+        if let Some(times) = clock.affordable_ratio() {
+            budget = budget.min(whole.paths as f64 * times);
+        }
+        let allowed = f64::from(self.params.samples) * f64::from(whole.pixels) - whole.paths as f64;
+        let mut candidates: Vec<(f64, usize)> = (0..statistics.len())
+            .map(|tile| (target_paths[tile] / f64::from(statistics[tile].max_paths.max(1)), tile))
+            .filter(|&(need, tile)| need > 1.0 && statistics[tile].max_paths < max_paths)
+            .collect();
+        // Order tiles of equal need by their index.
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+
+        let mut counts: Vec<u32> = statistics.iter().map(|t| t.max_paths).collect();
+        let mut spent = 0.0;
+        for (_, tile) in candidates {
+            let cost = f64::from(statistics[tile].max_paths) * f64::from(statistics[tile].pixels);
+            if spent > 0.0 && spent >= budget || spent + cost > allowed {
+                break;
+            }
+            counts[tile] = counts[tile].saturating_mul(2).min(max_paths);
+            spent += cost;
+        }
+        Ok((spent > 0.0).then_some(Pass { counts, stride: 1 }))
+    }
+
+    /// The number of paths per pixel that each tile needs to meet the targets.
+    fn target_paths(&self, canvas: &Canvas, statistics: &[Statistics], job: Job) -> Result<Vec<f64>> {
+        let Params { target_error, relative_error, pixel_error, .. } = *self.params;
+        let mean = whole(statistics).mean_radiance();
+        let mut target_paths = try_vec(statistics.len(), 0.0)?;
+        if target_error > 0.0 {
+            self.add_allocation(canvas, statistics, target_error, &mut target_paths)?;
+        }
+        if relative_error > 0.0 {
+            self.add_allocation(canvas, &canvas.relative_statistics(mean, job)?, relative_error, &mut target_paths)?;
+        }
+        if pixel_error > 0.0 {
+            let relative_intervals = canvas.relative_intervals(MIN_RELATIVE_LUMINANCE * mean, job)?;
+            for ((paths, squared_interval), tile) in target_paths.iter_mut().zip(relative_intervals).zip(statistics) {
+                *paths = paths.max(f64::from(tile.max_paths) * squared_interval / f64::from(pixel_error).powi(2));
+            }
+        }
+        Ok(target_paths)
+    }
+
+    /// Raises the numbers of paths to the smallest allocation that meets a target on the error of all tiles together.
+    fn add_allocation(
+        &self,
+        canvas: &Canvas,
+        statistics: &[Statistics],
+        target: f32,
+        target_paths: &mut [f64],
+    ) -> Result<()> {
+        let (whole, target) = (whole(statistics), f64::from(target));
+        if whole.error() <= target {
+            return Ok(());
+        }
+        let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
+        let deviations: Vec<f64> =
+            canvas.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
+        // With n = k d paths, the mean square error is mean(s / (k d)), where s is the variance of single paths.
+        let mean_of = |value: &dyn Fn(usize) -> f64| {
+            (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
+                / f64::from(whole.pixels)
+        };
+        let left = mean_of(&|t| if path_variances[t] > 0.0 { path_variances[t] / deviations[t] } else { 0.0 });
+        let needed = left / (target * whole.mean_radiance()).powi(2);
+        let allowed = f64::from(self.params.samples) / mean_of(&|t| deviations[t]);
+        target_paths.iter_mut().zip(&deviations).for_each(|(w, d)| *w = w.max(needed.min(allowed) * d));
+        Ok(())
+    }
+}

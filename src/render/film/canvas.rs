@@ -1,0 +1,151 @@
+//! The canvas: the pixels of an image with the sums of their paths.
+
+use super::eye::Eye;
+use super::grid::{AREA, Grid};
+use super::pass::Pass;
+use super::pixel::Pixel;
+use super::roulette;
+use super::sums::Sums;
+use super::tile::{Tile, TileContext};
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+use crate::render::layers::Layers;
+use crate::render::params::Params;
+use crate::render::world::World;
+use crate::scene::Camera;
+use std::sync::atomic::AtomicU64;
+use std::time::Instant;
+
+/// The sums of all paths so far.
+pub struct Canvas<'a> {
+    pub(super) world: &'a World,
+    pub(super) eye: Eye,
+    pub(super) seed: u64,
+    pub(super) grid: Grid,
+    /// Pixels in the order of tiles.
+    pub(super) pixels: Vec<Pixel>,
+    pub(super) layers: Option<Layers<'a>>,
+    /// Number of paths dropped because their radiance was not finite.
+    pub(super) discarded: AtomicU64,
+}
+
+impl<'a> Canvas<'a> {
+    pub fn new(world: &'a World, camera: &'a Camera, params: &'a Params) -> Result<Self> {
+        Self::sized(world, camera, params, Grid { width: params.width, height: params.height })
+    }
+
+    fn sized(world: &'a World, camera: &'a Camera, params: &'a Params, grid: Grid) -> Result<Self> {
+        let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
+        let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
+        let eye = Eye::new(world, camera, params);
+        Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
+    }
+
+    /// A canvas of the pixels of given sums alone.
+    pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
+        let part = sums.part();
+        let mut canvas = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
+        let Self { grid, pixels, layers, .. } = &mut canvas;
+        let layers = layers.as_ref();
+        exec::for_rows(pixels, AREA, job, |tile, pixels| {
+            for (i, pixel) in pixels.iter_mut().enumerate() {
+                let Some((x, y)) = grid.place(tile, i) else { continue };
+                let (light, others) = sums.pixel(part.x + x, part.y + y);
+                *pixel = Pixel::of_sums(light, part.samples);
+                if let Some(layers) = layers {
+                    layers.keep_sums(tile, i, others);
+                }
+            }
+        })?;
+        canvas.discarded = AtomicU64::new(sums.discarded());
+        Ok(canvas)
+    }
+
+    /// Extends the paths of every pixel to the counts of a pass; stops at the deadline.
+    pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
+        let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
+        let layers = layers.as_ref();
+        let median_radiance = roulette::median_radiance(pixels, job.part(0.0, 0.0))?;
+        let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
+        let context = TileContext { world, eye, seed: *seed, grid: *grid, median_radiance, discarded };
+        exec::for_rows(pixels, AREA, job, |tile, pixels| {
+            // Skip tiles without pixels of a coarse pass.
+            if !pass.passes_over(grid.corner(tile)) {
+                Tile::new(context, tile, pixels, layers).extend(pass, is_over);
+            }
+        })?;
+        job.check()
+    }
+
+    /// Mean number of paths per pixel after a pass, relative to `samples`.
+    pub fn progress(&self, pass: &Pass, samples: u32) -> f64 {
+        let paths = |tile| self.grid.area(tile) as f64 * pass.per_pixel(tile);
+        let pixels = (self.grid.width * self.grid.height) as f64;
+        (0..self.grid.tiles()).map(paths).sum::<f64>() / (pixels * f64::from(samples))
+    }
+
+    /// The pixels of a tile that lie within the image.
+    pub(super) fn tile(&self, tile: usize) -> impl Iterator<Item = &Pixel> {
+        let pixels = self.pixels[tile * AREA..(tile + 1) * AREA].iter().enumerate();
+        pixels.filter(move |(i, _)| self.grid.place(tile, *i).is_some()).map(|(_, pixel)| pixel)
+    }
+
+    pub(super) fn pixel(&self, x: usize, y: usize) -> &Pixel {
+        let (tile, i) = self.grid.locate(x, y);
+        &self.pixels[tile * AREA + i]
+    }
+
+    /// The pixel itself, or, if it has no paths yet, the nearest pixel of a coarser pass.
+    pub(super) fn nearest(&self, x: usize, y: usize) -> (usize, usize) {
+        let (mut x, mut y, mut mask) = (x, y, !0);
+        while self.pixel(x, y).count() == 0 && (x, y) != (0, 0) {
+            mask <<= 1;
+            (x, y) = (x & mask, y & mask);
+        }
+        (x, y)
+    }
+
+    /// For each pixel of the image, the displayed pixel: its tile, its index in the tile, and its number of paths.
+    pub(super) fn places(&self, job: Job) -> Result<Vec<(u32, u32, u32)>> {
+        let mut places = try_vec(self.grid.width * self.grid.height, (0, 0, 0))?;
+        exec::for_rows(&mut places, self.grid.width, job, |y, row| {
+            for (x, place) in row.iter_mut().enumerate() {
+                let (x, y) = self.nearest(x, y);
+                let (tile, i) = self.grid.locate(x, y);
+                *place = (tile as u32, i as u32, self.pixel(x, y).count());
+            }
+        })?;
+        Ok(places)
+    }
+
+    /// An image computed pixel by pixel.
+    pub(super) fn image(
+        &self,
+        channels: usize,
+        job: Job,
+        value: impl Fn(usize, usize, &mut [f32]) + Sync,
+    ) -> Result<Image> {
+        let mut image = Image::new(self.grid.width, self.grid.height, channels)?;
+        exec::for_rows(&mut image.data, self.grid.width * channels, job, |y, row| {
+            row.chunks_exact_mut(channels).enumerate().for_each(|(x, out)| value(x, y, out));
+        })?;
+        Ok(image)
+    }
+
+    pub(super) fn variance(&self, job: Job) -> Result<Image> {
+        self.image(3, job, |x, y, out| self.pixel(x, y).variance().as_vec3().write_to_slice(out))
+    }
+
+    /// Images of two halves of the paths; equal for pixels of a single path.
+    pub fn halves(&self, job: Job) -> Result<[Image; 2]> {
+        let half = |which: usize| {
+            self.image(3, job, |x, y, out| {
+                let (x, y) = self.nearest(x, y);
+                self.pixel(x, y).halves()[which].as_vec3().write_to_slice(out);
+            })
+        };
+        Ok([half(0)?, half(1)?])
+    }
+}

@@ -1,0 +1,31 @@
+//! Assembles the images of a film from a canvas.
+
+use super::canvas::Canvas;
+use crate::error::Result;
+use crate::job::Job;
+use crate::render::output::Film;
+use std::sync::atomic::Ordering;
+
+impl Canvas<'_> {
+    /// The image of all paths so far.
+    pub fn film(&self, job: Job) -> Result<Film> {
+        let beauty = self.image(3, job, |x, y, out| {
+            let (x, y) = self.nearest(x, y);
+            self.pixel(x, y).mean().as_vec3().write_to_slice(out);
+        })?;
+        let paths = self.image(1, job, |x, y, out| out[0] = self.pixel(x, y).count() as f32)?;
+        let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, &self.places(job)?, job))?;
+        let total = self.total(job)?;
+        Ok(Film {
+            beauty,
+            layers,
+            variance: self.variance(job)?,
+            paths,
+            samples: (total.paths / (self.grid.width * self.grid.height) as u64) as u32,
+            error: total.error(),
+            relative_error: self.relative_total(job)?.error(),
+            discarded: self.discarded.load(Ordering::Relaxed),
+            preview: None,
+        })
+    }
+}

@@ -1,0 +1,95 @@
+//! Camera paths: the rays of pixels, and the radiance along them.
+
+use crate::render::layers::Recorder;
+use crate::render::params::Params;
+use crate::render::path::{self, MAX_BOUNCES, PathLength};
+use crate::render::sampler::Sampler;
+use crate::render::shared::Start;
+use crate::render::tape::Sum;
+use crate::render::world::World;
+use crate::scene::Camera;
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Sum of the radiance of some paths of a pixel. All callers use this one function, so that the inlined path tracer is
+/// compiled once.
+pub fn paths(
+    world: &World,
+    eye: &Eye,
+    at: [usize; 2],
+    length: PathLength,
+    (seed, indices): (u64, Range<u32>),
+    mut recorder: Option<&mut Recorder>,
+    discarded: &AtomicU64,
+) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    for index in indices {
+        let radiance = radiance(world, eye, at, length, Sampler::new(seed, index), recorder.as_deref_mut());
+        if radiance.is_finite() {
+            sum += radiance.as_dvec3();
+        } else {
+            discarded.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+    sum
+}
+
+/// One sample of a pixel's radiance.
+fn radiance(
+    world: &World,
+    eye: &Eye,
+    at: [usize; 2],
+    length: PathLength,
+    sampler: Sampler,
+    recorder: Option<&mut Recorder>,
+) -> Vec3 {
+    let Start { ray, light_u, length, mut sampler } = eye.start(world, at, length, sampler);
+    match recorder {
+        None => {
+            let mut sum = Sum::default();
+            path::trace(world, ray, light_u, length, &mut sampler, &mut sum);
+            sum.0
+        }
+        Some(recorder) => {
+            recorder.start();
+            path::trace(world, ray, light_u, length, &mut sampler, recorder);
+            recorder.end_path()
+        }
+    }
+}
+
+/// A camera prepared for tracing: the direction through a pixel is linear in its coordinates.
+pub struct Eye {
+    position: Vec3,
+    corner: Vec3,
+    right: Vec3,
+    down: Vec3,
+    /// Largest number of bounces of a path.
+    pub max_bounces: u32,
+}
+
+impl Eye {
+    pub fn new(world: &World, camera: &Camera, params: &Params) -> Self {
+        let max_bounces = world.requirements().bounces(params.bounce_error).unwrap_or(MAX_BOUNCES).min(MAX_BOUNCES);
+        let aspect = params.width as f32 / params.height as f32;
+        let at = |x: f32, y: f32| camera.direction(x, y, aspect);
+        let corner = at(0.0, 0.0);
+        let right = (at(1.0, 0.0) - corner) / params.width as f32;
+        let down = (at(0.0, 1.0) - corner) / params.height as f32;
+        Self { position: camera.position, corner, right, down, max_bounces }
+    }
+
+    /// Starts a path: the first block of random numbers selects the point in the pixel (box filter) and the light
+    /// sample at the primary vertex.
+    pub fn start(&self, world: &World, at: [usize; 2], length: PathLength, mut sampler: Sampler) -> Start {
+        let place = sampler.next();
+        let direction = self.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
+        Start { ray: world.ray(self.position, direction), light_u: (place.fine(2), place.get(3)), length, sampler }
+    }
+
+    /// The unit direction through a point of the image, in pixels.
+    fn direction(&self, x: f64, y: f64) -> Vec3 {
+        (self.corner + self.right * x as f32 + self.down * y as f32).normalize_or_zero()
+    }
+}

@@ -1,0 +1,297 @@
+//! Pilot sampling: predicts the cost and the error of an image from a few of its tiles.
+//!
+//! The cost and the variance of paths depend on the scene more than on any static count. So a sample of tiles is
+//! rendered as in the image itself: at full resolution and with the same path sharing. A few tiles, such as those at
+//! the edge of a lamp, may have most of an image's error. Tiles are therefore selected with a probability proportional
+//! to the standard deviation of their light in a first look, and weighted by its reciprocal (Horvitz and Thompson
+//! 1952). The first look may miss the sliver of a lamp that a neighbouring tile shows, so the deviations are spread to
+//! neighbours. The interior of a lamp has no variance and is hardly ever selected, although it may have most of the
+//! image's light. The image's mean is therefore taken from the first look at all tiles, and the selected tiles correct
+//! it by their differences (the difference estimator of Särndal, Swensson and Wretman 1992).
+//!
+//! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. It is
+//! therefore measured at three numbers of paths; at the largest of them only for some of the tiles, selected in
+//! proportion to their part of the variance at the second.
+
+use super::eye::Eye;
+use super::grid::{AREA, Grid};
+use super::pass::Pass;
+pub use super::pixel::REPLICATIONS;
+use super::pixel::{Pixel, paths_of_replication};
+use super::prepass::Prepass;
+use super::tile::{Tile, TileContext};
+use super::tile_moments::{TileMoments, tile_moments};
+use crate::error::Result;
+use crate::exec;
+use crate::image::try_collect;
+use crate::job::Job;
+use crate::render::params::{self, Params};
+use crate::render::world::World;
+use crate::rng::Rng;
+use crate::scene::Camera;
+use std::sync::atomic::AtomicU64;
+use std::time::Duration;
+
+/// Largest number of tiles to render. [judged, not recorded]
+const MAX_TILES: usize = 128;
+/// Paths per pixel in three passes: each replication has a power of four, at which points are stratified best.
+pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
+/// Largest number of tiles with the last number of paths. [judged, not recorded]
+const MAX_DEEP_TILES: usize = 32;
+/// Selection weight of a tile without variance, relative to the mean. [judged, not recorded]
+const MIN_CHANCE: f64 = 0.5;
+/// Separates the random numbers of the pilot from those of the image.
+const SALT: u64 = 0x7072_6f62_6564_2121;
+
+/// Prediction for an image from a few of its tiles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pilot {
+    /// Seconds per path with all threads at work.
+    pub seconds_per_path: f64,
+    /// The square of [`super::super::Film::error`] that the image would have with each of [`PATHS`] in every pixel.
+    pub squared_errors: [f64; 3],
+    /// Number of uniform paths over the number of adaptively allocated paths for equal error; at least 1.
+    pub adaptive_gain: f64,
+    /// Root mean square of the image's radiance relative to its mean. It converts a relative error common to all light
+    /// to the image's error.
+    pub contrast: f64,
+}
+
+/// The numbers of points of the nets that `paths` paths of a pixel consist of: for each replication the powers of two
+/// that add up to its paths.
+pub fn nets(paths: u32) -> impl Iterator<Item = u32> {
+    let nets = |points: u32| (0..u32::BITS).map(move |bit| points & 1 << bit).filter(|&points| points > 0);
+    (0..REPLICATIONS).flat_map(move |replication| nets(paths_of_replication(paths, replication)))
+}
+
+/// A selected tile.
+struct PilotTile {
+    tile: usize,
+    /// Number of tiles it represents.
+    weight: f64,
+    /// Number of selected tiles it represents in the last pass; 0 if it is not part of that pass.
+    deep_weight: f64,
+    /// Its mean in the first look.
+    expected: f64,
+    pixels: [Pixel; AREA],
+    /// Paths of each pixel, and the time they took in seconds.
+    paths: f64,
+    seconds: f64,
+}
+
+/// Sums over the pixels of a tile, averaged over the channels.
+#[derive(Clone, Copy, Default)]
+struct TileSums {
+    weight: f64,
+    pixels: f64,
+    /// The values of `mean` and `square` expected from the first look.
+    expected: [f64; 2],
+    mean: f64,
+    square: f64,
+    variance: f64,
+}
+
+/// Renders the pilot tiles; `clock` returns the time since an arbitrary start.
+///
+/// # Errors
+/// A setting out of range; a degenerate camera; cancelled.
+pub fn run(
+    world: &World,
+    camera: &Camera,
+    params: &Params,
+    clock: &(dyn Fn() -> Duration + Sync),
+    job: Job,
+) -> Result<Pilot> {
+    params.check()?;
+    params::check_camera(camera)?;
+    let grid = Grid { width: params.width, height: params.height };
+    let eye = Eye::new(world, camera, params);
+    let params = &Params { seed: params.seed ^ SALT, ..params.clone() };
+    let prepass = Prepass::new(world, &eye, params, job.part(0.0, 0.05))?;
+    let expected = tile_moments(&prepass, grid, job.part(0.05, 0.1))?;
+    let mut rng = Rng::new(params.seed, &[]);
+    let mut chosen = choose(&expected, grid, &mut rng)?;
+
+    let discarded = AtomicU64::new(0);
+    let context = TileContext {
+        world,
+        eye: &eye,
+        seed: params.seed,
+        grid,
+        median_radiance: prepass.median_radiance(),
+        discarded: &discarded,
+    };
+    let start = clock();
+    let render = |chosen: &mut [PilotTile], count: u32, part: Job| render_tiles(context, chosen, count, clock, part);
+    let area = (grid.width * grid.height) as f64;
+    let mean = |tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64| total(tile_sums, of) / area;
+
+    // Measure the variance at three numbers of paths; at the last one only for some of the tiles.
+    let few = render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
+    let middle = render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
+    let part = |t: &TileSums| t.weight * t.variance;
+    let mut sampling =
+        SystematicSampler::new(total(&middle, &|t| t.variance), MAX_DEEP_TILES.min(chosen.len()), &mut rng);
+    chosen.iter_mut().zip(&middle).for_each(|(c, t)| c.deep_weight = sampling.weight_of(part(t)));
+    let last = render(&mut chosen, PATHS[2], job.part(0.6, 1.0))?;
+    let many = chosen.iter().zip(&last).map(|(c, t)| c.deep_weight * part(t)).sum::<f64>() / area;
+    let variances = [mean(&few, &|t| t.variance), mean(&middle, &|t| t.variance), many];
+    let seconds = clock().saturating_sub(start).as_secs_f64();
+
+    // Estimate the mean and the mean square by the difference estimator.
+    let seen =
+        |power: i32| (0..grid.tiles()).map(|t| grid.area(t) as f64 * expected[t].mean.powi(power)).sum::<f64>() / area;
+    let brightness = (seen(1) + mean(&last, &|t| t.mean - t.expected[0])).max(f64::MIN_POSITIVE);
+    let square = seen(2) + mean(&last, &|t| t.square - t.expected[1]);
+    Ok(Pilot {
+        seconds_per_path: seconds_per_path(&chosen, &last, seconds),
+        squared_errors: variances.map(|v| v / (brightness * brightness)),
+        adaptive_gain: adaptive_gain(&middle, area),
+        contrast: (square.max(0.0).sqrt() / brightness).max(1.0),
+    })
+}
+
+/// Extends the paths of the tiles of the current pass to `count` per pixel; returns the sums of all tiles.
+fn render_tiles(
+    context: TileContext,
+    chosen: &mut [PilotTile],
+    count: u32,
+    clock: &(dyn Fn() -> Duration + Sync),
+    job: Job,
+) -> Result<Vec<TileSums>> {
+    let wanted = Pass::uniform(context.grid.tiles(), count)?;
+    exec::for_rows(chosen, 1, job, |_, chosen| {
+        let PilotTile { tile, pixels, seconds, paths, deep_weight, .. } = &mut chosen[0];
+        if *deep_weight > 0.0 {
+            let start = clock();
+            Tile::new(context, *tile, pixels, None).extend(&wanted, || job.is_cancelled());
+            *seconds += clock().saturating_sub(start).as_secs_f64();
+            *paths = f64::from(count);
+        }
+    })?;
+    job.check()?;
+    Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
+}
+
+/// Time per path of the image, from the time that all pilot tiles took together: corrected for the difference between the
+/// selected tiles and all tiles of the image.
+fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
+    let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
+    let paths = sum(&|c, t| c.paths * t.pixels);
+    let unweighted = sum(&|c, _| c.seconds) / paths;
+    let weighted = sum(&|c, _| c.weight * c.seconds / c.paths) / sum(&|c, t| c.weight * t.pixels);
+    let bias = if unweighted > 0.0 { weighted / unweighted } else { 1.0 };
+    seconds / paths * bias
+}
+
+/// Selects tiles by the standard deviation of their light.
+fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<PilotTile>> {
+    let variances = try_collect(expected.iter().map(|l| l.variance))?;
+    let varies = grid.max_with_neighbourhood_mean(&variances)?;
+    let deviation = |tile: usize| varies[tile].sqrt();
+    let sum: f64 = (0..expected.len()).map(deviation).sum();
+    let floor = if sum > 0.0 { MIN_CHANCE * sum / expected.len() as f64 } else { 1.0 };
+
+    let mut sampling = SystematicSampler::new(sum + floor * expected.len() as f64, expected.len().min(MAX_TILES), rng);
+    let mut chosen = Vec::with_capacity(MAX_TILES);
+    for (tile, moments) in expected.iter().enumerate() {
+        let weight = sampling.weight_of(deviation(tile) + floor);
+        if weight > 0.0 {
+            let pixels = [Pixel::default(); AREA];
+            chosen.push(PilotTile {
+                tile,
+                weight,
+                deep_weight: 1.0,
+                expected: moments.mean,
+                pixels,
+                paths: 0.0,
+                seconds: 0.0,
+            });
+        }
+    }
+    Ok(chosen)
+}
+
+/// Systematic sampling: equidistant marks along the cumulative sum of the items' chances select items.
+struct SystematicSampler {
+    step: f64,
+    next: f64,
+    end: f64,
+}
+
+impl SystematicSampler {
+    /// `count` marks along chances of this sum.
+    fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
+        let step = sum / count as f64;
+        Self { step, next: rng.next_f64() * step, end: 0.0 }
+    }
+
+    /// The weight of the next item, which has this chance: the number of items it represents; 0 if it is not selected.
+    /// An item with a chance longer than a step is selected more than once.
+    fn weight_of(&mut self, chance: f64) -> f64 {
+        self.end += chance;
+        let mut met = 0.0;
+        while self.next < self.end {
+            (self.next, met) = (self.next + self.step, met + 1.0);
+        }
+        if met > 0.0 { met * self.step / chance } else { 0.0 }
+    }
+}
+
+fn tile_sums(grid: Grid, chosen: &PilotTile) -> TileSums {
+    let mut sum = TileSums { weight: chosen.weight, ..TileSums::default() };
+    for pixel in (0..AREA).filter(|&i| grid.place(chosen.tile, i).is_some()).map(|i| &chosen.pixels[i]) {
+        let (mean, variance) = (pixel.mean(), pixel.variance());
+        sum.pixels += 1.0;
+        sum.mean += mean.element_sum() / 3.0;
+        sum.square += ((mean * mean).element_sum() - variance.element_sum()) / 3.0;
+        sum.variance += variance.element_sum() / 3.0;
+    }
+    sum.expected = [1, 2].map(|power| sum.pixels * chosen.expected.powi(power));
+    sum
+}
+
+/// Estimated sum over the image.
+fn total(tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64) -> f64 {
+    tile_sums.iter().map(|t| t.weight * of(t)).sum()
+}
+
+/// Number of uniform paths over the number of paths in proportion to the standard deviation of each tile, for equal
+/// error (Neyman 1934).
+fn adaptive_gain(tile_sums: &[TileSums], area: f64) -> f64 {
+    let deviation = total(tile_sums, &|t| (t.variance * t.pixels).sqrt());
+    if deviation > 0.0 { (total(tile_sums, &|t| t.variance) * area / (deviation * deviation)).max(1.0) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_chosen_stands_for_all() {
+        // The estimate of any sum is unbiased, and the sum of the chances is exact.
+        let chances = [0.1, 3.0, 0.0, 0.4, 1.5, 0.2, 7.0];
+        let values = [5.0, 1.0, 0.0, 2.0, 4.0, 3.0, 9.0];
+        let (mut rng, mut mean) = (Rng::new(3, &[]), 0.0);
+        let rounds = 20_000;
+        for _ in 0..rounds {
+            let mut sampling = SystematicSampler::new(chances.iter().sum(), 4, &mut rng);
+            let weights = chances.map(|chance| sampling.weight_of(chance));
+            let sum = |of: &[f64]| weights.iter().zip(of).map(|(w, v)| w * v).sum::<f64>();
+            assert!((sum(&chances) - chances.iter().sum::<f64>()).abs() < 1e-9 && weights[2] == 0.0);
+            mean += sum(&values) / f64::from(rounds);
+        }
+        // The standard deviation of an estimate is about 30.
+        assert!((mean - 24.0).abs() < 4.0 * 30.0 / f64::from(rounds).sqrt(), "{mean}");
+        assert_eq!(SystematicSampler::new(0.0, 4, &mut rng).weight_of(0.0), 0.0);
+    }
+
+    #[test]
+    fn paths_are_nets_of_every_replication() {
+        let nets = |paths| super::nets(paths).collect::<Vec<_>>();
+        assert_eq!((nets(PATHS[0]), nets(PATHS[2])), (vec![1; 4], vec![16; 4]));
+        assert_eq!(nets(28), [[1, 2, 4]; 4].concat());
+        assert_eq!(nets(9), [1, 2, 2, 2, 2]);
+        assert!((0..300).all(|paths| super::nets(paths).sum::<u32>() == paths));
+    }
+}

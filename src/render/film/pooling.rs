@@ -1,0 +1,76 @@
+//! Pooling of variances over neighbouring pixels.
+
+use crate::error::Result;
+use crate::exec;
+use crate::image::Image;
+use crate::job::Job;
+
+/// Binomial weights of the pixels at a distance of 0, 1, 2, 3 along an axis. [bench error_control]
+const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
+
+/// Weighted means of the finite variances over the 7 × 7 pixels around each pixel; infinite where the pixel's own
+/// variance is.
+pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
+    let (width, height, channels) = (variance.width, variance.height, variance.channels);
+    let mut along = Image::new(width, height, channels)?;
+    exec::for_rows(&mut along.data, width * channels, job, |y, row| {
+        for (x, out) in row.chunks_exact_mut(channels).enumerate() {
+            mean_around(x, width, out, |x| variance.pixel(x, y));
+        }
+    })?;
+    let mut pooled = Image::new(width, height, channels)?;
+    exec::for_rows(&mut pooled.data, width * channels, job, |y, row| {
+        for (x, out) in row.chunks_exact_mut(channels).enumerate() {
+            mean_around(y, height, out, |y| along.pixel(x, y));
+            for (out, own) in out.iter_mut().zip(variance.pixel(x, y)) {
+                *out = if own.is_finite() { *out } else { *own };
+            }
+        }
+    })?;
+    Ok(pooled)
+}
+
+/// Weighted mean of the finite values around a position on a line of `n`, per channel; infinite if there are none.
+fn mean_around<'a>(at: usize, n: usize, out: &mut [f32], value: impl Fn(usize) -> &'a [f32]) {
+    let radius = WEIGHTS.len() - 1;
+    for (channel, out) in out.iter_mut().enumerate() {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for i in at.saturating_sub(radius)..(at + radius + 1).min(n) {
+            let v = value(i)[channel];
+            if v.is_finite() {
+                sum += WEIGHTS[i.abs_diff(at)] * v;
+                weight += WEIGHTS[i.abs_diff(at)];
+            }
+        }
+        *out = if weight > 0.0 { sum / weight } else { f32::INFINITY };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+
+    #[test]
+    fn pooling_keeps_what_is_even_and_forgives_what_is_unknown() {
+        let monitor = Monitor::default();
+        let even = Image::from_fn(9, 5, |x, y| if (x, y) == (4, 2) { [f32::INFINITY, 2.0] } else { [3.0, 2.0] });
+        let pooled = pooled(&even.unwrap(), monitor.job()).unwrap();
+        for (i, p) in pooled.data.chunks(2).enumerate() {
+            assert!((p[1] - 2.0).abs() < 1e-6 && (i == 2 * 9 + 4 || (p[0] - 3.0).abs() < 1e-6), "{i}: {p:?}");
+        }
+        assert_eq!(pooled.pixel(4, 2)[0], f32::INFINITY);
+    }
+
+    #[test]
+    fn one_pixel_spreads_by_its_weights() {
+        let monitor = Monitor::default();
+        let dot = Image::from_fn(15, 15, |x, y| [f32::from(u8::from((x, y) == (7, 7)))]).unwrap();
+        let pooled = pooled(&dot, monitor.job()).unwrap();
+        let weight = |d: usize| WEIGHTS.get(d).copied().unwrap_or(0.0) / 64.0;
+        for (i, v) in pooled.data.iter().enumerate() {
+            let expected = weight((i % 15).abs_diff(7)) * weight((i / 15).abs_diff(7));
+            assert!((v - expected).abs() < 1e-7, "{i}");
+        }
+    }
+}

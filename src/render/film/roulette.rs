@@ -1,0 +1,110 @@
+//! Weights for Russian roulette: errors matter relative to the radiance of the pixel.
+//!
+//! The same light changes a pixel in the shade more than one under a lamp, and a black surface more than a white one;
+//! their paths are traced further. The weights come from earlier paths. Survival probabilities may depend on them
+//! without bias ([`super::super::sampler::Sampler::chance`]).
+
+use super::grid::AREA;
+use super::pixel::Pixel;
+use crate::error::Result;
+use crate::exec;
+use crate::image::try_collect;
+use crate::job::Job;
+use glam::{DVec3, Vec3};
+
+/// Number of paths that the prior, the mean of the tile, is worth. [judged, not recorded]
+const PRIOR_PATHS: f64 = 8.0;
+/// Largest ratio of the median radiance to a pixel's radiance, and reciprocal of the smallest. [judged, not recorded]
+const MAX_WEIGHT: f64 = 50.0;
+
+/// Median over the tiles of their mean radiance, per channel; `None` without any paths.
+pub fn median_radiance(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
+    let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
+    let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;
+    Ok(median(&try_collect(means.into_iter().flatten())?))
+}
+
+/// The median of each channel; `None` for an empty list.
+pub fn median(means: &[DVec3]) -> Option<DVec3> {
+    let median = |channel: usize| {
+        let mut values: Vec<f64> = means.iter().map(|m| m[channel]).collect();
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    (!means.is_empty()).then(|| DVec3::from_array([0, 1, 2].map(median)))
+}
+
+/// Mean of the pixels that have paths, and the number of their paths.
+pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f64)> {
+    let (mut sum, mut count, mut paths) = (DVec3::ZERO, 0.0, 0.0);
+    for pixel in pixels.into_iter().filter(|p| p.count() > 0) {
+        (sum, count, paths) = (sum + pixel.mean(), count + 1.0, paths + f64::from(pixel.count()));
+    }
+    (count > 0.0).then(|| (sum / count, paths))
+}
+
+/// Shrinkage factor in `[0, 1)` of a mean of `paths` paths, beside a prior worth [`PRIOR_PATHS`].
+pub fn shrinkage(paths: f64) -> f64 {
+    paths / (paths + PRIOR_PATHS)
+}
+
+/// The radiance of a tile relative to its image.
+pub struct RouletteWeights {
+    median_radiance: DVec3,
+    tile: DVec3,
+}
+
+impl RouletteWeights {
+    /// From the pixels of a tile, in an image of this [`median_radiance`].
+    pub fn of(tile: &[Pixel], median_radiance: DVec3) -> Self {
+        Self {
+            median_radiance,
+            tile: mean(tile).map_or(median_radiance, |(mean, paths)| median_radiance.lerp(mean, shrinkage(paths))),
+        }
+    }
+
+    /// Median radiance of the image relative to the radiance of a pixel, per channel; positive.
+    pub fn weight(&self, pixel: &Pixel) -> Vec3 {
+        let radiance = self.tile.lerp(pixel.mean(), shrinkage(f64::from(pixel.count())));
+        let weight = (self.median_radiance / radiance).clamp(DVec3::splat(1.0 / MAX_WEIGHT), DVec3::splat(MAX_WEIGHT));
+        // Where the median is 0, the channel is unknown: use 1.
+        DVec3::select(self.median_radiance.cmpgt(DVec3::ZERO), weight, DVec3::ONE).as_vec3()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+
+    fn pixel(radiance: DVec3, count: u32) -> Pixel {
+        let mut pixel = Pixel::default();
+        pixel.extend(count, |_, indices| radiance * indices.len() as f64);
+        pixel
+    }
+
+    #[test]
+    fn light_is_worth_more_in_the_shade_and_what_it_is_where_nothing_is_known() {
+        let job = Monitor::default();
+        let unseen = vec![Pixel::default(); 3 * AREA];
+        assert!(median_radiance(&unseen, job.job()).unwrap().is_none());
+        // A lamp in view does not change the median.
+        let mut pixels = unseen;
+        for (tile, radiance) in [2.0, 1000.0, 0.5].into_iter().enumerate() {
+            pixels[tile * AREA..(tile + 1) * AREA].fill(pixel(DVec3::new(radiance, radiance, 0.0), 64));
+        }
+        let median_radiance = median_radiance(&pixels, job.job()).unwrap().unwrap();
+        assert_eq!(median_radiance, DVec3::new(2.0, 2.0, 0.0));
+        let weight = |tile: usize, pixel: &Pixel| {
+            RouletteWeights::of(&pixels[tile * AREA..(tile + 1) * AREA], median_radiance).weight(pixel)
+        };
+        assert!((weight(0, &pixels[0]) - Vec3::ONE).abs().max_element() < 1e-5);
+        assert!((weight(2, &pixels[2 * AREA]) - Vec3::new(4.0, 4.0, 1.0)).abs().max_element() < 0.05);
+        // With few paths, the tile determines the weight of a pixel that is dark by chance.
+        let dark = weight(0, &pixel(DVec3::ZERO, 1)).x;
+        assert!(dark > 1.0 && dark < 1.2, "{dark}");
+        // Weights are bounded on both sides.
+        assert_eq!(weight(1, &pixels[AREA]).x, 1.0 / MAX_WEIGHT as f32);
+        assert_eq!(weight(2, &pixel(DVec3::ZERO, 1 << 20)).x, MAX_WEIGHT as f32);
+    }
+}

@@ -1,0 +1,123 @@
+//! Error statistics of tiles and of the image.
+
+use super::canvas::Canvas;
+use super::grid::AREA;
+use super::interval::NORMAL_95;
+use super::pixel::Pixel;
+use super::pooling::pooled;
+use super::roulette::{mean, shrinkage};
+use crate::error::Result;
+use crate::exec;
+use crate::image::colour::luminance;
+use crate::job::Job;
+use glam::DVec3;
+
+/// Smallest radiance, relative to the mean of the image, to which the error of a pixel is related in the error of the
+/// whole image. It may be lower than for errors of single pixels: a dark pixel does not hold up the others. [judged,
+/// not recorded]
+const MIN_RELATIVE_RADIANCE: f64 = 0.01;
+
+/// Sums over the pixels of a tile or of the image.
+#[derive(Clone, Copy, Default)]
+pub struct Statistics {
+    pub paths: u64,
+    pub pixels: u32,
+    /// Largest number of paths of a pixel.
+    pub max_paths: u32,
+    /// Sum of the means of the pixels, averaged over the channels.
+    mean: f64,
+    /// Sum of the variances of these means.
+    variance: f64,
+    /// Sum of the variances of single paths.
+    pub path_variance: f64,
+}
+
+impl Statistics {
+    fn add(&mut self, other: &Self) {
+        self.paths += other.paths;
+        self.pixels += other.pixels;
+        self.max_paths = self.max_paths.max(other.max_paths);
+        self.mean += other.mean;
+        self.variance += other.variance;
+        self.path_variance += other.path_variance;
+    }
+
+    /// Mean radiance of the pixels.
+    pub fn mean_radiance(&self) -> f64 {
+        self.mean / f64::from(self.pixels.max(1))
+    }
+
+    /// Root mean square of the standard errors, relative to the mean radiance.
+    pub fn error(&self) -> f64 {
+        let variance = self.variance / f64::from(self.pixels.max(1));
+        if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
+    }
+}
+
+impl Canvas<'_> {
+    /// The statistics of the whole image.
+    pub fn total(&self, job: Job) -> Result<Statistics> {
+        Ok(whole(&self.statistics(|_, _| 1.0, job)?))
+    }
+
+    /// The statistics of the whole image, with the error of each pixel relative to its own radiance.
+    pub fn relative_total(&self, job: Job) -> Result<Statistics> {
+        let mean = self.total(job.part(0.0, 0.0))?.mean_radiance();
+        Ok(whole(&self.relative_statistics(mean, job)?))
+    }
+
+    /// Statistics with relative errors. A pixel with a rare bright path has a large variance and a large mean; its
+    /// error is related to the mean without that path. With few paths, the mean of the tile counts instead.
+    pub fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
+        let weight = |pixel: &Pixel, tile: f64| {
+            let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
+            if mean > 0.0 { mean / shown.max(MIN_RELATIVE_RADIANCE * mean) } else { 1.0 }
+        };
+        self.statistics(weight, job)
+    }
+
+    /// `weight` is the factor on the error of a pixel, given the mean of its tile.
+    pub fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
+        exec::map(self.grid.tiles(), job, |tile| {
+            let mut sum = Statistics::default();
+            let shown = mean(self.tile(tile)).map_or(0.0, |(mean, _)| average(mean));
+            for pixel in self.tile(tile) {
+                let variance = average(pixel.variance()) * weight(pixel, shown).powi(2);
+                sum.paths += u64::from(pixel.count());
+                sum.pixels += 1;
+                sum.max_paths = sum.max_paths.max(pixel.count());
+                sum.mean += average(pixel.mean());
+                sum.variance += variance;
+                sum.path_variance += variance * f64::from(pixel.count());
+            }
+            sum
+        })
+    }
+
+    /// The mean square of the pixels' relative intervals, per tile.
+    pub fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
+        let variance = pooled(&self.variance(job)?, job)?;
+        exec::map(self.grid.tiles(), job, |tile| {
+            let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
+            let square = |(x, y): (usize, usize)| {
+                // Add the standard errors of the channels: they are correlated within a path.
+                let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
+                let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
+                if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }
+            };
+            pixels.map(square).sum::<f64>() / self.grid.area(tile) as f64
+        })
+    }
+}
+
+/// Mean of the channels.
+fn average(v: DVec3) -> f64 {
+    v.element_sum() / 3.0
+}
+
+/// Sums of the statistics of all tiles.
+pub fn whole(statistics: &[Statistics]) -> Statistics {
+    let mut whole = Statistics::default();
+    statistics.iter().for_each(|t| whole.add(t));
+    whole
+}

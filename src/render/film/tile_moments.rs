@@ -1,0 +1,50 @@
+//! A first look at all tiles of an image with few paths: mean and variance of the radiance of each tile.
+
+use super::grid::{Grid, TILE};
+use super::prepass::Prepass;
+use crate::error::Result;
+use crate::exec;
+use crate::job::Job;
+
+/// Largest number of paths of all tiles together, for tiles of more than the minimum. [judged, not recorded]
+const MAX_TOTAL_PATHS: usize = 1 << 17;
+/// Largest and smallest number of paths along each side of a tile: powers of two, as its side is.
+const MAX_ALONG: usize = TILE;
+const MIN_ALONG: usize = 2;
+
+/// Moments of a tile's radiance, averaged over the channels.
+#[derive(Clone, Copy)]
+pub struct TileMoments {
+    /// Mean radiance.
+    pub mean: f64,
+    /// Variance of the radiance of single paths.
+    pub variance: f64,
+}
+
+/// The moments of all tiles.
+pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileMoments>> {
+    let mut along = MAX_ALONG;
+    while along > MIN_ALONG && grid.tiles() * along * along > MAX_TOTAL_PATHS {
+        along /= 2;
+    }
+    exec::map(grid.tiles(), job, |tile| TileMoments::of(prepass, grid, tile, along))
+}
+
+impl TileMoments {
+    /// One path in each of `along` by `along` squares of the tile, at a different position in each row of squares.
+    fn of(prepass: &Prepass, grid: Grid, tile: usize, along: usize) -> Self {
+        let (left, top) = grid.corner(tile);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        let side = TILE / along;
+        for i in 0..along * along {
+            let (column, row) = (i % along, i / along);
+            let (x, y) = (column * side + (row + column) % side, row * side + column % side);
+            let at = [(left + x).min(grid.width - 1), (top + y).min(grid.height - 1)];
+            let radiance = prepass.sample_pixel(at, 1).mean().element_sum() / 3.0;
+            (sum, squares) = (sum + radiance, squares + radiance * radiance);
+        }
+        let count = (along * along) as f64;
+        let mean = sum / count;
+        Self { mean, variance: (squares / count - mean * mean).max(0.0) }
+    }
+}

@@ -1,0 +1,88 @@
+//! The parameters of a render.
+
+use super::layers::Outputs;
+use crate::error::{Error, Result, check_range};
+use crate::image::MAX_SIDE;
+use crate::scene::Camera;
+
+/// The parameters of a render.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Size of the image in pixels, each in `[1, 65536]`.
+    pub width: usize,
+    pub height: usize,
+    /// Paths per pixel, in `[1, 1 << 20]`: for each pixel without an error target, the mean over the image with one.
+    pub samples: u32,
+    /// Stop when [`super::Film::error`] falls to this value, with paths allocated to minimise it; 0 = never.
+    pub target_error: f32,
+    /// Stop when each tile of 8 × 8 pixels reaches this error: the root mean square over its pixels of the half-width
+    /// of the 95 % interval of the luminance, relative to that luminance. 0.1 means "within 10 % of the value, 19 times
+    /// out of 20". Pixels darker than a tenth of the image's mean luminance are measured against that tenth. A tile
+    /// gets at most 64 times `samples` paths per pixel, though it may miss the target. 0 = never. If several targets
+    /// are set, all of them are met.
+    pub pixel_error: f32,
+    /// Stop when [`super::Film::relative_error`] falls to this value, with paths allocated to minimise it; 0 = never.
+    pub relative_error: f32,
+    /// Stop after this many milliseconds; 0 = never.
+    pub time_budget_ms: u32,
+    /// End every path when its remaining bounces carry at most this share of all scattered light, in `[0, 1)`
+    /// ([`super::Requirements::bounces`]); the image is too dark by up to that share. 0 = never: only Russian roulette ends
+    /// paths.
+    pub bounce_error: f32,
+    /// Strength of the filter that makes [`super::Film::preview`] (`denoise`), in `[0, 10]`, usually 1; 0 = no preview, for
+    /// final images.
+    pub preview: f32,
+    pub seed: u64,
+    /// Images to render beside the main image.
+    pub outputs: Outputs,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            width: 1280,
+            height: 720,
+            samples: 64,
+            target_error: 0.0,
+            pixel_error: 0.0,
+            relative_error: 0.0,
+            time_budget_ms: 0,
+            bounce_error: 0.0,
+            preview: 0.0,
+            seed: 1,
+            outputs: Outputs::default(),
+        }
+    }
+}
+
+impl Params {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("width", self.width, 1, MAX_SIDE)?;
+        check_range("height", self.height, 1, MAX_SIDE)?;
+        check_range("samples", self.samples, 1, 1 << 20)?;
+        check_range("target_error", self.target_error, 0.0, f32::MAX)?;
+        check_range("pixel_error", self.pixel_error, 0.0, f32::MAX)?;
+        check_range("relative_error", self.relative_error, 0.0, f32::MAX)?;
+        check_range("bounce_error", self.bounce_error, 0.0, 1.0f32.next_down())?;
+        check_range("preview", self.preview, 0.0, 10.0)?;
+        Ok(())
+    }
+}
+
+/// Checks that a camera has a view.
+pub fn check_camera(camera: &Camera) -> Result<()> {
+    let vectors = [camera.position, camera.forward, camera.up];
+    let has_view = camera.forward.cross(camera.up).length_squared() > 0.0;
+    if vectors.iter().any(|v| !v.is_finite())
+        || !has_view
+        || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI)
+    {
+        return Err(Error::argument(format!(
+            "camera {:?} cannot see: its position must be finite, forward and up must not be parallel, and fov_y (now {}) \
+             must lie in (0, pi)",
+            camera.name, camera.fov_y
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,75 @@
+//! Texture look-ups at a point of a triangle.
+
+use super::bsdf::Substance;
+use super::compiled_material::{self, CompiledMaterial};
+use super::facet::Facet;
+use crate::scene::{Material, Mesh, Scene, TextureRef};
+use glam::{Vec2, Vec3, Vec4};
+
+/// A point of a triangle with its mesh and material, for texture look-ups.
+pub struct TextureContext<'w> {
+    scene: &'w Scene,
+    pub mesh: &'w Mesh,
+    pub material: &'w Material,
+    triangle: u32,
+    barycentric: Vec2,
+}
+
+impl<'w> TextureContext<'w> {
+    /// `triangle` is the index in the mesh.
+    pub fn new(scene: &'w Scene, facet: &Facet, triangle: u32, barycentric: Vec2) -> Self {
+        let (mesh, material) = (&scene.meshes[facet.mesh as usize], &scene.materials[facet.material()]);
+        Self { scene, mesh, material, triangle, barycentric }
+    }
+
+    /// Opacity (coverage) of the surface at this point.
+    pub fn opacity(&self) -> f32 {
+        let texture = self.material.base_color_texture.as_ref();
+        self.material.alpha * texture.map_or(1.0, |t| self.look_up(t).w)
+    }
+
+    /// The material at this point.
+    pub fn substance(&self, compiled: &CompiledMaterial) -> Substance {
+        if !compiled.is_textured {
+            return compiled.substance;
+        }
+        let material = self.material;
+        let mut base = material.base_color;
+        if let Some(texture) = &material.base_color_texture {
+            base *= self.look_up(texture).truncate();
+        }
+        let (mut metallic, mut roughness) = (material.metallic, material.roughness);
+        if let Some(texture) = &material.metallic_roughness_texture {
+            let texel = self.look_up(texture);
+            (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
+        }
+        compiled_material::substance(material, base, metallic, roughness)
+    }
+
+    pub fn look_up(&self, texture: &TextureRef) -> Vec4 {
+        let uvs = &self.mesh.uvs[texture.uv_set];
+        let mut uv = Vec2::ZERO;
+        if !uvs.is_empty() {
+            let [p, q, r] = self.mesh.triangles[self.triangle as usize].map(|i| uvs[i as usize]);
+            let v = self.barycentric;
+            uv = texture.transform.transform_point2(p * (1.0 - v.x - v.y) + q * v.x + r * v.y);
+        }
+        self.scene.textures[texture.texture].sample(uv)
+    }
+
+    fn corner_uvs(&self, texture: &TextureRef) -> Option<[Vec2; 3]> {
+        let uvs = &self.mesh.uvs[texture.uv_set];
+        let corners = || self.mesh.triangles[self.triangle as usize];
+        (!uvs.is_empty()).then(|| corners().map(|i| texture.transform.transform_point2(uvs[i as usize])))
+    }
+
+    /// Directions of increasing u and increasing v.
+    pub fn tangents(&self, facet: &Facet, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
+        let [a, b, c] = facet.corners();
+        let [p, q, r] = self.corner_uvs(texture)?;
+        let (e, f, d, g) = (b - a, c - a, q - p, r - p);
+        let determinant = d.perp_dot(g);
+        let (u, v) = ((e * g.y - f * d.y) / determinant, (f * d.x - e * g.x) / determinant);
+        (u.is_finite() && v.is_finite()).then_some((u, v))
+    }
+}

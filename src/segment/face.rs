@@ -1,0 +1,91 @@
+//! A surface that strokes lie on is one face of the room, and hangs together: a classifier of single pixels carries on to walls
+//! and floors of its colour, which no stroke has touched.
+
+use super::Input;
+use super::classify::Classified;
+use crate::error::Result;
+use crate::features::CHANNELS;
+use crate::image::{Image, try_push, try_vec};
+use glam::Vec3;
+
+/// Where the normals are in the features.
+const NORMAL: usize = 7;
+/// Cosine of the angle between normals of one face at most: half of a right angle. [convention]
+const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
+/// Share of the positive strokes' pixels that must lie on one face before the room is believed. [judged on 28 photos]
+const AGREEMENT: f64 = 0.9;
+
+/// Cosine between normals that are equal but for rounding: those of a room laid out as a box, and not of a depth map. [rounding]
+const EQUAL: f32 = 1.0 - 1e-4;
+
+/// Whether the positive strokes lie on one face of a room laid out as a box. Position then says no more than the face does, and a
+/// classifier that looks at it cuts off parts of the face that no stroke has touched.
+pub fn is_laid_out(input: &Input) -> bool {
+    stroked_normal(input, EQUAL).is_some()
+}
+
+/// Takes pixels out of the mask that lie on another face of the room than the positive strokes; where the strokes agree on no
+/// face, connected parts that no positive stroke touches.
+pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
+    let is_kept: Box<dyn Fn(usize) -> bool> = match stroked_normal(input, SAME_FACE) {
+        Some(normal) => Box::new(move |i| normal_at(input.features, i).dot(normal) >= SAME_FACE),
+        None => {
+            let touched = touched(input, &classified.mask)?;
+            Box::new(move |i| touched[i])
+        }
+    };
+    for (i, confidence) in classified.confidence.data.iter_mut().enumerate() {
+        if classified.mask.data[i] > 0.5 && !is_kept(i) {
+            (classified.mask.data[i], *confidence) = (0.0, 0.0);
+        }
+    }
+    Ok(())
+}
+
+fn normal_at(features: &Image, pixel: usize) -> Vec3 {
+    let n = &features.data[pixel * features.channels + NORMAL..][..3];
+    Vec3::new(n[0], n[1], n[2])
+}
+
+/// The normal that the positive strokes agree on, up to an angle with the given cosine.
+fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
+    if input.features.channels != CHANNELS {
+        return None;
+    }
+    let count = input.features.width * input.features.height;
+    let pixels =
+        || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels).filter(|p| (**p as usize) < count);
+    let normals = || pixels().map(|&p| normal_at(input.features, p as usize));
+    let middle = normals().fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
+    // Without the strokes' pixels on other faces, which draw the mean aside.
+    let mean = normals().filter(|n| n.dot(middle) >= SAME_FACE).fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
+    let (mut agree, mut total) = (0usize, 0usize);
+    for normal in normals() {
+        agree += usize::from(normal.dot(mean) >= cosine);
+        total += 1;
+    }
+    (agree as f64 >= AGREEMENT * total as f64).then_some(mean)
+}
+
+/// The pixels of the mask that a walk within it reaches from a positive stroke.
+fn touched(input: &Input, mask: &Image) -> Result<Vec<bool>> {
+    let (width, count) = (mask.width, mask.data.len());
+    let mut touched = try_vec(count, false)?;
+    let mut next = Vec::new();
+    for &p in input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels) {
+        let is_in = mask.data.get(p as usize).is_some_and(|m| *m > 0.5);
+        if is_in && !std::mem::replace(&mut touched[p as usize], true) {
+            try_push(&mut next, p as usize)?;
+        }
+    }
+    while let Some(i) = next.pop() {
+        let x = i % width;
+        let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
+        for n in beside.into_iter().flatten().filter(|&n| n < count) {
+            if mask.data[n] > 0.5 && !std::mem::replace(&mut touched[n], true) {
+                try_push(&mut next, n)?;
+            }
+        }
+    }
+    Ok(touched)
+}

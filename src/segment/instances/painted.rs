@@ -1,0 +1,114 @@
+//! The regions that strokes paint: for each stroke, the disjoint nodes of the tree that cover it with the sharpest contours.
+
+use super::regions::Regions;
+use super::tree::Tree;
+use crate::error::Result;
+use crate::image::try_vec;
+
+/// A region of more than this share of the image is a wall or a ceiling, not a lamp. [judged on 28 photos]
+const MAX_AREA: f64 = 0.3;
+/// Pixels that a region has at least: fewer are noise. [judged on 28 photos]
+pub const MIN_AREA: f64 = 6.0;
+/// Share of a stroke that a region covers at least: less is its edge. [judged on 28 photos]
+const MIN_COVER: f64 = 0.03;
+/// How many times longer than its stroke a lamp may well be. [judged on 28 photos]
+const USUAL_EXTENT: f64 = 4.0;
+/// Power of the share of its stroke in a region's gain: above 1, one region is worth more than its parts of equal contrast. [judged
+/// on 44 photos]
+const COVER_POWER: f64 = 1.1;
+/// Power of the purity in a region's gain: a plane's strokes inside a region rule it out all but for sure. [judged on 28 photos]
+const PURITY_POWER: i32 = 4;
+/// Contrast of a region, relative to the best one of the same stroke, below which it is a fragment. [judged on 28 photos]
+const MIN_CONTRAST: f64 = 0.4;
+
+/// Which pixels of each class the strokes cover; the later stroke counts.
+pub struct Paint<'a> {
+    pub width: usize,
+    /// Pixels of each positive stroke.
+    pub positive: &'a [Vec<u32>],
+    /// Number of negative pixels of each node.
+    pub negatives: &'a [f64],
+}
+
+/// The nodes that the positive strokes paint, without those inside others, in the order of their numbers.
+pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
+    let mut is_chosen = try_vec(tree.len(), false)?;
+    let mut covered = try_vec(tree.len(), 0f64)?;
+    for stroke in paint.positive.iter().filter(|s| !s.is_empty()) {
+        for node in of_stroke(tree, regions, paint, stroke, &mut covered) {
+            is_chosen[node as usize] = true;
+        }
+    }
+    Ok((1..tree.len() as u32).filter(|&n| is_chosen[n as usize] && is_outermost(tree, &is_chosen, n)).collect())
+}
+
+/// Whether no node around it is chosen.
+pub fn is_outermost(tree: &Tree, is_chosen: &[bool], node: u32) -> bool {
+    !tree.ancestors(node).skip(1).any(|n| is_chosen[n as usize])
+}
+
+/// The disjoint nodes whose gains have the largest sum: the contrast of each, times the share of the stroke that it covers. `covered` is
+/// zero before and after.
+fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], covered: &mut [f64]) -> Vec<u32> {
+    // The nodes around the stroke's pixels, parents first, with how many of these pixels they hold.
+    let mut nodes = Vec::new();
+    for &p in stroke {
+        for node in tree.ancestors(tree.node_of[p as usize]) {
+            if covered[node as usize] == 0.0 {
+                nodes.push(node);
+            }
+            covered[node as usize] += 1.0;
+        }
+    }
+    nodes.sort_unstable();
+    let length = extent(stroke, paint.width);
+    let image_area = tree.node_of.len() as f64;
+    let gain = |node: u32, covered: &[f64]| {
+        let n = node as usize;
+        let (cover, area) = (covered[n] / stroke.len() as f64, regions.area[n]);
+        if cover < MIN_COVER || !(MIN_AREA..=MAX_AREA * image_area).contains(&area) {
+            return 0.0;
+        }
+        let purity = covered[n] / (covered[n] + paint.negatives[n]);
+        let excess = regions.axes(n)[0] / (USUAL_EXTENT * length);
+        regions.contrast(n) * cover.powf(COVER_POWER) * purity.powi(PURITY_POWER) / (1.0 + excess * excess)
+    };
+
+    // From the leaves to the root: is a node worth more than the best nodes inside it?
+    let mut best = vec![0.0; nodes.len()];
+    let mut inside = vec![0.0; nodes.len()];
+    let mut is_better = vec![false; nodes.len()];
+    for k in (0..nodes.len()).rev() {
+        let own = gain(nodes[k], covered);
+        is_better[k] = own > 0.0 && own >= inside[k];
+        best[k] = own.max(inside[k]);
+        if let Ok(up) = nodes.binary_search(&tree.parent[nodes[k] as usize]) {
+            inside[up] += best[k];
+        }
+    }
+    nodes.iter().for_each(|&n| covered[n as usize] = 0.0);
+
+    // From the root to the leaves: the first such node on each way.
+    let mut chosen = Vec::new();
+    let mut is_within = vec![false; nodes.len()];
+    for (k, &node) in nodes.iter().enumerate() {
+        let up = nodes.binary_search(&tree.parent[node as usize]);
+        is_within[k] = up.is_ok_and(|up| is_within[up]);
+        if !is_within[k] && is_better[k] {
+            is_within[k] = true;
+            chosen.push(node);
+        }
+    }
+    let sharpest = chosen.iter().map(|&n| regions.contrast(n as usize)).fold(0.0, f64::max);
+    chosen.retain(|&n| regions.contrast(n as usize) >= MIN_CONTRAST * sharpest);
+    chosen
+}
+
+/// The diagonal of a stroke's bounding box, in pixels.
+fn extent(stroke: &[u32], width: usize) -> f64 {
+    let side = |f: fn(usize, usize) -> usize| {
+        let values = || stroke.iter().map(|&p| f(p as usize, width));
+        (values().max().unwrap_or(0) - values().min().unwrap_or(0) + 1) as f64
+    };
+    side(|p, width| p % width).hypot(side(|p, width| p / width))
+}

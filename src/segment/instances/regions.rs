@@ -1,0 +1,175 @@
+//! What the regions of the tree look like: size and shape by their moments, mean colour, and the contrast along their contour.
+
+use super::tree::Tree;
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, pyramid, try_vec};
+use crate::job::Job;
+
+/// Standard deviation of the blur before regions are formed, in pixels: noise of single pixels makes no region. [convention]
+const SMOOTHING: f32 = 0.6;
+/// Standard deviation of the blur before differences are taken for the contrast of contours, in pixels. [convention: Canny]
+const GRADIENT_SMOOTHING: f32 = 1.0;
+/// Levels per unit of L*, up to L* = 100: as many as an 8-bit photo has. [convention]
+const LEVELS_PER_L: f32 = 2.55;
+/// Levels per doubling of L* above 100, which only photos with a range beyond white have. [convention]
+const LEVELS_PER_DOUBLING: f32 = 32.0;
+/// The highest level. [convention]
+const MAX_LEVEL: f32 = 1023.0;
+
+/// The photo as the tree sees it.
+pub struct Brightness {
+    pub width: usize,
+    pub height: usize,
+    /// CIELAB, as in the features.
+    pub lab: Vec<[f32; 3]>,
+    /// L*, a little smoothed.
+    pub smooth: Image,
+    /// The level of each pixel: a monotone function of `smooth`.
+    pub levels: Vec<u16>,
+    /// Magnitude of the gradient of L*, in L* per pixel.
+    pub gradient: Vec<f32>,
+}
+
+/// The level of an L*.
+pub fn level(l: f32) -> f32 {
+    let above = if l > 100.0 { LEVELS_PER_DOUBLING * (l / 100.0).log2() } else { 0.0 };
+    (l.clamp(0.0, 100.0) * LEVELS_PER_L + above).min(MAX_LEVEL)
+}
+
+impl Brightness {
+    pub fn new(features: &Image, job: Job) -> Result<Self> {
+        let (width, height) = (features.width, features.height);
+        let mut lab = try_vec(width * height, [0.0f32; 3])?;
+        let mut l = Image::new(width, height, 1)?;
+        let pixels = features.data.chunks_exact(features.channels);
+        for ((pixel, lab), l) in pixels.zip(&mut lab).zip(&mut l.data) {
+            lab.copy_from_slice(&pixel[..3]);
+            *l = pixel[0];
+        }
+        let smooth = pyramid::blur(&l, SMOOTHING, job.part(0.0, 0.3))?;
+        let smoother = pyramid::blur(&l, GRADIENT_SMOOTHING, job.part(0.3, 0.6))?;
+        let mut levels = try_vec(width * height, 0u16)?;
+        exec::for_rows(&mut levels, width, job.part(0.6, 0.8), |y, row| {
+            row.iter_mut().zip(smooth.row(y)).for_each(|(out, &l)| *out = level(l).round() as u16);
+        })?;
+        let mut gradient = try_vec(width * height, 0f32)?;
+        exec::for_rows(&mut gradient, width, job.part(0.8, 1.0), |y, row| {
+            let (above, below) = (smoother.row(y.saturating_sub(1)), smoother.row((y + 1).min(height - 1)));
+            let here = smoother.row(y);
+            for (x, out) in row.iter_mut().enumerate() {
+                let dx = here[(x + 1).min(width - 1)] - here[x.saturating_sub(1)];
+                *out = 0.5 * dx.hypot(below[x] - above[x]);
+            }
+        })?;
+        Ok(Self { width, height, lab, smooth, levels, gradient })
+    }
+}
+
+/// Sums over the pixels of each node, and over its contour.
+pub struct Regions {
+    pub area: Vec<f64>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    xx: Vec<f64>,
+    yy: Vec<f64>,
+    xy: Vec<f64>,
+    lab: [Vec<f64>; 3],
+    contour_gradient: Vec<f64>,
+    contour_length: Vec<f64>,
+}
+
+impl Regions {
+    pub fn new(tree: &Tree, photo: &Brightness, job: Job) -> Result<Self> {
+        let blank = || try_vec(tree.len(), 0f64);
+        let mut sums = Self {
+            area: blank()?,
+            x: blank()?,
+            y: blank()?,
+            xx: blank()?,
+            yy: blank()?,
+            xy: blank()?,
+            lab: [blank()?, blank()?, blank()?],
+            contour_gradient: blank()?,
+            contour_length: blank()?,
+        };
+        for y in 0..photo.height {
+            if y % 64 == 0 {
+                job.check()?;
+            }
+            sums.add_row(tree, photo, y);
+        }
+        let Self { area, x, y, xx, yy, xy, lab: [l, a, b], contour_gradient, contour_length } = &mut sums;
+        let all = [area, x, y, xx, yy, xy, l, a, b, contour_gradient, contour_length];
+        all.into_iter().for_each(|values| tree.accumulate(values));
+        Ok(sums)
+    }
+
+    fn add_row(&mut self, tree: &Tree, photo: &Brightness, y: usize) {
+        for x in 0..photo.width {
+            let i = y * photo.width + x;
+            let node = tree.node_of[i] as usize;
+            // The root's shape is of no interest; its contour there ends.
+            if node != 0 {
+                let (u, v) = (x as f64, y as f64);
+                self.area[node] += 1.0;
+                self.x[node] += u;
+                self.y[node] += v;
+                self.xx[node] += u * u;
+                self.yy[node] += v * v;
+                self.xy[node] += u * v;
+                (0..3).for_each(|c| self.lab[c][node] += f64::from(photo.lab[i][c]));
+            }
+            if x + 1 < photo.width {
+                self.add_edge(tree, photo, i, i + 1);
+            }
+            if y + 1 < photo.height {
+                self.add_edge(tree, photo, i, i + photo.width);
+            }
+        }
+    }
+
+    /// Two neighbours at different levels lie on the contour of every node that holds the brighter, but not the darker.
+    fn add_edge(&mut self, tree: &Tree, photo: &Brightness, i: usize, j: usize) {
+        let (a, b) = (tree.node_of[i] as usize, tree.node_of[j] as usize);
+        if a == b || photo.levels[i] == photo.levels[j] {
+            return;
+        }
+        let (bright, dark) = if photo.levels[i] > photo.levels[j] { (a, b) } else { (b, a) };
+        let gradient = f64::from(photo.gradient[i].max(photo.gradient[j]));
+        self.contour_gradient[bright] += gradient;
+        self.contour_gradient[dark] -= gradient;
+        self.contour_length[bright] += 1.0;
+        self.contour_length[dark] -= 1.0;
+    }
+
+    /// Mean gradient across the contour, in L* per pixel: sharp edges are high, arbitrary level lines low.
+    pub fn contrast(&self, node: usize) -> f64 {
+        if self.contour_length[node] > 0.0 { self.contour_gradient[node] / self.contour_length[node] } else { 0.0 }
+    }
+
+    pub fn colour(&self, node: usize) -> [f64; 3] {
+        [0, 1, 2].map(|c| self.lab[c][node] / self.area[node])
+    }
+
+    pub fn centre(&self, node: usize) -> [f64; 2] {
+        [self.x[node] / self.area[node], self.y[node] / self.area[node]]
+    }
+
+    /// Lengths of the axes of the ellipse with the same second moments, in pixels, the long one first.
+    pub fn axes(&self, node: usize) -> [f64; 2] {
+        let area = self.area[node];
+        let [u, v] = self.centre(node);
+        // A pixel has an extent of its own: a twelfth of its side squared.
+        let (xx, yy) = (self.xx[node] / area - u * u + 1.0 / 12.0, self.yy[node] / area - v * v + 1.0 / 12.0);
+        let xy = self.xy[node] / area - u * v;
+        let (mean, spread) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
+        [mean + spread, (mean - spread).max(1.0 / 12.0)].map(|variance| 4.0 * variance.sqrt())
+    }
+
+    /// Area over that of the ellipse with the same second moments: 1 of an ellipse, 0.95 of a rectangle, less of a ring or of branches.
+    pub fn solidity(&self, node: usize) -> f64 {
+        let [long, short] = self.axes(node);
+        self.area[node] / (std::f64::consts::FRAC_PI_4 * long * short)
+    }
+}

@@ -1,0 +1,176 @@
+//! Regions without a stroke that look like the painted ones: as bright, of their colour, as sharp against the plane around
+//! them, of a like size and shape. Such regions are found; regions that miss little of it are reported as doubtful.
+
+use super::painted::MIN_AREA;
+use super::regions::{Brightness, Regions};
+use super::surroundings::{self, Surroundings};
+use super::tree::Tree;
+use crate::error::Result;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+
+/// How far below the dimmest painted lamp another one may be, in L*. [judged on 28 photos]
+const DIMMER: f64 = 4.0;
+/// How far off the nearest painted lamp's a* and b* may be. [judged on 28 photos]
+const CHROMA: f64 = 12.0;
+/// Contrast along the contour, relative to the median of the painted lamps: far lamps are small and blurred. [judged on 28 photos]
+const CONTOUR: f64 = 0.55;
+/// Contrast to the ring around, relative to the median of the painted lamps. [judged on 28 photos]
+const RING: f64 = 0.55;
+/// Solidity, relative to the least of the painted lamps. [judged on 28 photos]
+const SOLIDITY: f64 = 0.85;
+/// Area, relative to the smallest painted lamp: a lamp at three times the distance has a ninth of the area. [convention]
+const SMALLER: f64 = 1.0 / 9.0;
+/// Area, relative to the largest painted lamp. [judged on 28 photos]
+const LARGER: f64 = 1.6;
+/// Breadth, relative to the broadest painted lamp. [judged on 28 photos]
+const BROADER: f64 = 1.5;
+/// Share of the ring that must be plane. [judged on 28 photos]
+const ON_PLANE: f64 = 0.5;
+/// Power of the area in the order of candidates: of nested regions with contours almost as sharp, the largest. [judged on 44 photos]
+const AREA_POWER: f64 = 0.2;
+/// Share of the likeness asked for that makes a region doubtful rather than none. [judged on 28 photos]
+const NEARLY: f64 = 0.7;
+
+/// Variance of the blur of a photo and of the gradient's own smoothing, in square pixels. [judged on 44 photos]
+const BLUR: f64 = 2.0;
+
+/// Share of a lamp's contrast that is left where blur spreads a disc of its area: the value at the disc's centre under a Gaussian.
+fn sharpness(area: f64) -> f64 {
+    1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
+}
+
+/// Regions without strokes.
+#[derive(Default)]
+pub struct Similar {
+    pub found: Vec<u32>,
+    /// Bright regions on the plane that differ from the painted lamps in one respect.
+    pub doubtful: Vec<u32>,
+}
+
+/// The painted lamps as a measure for others.
+struct Model {
+    min_area: f64,
+    max_area: f64,
+    max_breadth: f64,
+    min_lightness: f64,
+    min_solidity: f64,
+    colours: Vec<[f64; 3]>,
+    /// Least contrast along the contour and to the ring, of a lamp too large for blur to matter.
+    contour: f64,
+    ring: f64,
+}
+
+pub struct Search<'a> {
+    pub tree: &'a Tree,
+    pub regions: &'a Regions,
+    pub photo: &'a Brightness,
+    pub plane: Option<&'a Image>,
+    /// Number of negative pixels of each node.
+    pub negatives: &'a [f64],
+}
+
+impl Search<'_> {
+    /// Finds regions like the `painted` ones, apart from these.
+    pub fn run(&self, painted: &[u32], job: Job) -> Result<Similar> {
+        let Self { tree, regions, photo, .. } = *self;
+        let mut taken = try_vec(tree.node_of.len(), false)?;
+        for &node in painted {
+            tree.pixels(node).iter().for_each(|&p| taken[p as usize] = true);
+        }
+        let Some(model) = self.model(painted)? else { return Ok(Similar::default()) };
+
+        // Nodes around, in, and beside the painted ones.
+        let mut is_closed = try_vec(tree.len(), false)?;
+        is_closed[0] = true;
+        painted.iter().flat_map(|&n| tree.ancestors(n)).for_each(|n| is_closed[n as usize] = true);
+        let mut is_painted = try_vec(tree.len(), false)?;
+        painted.iter().for_each(|&n| is_painted[n as usize] = true);
+        let mut candidates = Vec::new();
+        for node in 1..tree.len() {
+            is_painted[node] |= is_painted[tree.parent[node] as usize];
+            let likeness = if is_painted[node] || is_closed[node] { 0.0 } else { self.likeness(&model, node) };
+            if likeness >= NEARLY {
+                candidates.push((node as u32, likeness, regions.contrast(node) * regions.area[node].powf(AREA_POWER)));
+            }
+        }
+
+        // The sharpest contour first. Regions in or around a region that was taken belong to it.
+        candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        let mut similar = Similar::default();
+        let mut is_taken = try_vec(tree.len(), false)?;
+        for (k, &(node, likeness, _)) in candidates.iter().enumerate() {
+            if k % 256 == 0 {
+                job.check()?;
+            }
+            if is_closed[node as usize] || tree.ancestors(node).any(|n| is_taken[n as usize]) {
+                continue;
+            }
+            let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
+            let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
+            if ring.on_plane < ON_PLANE || likeness < NEARLY {
+                continue;
+            }
+            let list = if likeness >= 1.0 { &mut similar.found } else { &mut similar.doubtful };
+            list.push(node);
+            tree.ancestors(node).for_each(|n| is_closed[n as usize] = true);
+            is_taken[node as usize] = true;
+        }
+        Ok(similar)
+    }
+
+    fn model(&self, painted: &[u32]) -> Result<Option<Model>> {
+        let Self { tree, regions, photo, .. } = *self;
+        let nobody = try_vec(tree.node_of.len(), false)?;
+        let mut rings = Vec::new();
+        for &node in painted {
+            let ring = surroundings::around(node, tree, photo, self.plane, &nobody)?;
+            rings.extend(ring.map(|Surroundings { contrast, .. }| contrast / sharpness(regions.area[node as usize])));
+        }
+        if rings.is_empty() {
+            return Ok(None);
+        }
+        let of = |f: &dyn Fn(usize) -> f64| painted.iter().map(|&n| f(n as usize)).collect::<Vec<f64>>();
+        let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
+        let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
+        Ok(Some(Model {
+            min_area: (least(of(&|n| regions.area[n])) * SMALLER).max(MIN_AREA),
+            max_area: most(of(&|n| regions.area[n])) * LARGER,
+            max_breadth: most(of(&|n| regions.axes(n)[1])) * BROADER,
+            min_lightness: least(of(&|n| regions.colour(n)[0])) - DIMMER,
+            min_solidity: least(of(&|n| regions.solidity(n))) * SOLIDITY,
+            colours: painted.iter().map(|&n| regions.colour(n as usize)).collect(),
+            contour: median(of(&|n| regions.contrast(n) / sharpness(regions.area[n]))) * CONTOUR,
+            ring: (median(rings) * RING).max(f64::MIN_POSITIVE),
+        }))
+    }
+
+    /// 1 and more where a node is like the painted lamps in all respects but its surroundings; below it, how far it is from that in
+    /// one of brightness, colour and contrast; 0 where size, shape or strokes speak against it.
+    fn likeness(&self, model: &Model, node: usize) -> f64 {
+        let regions = self.regions;
+        let area = regions.area[node];
+        if !(model.min_area..=model.max_area).contains(&area) || self.negatives[node] > 0.0 {
+            return 0.0;
+        }
+        let sharpness = sharpness(area);
+        let contour = regions.contrast(node) / (model.contour * sharpness);
+        if contour < NEARLY || regions.axes(node)[1] > model.max_breadth || regions.solidity(node) < model.min_solidity
+        {
+            return 0.0;
+        }
+        let [l, a, b] = regions.colour(node);
+        let chroma = model.colours.iter().map(|c| (c[1] - a).hypot(c[2] - b)).fold(f64::INFINITY, f64::min);
+        // Blur takes light from small lamps.
+        let min_lightness = model.min_lightness - (1.0 - sharpness) * model.ring / RING;
+        let lightness = l / min_lightness.max(1.0);
+        // A lightness below that of all painted lamps counts tenfold: L* is a narrow scale at its top.
+        let lightness = if lightness < 1.0 { 1.0 - 10.0 * (1.0 - lightness) } else { lightness };
+        contour.min(lightness).min(CHROMA / chroma.max(1e-3)).max(0.0)
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}

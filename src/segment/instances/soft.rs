@@ -1,0 +1,82 @@
+//! The confidence of a region: one half on its contour, which so lies between pixels.
+
+use super::regions::{Brightness, Regions};
+use super::surroundings::Bounds;
+use super::tree::Tree;
+use crate::error::Result;
+use crate::image::{Image, try_collect, try_push, try_vec};
+
+/// Pixels around a region over which confidence falls to 0. [convention: the reach of bilinear sampling, twice]
+const REACH: u8 = 2;
+/// Confidence that pixels of a region have at least, and pixels around it at most: the mask is the region. [rounding]
+const INSIDE: f32 = 0.501;
+const OUTSIDE: f32 = 0.499;
+
+/// Holes of up to this share of a region belong to it: bars, screws and leading before a lamp, but not the inside of a ring. [judged
+/// on 44 photos]
+const HOLE: f64 = 0.05;
+
+/// Adds the confidence of a node: it rises across the contour as the brightness does, by about one over a pixel.
+pub fn add(node: u32, tree: &Tree, regions: &Regions, photo: &Brightness, confidence: &mut Image) -> Result<()> {
+    let filled = filled(tree.pixels(node), photo)?;
+    let pixels = filled.as_slice();
+    let bounds = Bounds::of(pixels, photo, REACH.into());
+    let distance = bounds.distance(pixels, photo.width)?;
+    // The lightness halfway between the region's dimmest level and the next one below.
+    let contour = contour_lightness(tree.pixels(node), photo);
+    let slope = 1.0 / (regions.contrast(node as usize) as f32).max(1.0);
+    for (k, &d) in distance.iter().enumerate().filter(|(_, d)| **d <= REACH) {
+        let i = bounds.pixel(k, photo.width);
+        let p = 0.5 + slope * (photo.smooth.data[i] - contour);
+        let p = if d == 0 { p.clamp(INSIDE, 1.0) } else { p.clamp(0.0, OUTSIDE) };
+        confidence.data[i] = confidence.data[i].max(p);
+    }
+    Ok(())
+}
+
+fn contour_lightness(pixels: &[u32], photo: &Brightness) -> f32 {
+    pixels.iter().map(|&p| photo.smooth.data[p as usize]).fold(f32::INFINITY, f32::min)
+}
+
+/// The pixels of a region and of its small holes.
+fn filled(pixels: &[u32], photo: &Brightness) -> Result<Vec<u32>> {
+    let bounds = Bounds::of(pixels, photo, 1);
+    let [across, down] = bounds.size();
+    let mut label = try_vec(across * down, OPEN)?;
+    pixels.iter().for_each(|&p| label[bounds.index(p, photo.width)] = REGION);
+    let mut all = try_collect(pixels.iter().copied())?;
+    let max_hole = (HOLE * pixels.len() as f64) as usize;
+    let mut hole = Vec::new();
+    for start in 0..label.len() {
+        if label[start] != OPEN {
+            continue;
+        }
+        // Walk over one part of the rest; it is a hole unless it reaches the border.
+        hole.clear();
+        try_push(&mut hole, start as u32)?;
+        label[start] = WALKED;
+        let (mut next, mut is_hole) = (0, true);
+        while let Some(&k) = hole.get(next) {
+            next += 1;
+            let (x, y) = (k as usize % across, k as usize / across);
+            is_hole &= x > 0 && y > 0 && x + 1 < across && y + 1 < down;
+            for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+                let (u, v) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+                if u < across && v < down && label[v * across + u] == OPEN {
+                    label[v * across + u] = WALKED;
+                    try_push(&mut hole, (v * across + u) as u32)?;
+                }
+            }
+        }
+        if is_hole && hole.len() <= max_hole {
+            for &k in &hole {
+                try_push(&mut all, bounds.pixel(k as usize, photo.width) as u32)?;
+            }
+        }
+    }
+    Ok(all)
+}
+
+const OPEN: u8 = 0;
+const REGION: u8 = 1;
+const WALKED: u8 = 2;

@@ -1,0 +1,153 @@
+//! Lamps among brighter, larger and other things, on a made photo whose lamps are known.
+
+use crate::error::ErrorKind;
+use crate::features::CHANNELS;
+use crate::image::{Image, colour};
+use crate::job::Monitor;
+use crate::rng::Rng;
+use crate::segment::{Input, Params, Segmentation, Stroke, Subject, run};
+use glam::{DVec2, Vec3};
+
+const WIDTH: usize = 320;
+const HEIGHT: usize = 200;
+
+/// Rectangles [x0, y0, x1, y1) of lamps on a ceiling that fills the rows above 120.
+const LAMPS: [[usize; 4]; 5] =
+    [[20, 20, 60, 32], [120, 20, 160, 32], [220, 20, 260, 32], [60, 70, 90, 79], [160, 70, 190, 79]];
+/// A window in the wall, as bright as the lamps.
+const WINDOW: [usize; 4] = [200, 140, 240, 180];
+
+fn is_in(r: [usize; 4], x: usize, y: usize) -> bool {
+    (r[0]..r[2]).contains(&x) && (r[1]..r[3]).contains(&y)
+}
+
+/// Features of a photo: a ceiling that is washed bright towards one side, dark walls below, a little noise.
+fn features() -> Image {
+    let mut image = Image::new(WIDTH, HEIGHT, CHANNELS).unwrap();
+    for (i, pixel) in image.data.chunks_exact_mut(CHANNELS).enumerate() {
+        let (x, y) = (i % WIDTH, i / WIDTH);
+        let noise = 0.02 * (Rng::new(5, &[i as u64]).next_f32() - 0.5);
+        let grey = match () {
+            () if LAMPS.iter().any(|r| is_in(*r, x, y)) || is_in(WINDOW, x, y) => 1.0,
+            () if y < 120 => 0.25 + 0.4 * x as f32 / WIDTH as f32,
+            () => 0.1,
+        };
+        let lab = colour::linear_to_lab(Vec3::splat((grey + noise).clamp(0.0, 1.0)));
+        pixel[..3].copy_from_slice(&lab.to_array());
+        pixel[7..].copy_from_slice(&if y < 120 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, -1.0] });
+    }
+    image
+}
+
+fn ceiling() -> Image {
+    Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 120)]).unwrap()
+}
+
+fn stroke(positive: bool, points: &[[f64; 2]]) -> Stroke {
+    let points: Vec<DVec2> = points.iter().map(|p| DVec2::from_array(*p)).collect();
+    Stroke::polyline(&points, 2.0, positive, WIDTH, HEIGHT).unwrap()
+}
+
+fn segment(strokes: &[Stroke], within: Option<&Image>) -> Segmentation {
+    let input = Input { features: &features(), strokes, within };
+    run(&input, &Params { subject: Subject::Lamps, ..Params::default() }, Monitor::default().job()).unwrap()
+}
+
+/// Which of the rectangles are in the mask, each by most of its pixels; and how many pixels of the mask lie elsewhere.
+fn found(mask: &Image) -> (Vec<bool>, usize) {
+    let share = |r: &[usize; 4]| {
+        let pixels = (r[1]..r[3]).flat_map(|y| (r[0]..r[2]).map(move |x| (x, y)));
+        let lit = pixels.clone().filter(|(x, y)| mask.pixel(*x, *y)[0] > 0.5).count();
+        lit as f64 / pixels.count() as f64
+    };
+    let near = |r: &[usize; 4], x: usize, y: usize| {
+        is_in([r[0].saturating_sub(1), r[1].saturating_sub(1), r[2] + 1, r[3] + 1], x, y)
+    };
+    let elsewhere =
+        (0..WIDTH * HEIGHT).filter(|i| mask.data[*i] > 0.5 && !LAMPS.iter().any(|r| near(r, i % WIDTH, i / WIDTH)));
+    (LAMPS.iter().map(|r| share(r) > 0.8).collect(), elsewhere.count())
+}
+
+#[test]
+fn one_stroke_finds_the_lamps_like_it_and_neither_bright_ceiling_nor_window() {
+    let ceiling = ceiling();
+    let segmented = segment(&[stroke(true, &[[30.0, 26.0], [50.0, 26.0]])], Some(&ceiling));
+    assert_eq!(found(&segmented.mask), (vec![true; 5], 0));
+    assert!(segmented.error > 0.0 && segmented.error < 0.05, "{}", segmented.error);
+}
+
+#[test]
+fn a_stroke_outside_the_plane_marks_its_thing_all_the_same() {
+    let ceiling = ceiling();
+    let segmented = segment(&[stroke(true, &[[210.0, 160.0], [230.0, 160.0]])], Some(&ceiling));
+    assert_eq!(segmented.mask.pixel(220, 160)[0], 1.0);
+}
+
+#[test]
+fn a_negative_stroke_takes_a_lamp_out() {
+    let ceiling = ceiling();
+    let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]]), stroke(false, &[[230.0, 26.0], [250.0, 26.0]])];
+    let (lamps, elsewhere) = found(&segment(&strokes, Some(&ceiling)).mask);
+    assert_eq!((lamps, elsewhere), (vec![true, true, false, true, true], 0));
+}
+
+#[test]
+fn confidence_is_one_half_on_the_contour() {
+    let ceiling = ceiling();
+    let segmented = segment(&[stroke(true, &[[30.0, 26.0], [50.0, 26.0]])], Some(&ceiling));
+    for (confidence, mask) in segmented.confidence.data.iter().zip(&segmented.mask.data) {
+        assert_eq!(*mask > 0.5, *confidence > 0.5);
+        assert!((0.0..=1.0).contains(confidence));
+    }
+    // Across the lamp's left side at x = 20: within half a pixel of it.
+    let row = |x: usize| segmented.confidence.pixel(x, 26)[0];
+    let x = (15..25).find(|&x| row(x) <= 0.5 && row(x + 1) > 0.5).unwrap();
+    let crossing = x as f32 + 0.5 + (0.5 - row(x)) / (row(x + 1) - row(x));
+    assert!((crossing - 20.0).abs() < 0.5, "{crossing}");
+}
+
+#[test]
+fn a_stroke_over_two_lamps_marks_both_and_not_what_lies_between() {
+    let segmented = segment(&[stroke(true, &[[40.0, 26.0], [140.0, 26.0]])], None);
+    let (lamps, _) = found(&segmented.mask);
+    assert!(lamps[0] && lamps[1]);
+    assert_eq!(segmented.mask.pixel(90, 26)[0], 0.0);
+}
+
+#[test]
+fn strokes_without_a_lamp_are_an_error_and_dark_ones_mark_nothing_large() {
+    let features = features();
+    let input = Input { features: &features, strokes: &[stroke(false, &[[30.0, 26.0]])], within: None };
+    let params = Params { subject: Subject::Lamps, ..Params::default() };
+    let error = run(&input, &params, Monitor::default().job()).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Degenerate);
+    assert!(error.message.contains("no positive stroke"), "{}", error.message);
+    // A stroke on the dark wall.
+    let mask = segment(&[stroke(true, &[[40.0, 170.0], [60.0, 170.0]])], None).mask;
+    assert!(mask.data.iter().sum::<f32>() < 0.1 * mask.data.len() as f32);
+}
+
+#[test]
+fn features_that_are_not_finite_are_refused() {
+    let mut features = features();
+    features.data[0] = f32::NAN;
+    let input = Input { features: &features, strokes: &[stroke(true, &[[30.0, 26.0]])], within: None };
+    let params = Params { subject: Subject::Lamps, ..Params::default() };
+    let error = run(&input, &params, Monitor::default().job()).unwrap_err();
+    assert!(error.message.contains("finite"), "{}", error.message);
+}
+
+#[test]
+fn whole_images_of_one_brightness_and_of_noise_end_well() {
+    for noise in [0.0, 60.0] {
+        let mut features = Image::new(64, 48, CHANNELS).unwrap();
+        for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+            pixel[0] = 40.0 + noise * Rng::new(3, &[i as u64]).next_f32();
+        }
+        let strokes = [Stroke::polyline(&[DVec2::splat(20.0)], 3.0, true, 64, 48).unwrap()];
+        let input = Input { features: &features, strokes: &strokes, within: None };
+        let params = Params { subject: Subject::Lamps, ..Params::default() };
+        let segmented = run(&input, &params, Monitor::default().job()).unwrap();
+        assert!(segmented.confidence.data.iter().all(|c| (0.0..=1.0).contains(c)));
+    }
+}

@@ -1,0 +1,178 @@
+//! Predictions of time and energy for settings, from pilot runs at reduced resolution.
+
+use super::level::Problem;
+use super::{Input, Params, multires};
+use crate::error::Result;
+use crate::image::Image;
+use crate::job::Job;
+use std::time::Duration;
+
+/// Maximum number of pixels of the smaller of exemplar and target in a pilot run. The smaller one counts, because a
+/// small exemplar has few patches per pixel, so energies at low resolutions would predict those at higher ones poorly.
+const MAX_PIXELS: usize = 128 << 10;
+/// Number of resolutions of the pilot runs.
+const RESOLUTIONS: usize = 3;
+
+/// Predicted time of settings, and the energy of their result.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Prediction {
+    pub seconds: f64,
+    /// Like the last of [`super::LevelReport::energy`] on the finest level.
+    pub energy: f64,
+}
+
+/// Maximum exponent by which the time per pixel grows with the number of pixels: larger fields converge more slowly
+/// [origin not recorded].
+const MAX_GROWTH: f64 = 0.12;
+
+/// Pilot runs of settings on one input.
+pub struct PilotRuns<'a> {
+    input: Input<'a>,
+    ladder: &'a [Params],
+    usual: usize,
+    clock: &'a (dyn Fn() -> Duration + Sync),
+    /// The problem, and its successive halves down to the lowest resolution used.
+    problems: Vec<Problem>,
+    preparing: f64,
+    /// At the highest pilot resolution: the reference settings, and others after [`Self::refine`].
+    near: Vec<Option<Prediction>>,
+    /// At the next lower resolution.
+    middle: Vec<Prediction>,
+    /// Predicted energy of the reference settings.
+    energy: f64,
+}
+
+impl<'a> PilotRuns<'a> {
+    /// Runs each of `ladder`, all with the same [`Params::preview`]; ignores `input.previous`. The settings at `usual`
+    /// are run at three resolutions, the highest with 32 to 128 thousand pixels, the others at the middle one.
+    ///
+    /// # Errors
+    /// Those of [`super::run`].
+    pub fn new(
+        input: &Input<'a>,
+        ladder: &'a [Params],
+        usual: usize,
+        clock: &'a (dyn Fn() -> Duration + Sync),
+        job: Job,
+    ) -> Result<Self> {
+        ladder.iter().try_for_each(Params::check)?;
+        let input = Input { previous: None, motion: None, ..*input };
+
+        // Form the problem and all its halves down to the lowest resolution used.
+        let start = clock();
+        let mut problems = vec![Problem::new(&input, &ladder[usual], job.part(0.0, 0.05))?];
+        let preparing = clock().saturating_sub(start).as_secs_f64();
+        while let Some(last) = problems.last()
+            && problems.iter().filter(|p| is_near(p)).count() < RESOLUTIONS
+            && last.shortest_side() >= 4 * last.patch
+        {
+            problems.push(last.halve(job.part(0.05, 0.05))?);
+        }
+
+        let (near, middle) = (vec![None; ladder.len()], Vec::new());
+        let mut pilot = Self { input, ladder, usual, clock, problems, preparing, near, middle, energy: 0.0 };
+        let [nearest, middle, far] = pilot.tried();
+        let far = pilot.run(far, usual, job.part(0.05, 0.1))?;
+        let near = pilot.run(nearest, usual, job.part(0.1, 0.5))?;
+        for i in 0..ladder.len() {
+            let share = |i: usize| 0.5 + 0.5 * i as f64 / ladder.len() as f64;
+            let predict = pilot.run(middle, i, job.part(share(i), share(i + 1)))?;
+            pilot.middle.push(predict);
+        }
+        pilot.energy = extrapolate([far.energy, pilot.middle[usual].energy, near.energy], nearest);
+        pilot.near[usual] = Some(near);
+        job.report(1.0);
+        Ok(pilot)
+    }
+
+    /// The indices of the resolutions used, the highest first.
+    fn tried(&self) -> [usize; RESOLUTIONS] {
+        let lowest = self.problems.len() - 1;
+        let nearest = self.problems.iter().position(is_near).unwrap_or(lowest);
+        [nearest, nearest + 1, nearest + 2].map(|i| i.min(lowest))
+    }
+
+    fn run(&self, at: usize, settings: usize, job: Job) -> Result<Prediction> {
+        let start = (self.clock)();
+        let report = multires::run(&self.problems[at], &self.input, &self.ladder[settings], &|_| (), job)?.report;
+        let energy = report.levels.last().and_then(|l| l.energy.last()).copied().unwrap_or(0.0);
+        Ok(Prediction { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
+    }
+
+    /// Runs settings at the highest pilot resolution too, unless done before.
+    ///
+    /// # Errors
+    /// Those of [`super::run`].
+    pub fn refine(&mut self, settings: usize, job: Job) -> Result<()> {
+        if self.near[settings].is_none() {
+            self.near[settings] = Some(self.run(self.tried()[0], settings, job)?);
+        }
+        Ok(())
+    }
+
+    /// Whether settings have been run at the highest pilot resolution.
+    pub fn is_refined(&self, settings: usize) -> bool {
+        self.near[settings].is_some()
+    }
+
+    /// Predicted time and energy of settings at the full resolution.
+    ///
+    /// Time grows linearly with the number of pixels, and with slowly converging settings by a slightly higher power,
+    /// which is estimated from the two resolutions. Energy falls with the size of pixels, because neighbouring pixels
+    /// of paint and guides differ less: from one resolution to the next by a factor whose logarithm itself decays, as
+    /// extrapolated from the pilot runs. The ratio of energies between settings hardly depends on the resolution.
+    pub fn predict(&self, settings: usize) -> Prediction {
+        let [all, tried, middle] =
+            [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
+        let ratio = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
+        // Settings run at the middle resolution only: assume the ratio to the reference settings found there.
+        let usual = self.near[self.usual].unwrap_or_default();
+        let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
+        let near = self.near[settings].unwrap_or(Prediction {
+            seconds: usual.seconds * ratio(here.seconds, its_usual.seconds),
+            energy: usual.energy * ratio(here.energy, its_usual.energy),
+        });
+        let more = ratio(tried, middle).ln();
+        let growth = if more > 0.0 { ratio(near.seconds, here.seconds).ln() / more - 1.0 } else { 0.0 };
+        let seconds = near.seconds * ratio(all, tried).powf(1.0 + growth.clamp(0.0, MAX_GROWTH));
+        Prediction { seconds: self.preparing + seconds, energy: self.energy * ratio(near.energy, usual.energy) }
+    }
+}
+
+fn pixels(image: &Image) -> usize {
+    image.width * image.height
+}
+
+fn is_near(problem: &Problem) -> bool {
+    pixels(&problem.style).min(pixels(&problem.guides.target)) <= MAX_PIXELS
+}
+
+/// Extrapolates the energy `steps` resolutions above the last of three: each step of its logarithm is a constant
+/// fraction of the previous step (Aitken 1926).
+fn extrapolate([far, middle, near]: [f64; 3], steps: usize) -> f64 {
+    let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { (to / from).ln() } else { 0.0 };
+    let [before, mut last] = [step(far, middle), step(middle, near)];
+    let falls = if before == 0.0 { 1.0 } else { (last / before).clamp(0.5, 1.0) };
+    let mut sum = 0.0;
+    for _ in 0..steps {
+        last *= falls;
+        sum += last;
+    }
+    near * sum.exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energies_go_on_as_they_have_begun() {
+        // Constant steps; decaying steps; no change.
+        assert!((extrapolate([64.0, 32.0, 16.0], 3) - 2.0).abs() < 1e-12);
+        let falling = 4.0 * (0.5 * (0.64f64).ln() + 0.25 * (0.64f64).ln()).exp();
+        assert!((extrapolate([4.0 / 0.64f64.powi(3), 4.0 / 0.64, 4.0], 2) - falling).abs() < 1e-12, "{falling}");
+        assert_eq!(extrapolate([3.0, 3.0, 3.0], 4), 3.0);
+        assert_eq!(extrapolate([0.0, 0.0, 0.0], 4), 0.0);
+        assert_eq!(extrapolate([9.0, 5.0, 7.0], 0), 7.0);
+    }
+}
