@@ -228,8 +228,12 @@ fn metered(exposure: &Exposure) -> f32 {
     if levels.len() * 5 < exposure.classes.len() {
         return 0.5 * median_luminance(&exposure.light);
     }
-    let half = levels.len() / 2;
-    *levels.select_nth_unstable_by(half, f32::total_cmp).1
+    // What is bright beside something large and dark should not be lost in white.
+    let mut at = |share: f32| {
+        let place = (levels.len() as f32 * share) as usize;
+        *levels.select_nth_unstable_by(place, f32::total_cmp).1
+    };
+    at(0.5).max(0.45 * at(0.8))
 }
 
 fn median_luminance(image: &Image) -> f32 {

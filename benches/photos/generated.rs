@@ -89,13 +89,17 @@ pub fn contact(words: &[String]) {
     let [width, height] = THUMBNAIL;
     let blank = || Image::from_fn(across * width, down * height, |_, _| [0.02; 3]).expect("a sheet");
     let (mut photos, mut truths) = (blank(), blank());
+    let mut seconds: [Vec<f64>; 4] = Default::default();
     for i in 0..across * down {
         let made = made(first + i as u64);
+        seconds.iter_mut().zip(made.seconds).for_each(|(all, own)| all.push(own));
         let at = [i % across * width, i / across * height];
         sheet::paste(&mut photos, &sheet::fitted(&sheet::strokes(&made.photo), width - 4, height - 4), at);
         let truth = picture_of(&made.classes, made.shot.width, made.shot.height);
         sheet::paste(&mut truths, &sheet::fitted(&truth, width - 4, height - 4), at);
     }
+    let [room, light, camera, strokes] = seconds.map(|all| all.iter().sum::<f64>() / all.len() as f64);
+    println!("CPU s a photo: room and view {room:.2}, light {light:.2}, camera {camera:.2}, strokes {strokes:.2}");
     sheet::save(&photos, "contact_photos");
     sheet::save(&truths, "contact_truths");
 }

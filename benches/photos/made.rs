@@ -9,6 +9,7 @@ use super::room::{Class, Room};
 use super::shapes::{Lamps, Shape};
 use super::truth::{Lamp, Photo, Truth};
 use super::viewpoint::{Shot, Surfaces};
+use crate::harness::{Clock, time};
 use glam::{DMat3, DVec2, Vec3};
 use luxfer::geometry::Homography;
 use luxfer::image::Image;
@@ -41,33 +42,44 @@ pub struct Made {
     pub classes: Vec<u8>,
     pub lamps: Vec<u16>,
     /// The ten strokes that masks are judged by.
+    /// Processor seconds for the room and its view, the light, the camera (both 0 of a photo that was kept), and the strokes.
+    pub seconds: [f64; 4],
     pub ten: String,
     pub strokes: String,
 }
 
 /// The photo of a seed.
 pub fn made(seed: u64) -> Made {
-    let (room, surfaces, shot, own) = room_of(seed);
+    let mut seconds = [0.0; 4];
+    let (room_seconds, (room, surfaces, shot, own)) = time(Clock::Process, || room_of(seed));
+    seconds[0] = room_seconds;
     let look = Look::new(&mut Dice::new(own, 8));
     let (bytes, seen) = kept(seed).unwrap_or_else(|| {
-        let straight = Exposure::of(&room, &surfaces, &shot, seed);
-        let bent = look.bend(&straight);
-        let bytes = look.photograph(&bent, seed);
+        let (light_seconds, straight) = time(Clock::Process, || Exposure::of(&room, &surfaces, &shot, seed));
+        let (lens_seconds, (bent, bytes)) = time(Clock::Process, || {
+            let bent = look.bend(&straight);
+            let bytes = look.photograph(&bent, seed);
+            (bent, bytes)
+        });
+        (seconds[1], seconds[2]) = (light_seconds, lens_seconds);
         keep(seed, &bytes, &bent, [shot.width, shot.height]);
         (bytes, (bent.classes, bent.lamps))
     });
     let (classes, lamps) = seen;
     let image = io::decode(&bytes, Encoding::Srgb).and_then(|i| i.to_rgb()).expect("a photo");
     let scenery = Scenery { width: shot.width, height: shot.height, classes: &classes, lamps: &lamps };
-    let mut dice = Dice::new(own, 9);
-    let counts = hurried::counts(&mut dice);
-    let text = hurried::draw(&scenery, counts, &mut dice);
-    let ten = hurried::draw(&scenery, hurried::TEN, &mut Dice::new(own, 10));
+    let (stroke_seconds, (text, ten)) = time(Clock::Process, || {
+        let mut dice = Dice::new(own, 9);
+        let counts = hurried::counts(&mut dice);
+        let text = hurried::draw(&scenery, counts, &mut dice);
+        (text, hurried::draw(&scenery, hurried::TEN, &mut Dice::new(own, 10)))
+    });
+    seconds[3] = stroke_seconds;
     let truth = truth(&room, &shot, &look, &scenery);
     let strokes = strokes::parse(&text, shot.width, shot.height).expect("strokes");
     let name = format!("{seed}_{}", room.ceiling.pattern);
     let photo = Photo { name, image: Arc::new(image), strokes, truth };
-    Made { photo, file: bytes, room, shot, classes, lamps, ten, strokes: text }
+    Made { photo, file: bytes, room, shot, classes, lamps, ten, strokes: text, seconds }
 }
 
 /// The first room of a seed's own that has a view of its lamps.
