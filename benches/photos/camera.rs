@@ -1,0 +1,259 @@
+//! A camera's lens, sensor and processing: from the light that reaches the lens to the JPEG file.
+
+use super::dice::Dice;
+use super::exposure::Exposure;
+use super::room::Class;
+use glam::{DVec2, Vec3};
+use luxfer::image::colour::{linear_to_srgb, luminance};
+use luxfer::image::{Image, pyramid};
+use luxfer::job::Monitor;
+use luxfer::rng::Rng;
+
+/// How one camera sees; all lengths as shares of the picture's height.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// Standard deviation of the lens blur in pixels.
+    blur: f32,
+    /// Share of the light in a narrow and in a wide glow, and their standard deviations.
+    glow: [(f32, f32); 2],
+    /// Rays of the star about a bright lamp, 0 for none; its share, its length and its turn.
+    star: (usize, f32, f32, f32),
+    /// Radial distortion at the corner of the picture: negative for a barrel.
+    distortion: f32,
+    /// Brightness of the corner.
+    vignette: f32,
+    /// Linear value that the median of the picture gets, unless lamps decide.
+    key: f32,
+    /// Whether the exposure is for the lamps.
+    for_lamps: bool,
+    /// How far the white balance goes.
+    balance: f32,
+    /// Electrons that white holds, and those of the read-out noise.
+    well: f32,
+    read_out: f32,
+    /// Whether whites roll off.
+    shoulder: bool,
+    contrast: f32,
+    saturation: f32,
+    sharpening: f32,
+    quality: u8,
+}
+
+impl Look {
+    pub fn new(dice: &mut Dice) -> Self {
+        Self {
+            blur: dice.between(0.4, 1.0),
+            glow: [(dice.log_between(0.01, 0.06), 0.007), (dice.log_between(0.004, 0.035), 0.06)],
+            star: (
+                if dice.chance(0.15) { dice.pick(&[4, 6, 8]) } else { 0 },
+                dice.between(0.005, 0.02),
+                dice.between(0.04, 0.12),
+                dice.between(0.0, 1.5),
+            ),
+            distortion: (0.012 * dice.normal() - 0.01).clamp(-0.05, 0.02),
+            vignette: dice.between(0.65, 1.0),
+            key: 0.27 * (0.35 * dice.normal()).exp2(),
+            for_lamps: dice.chance(0.1),
+            balance: dice.between(0.3, 1.0),
+            well: dice.log_between(700.0, 12_000.0),
+            read_out: dice.log_between(2.0, 12.0),
+            shoulder: dice.chance(0.6),
+            contrast: dice.between(0.0, 0.9),
+            saturation: dice.between(0.9, 1.25),
+            sharpening: dice.between(0.0, 0.8),
+            quality: dice.whole(72, 96) as u8,
+        }
+    }
+
+    /// How much the lens magnifies the picture's centre, so that a barrel leaves no corner empty.
+    pub fn magnification(&self) -> f64 {
+        1.0 / f64::from(self.distortion.max(0.0) + 1.0)
+    }
+
+    /// Where in the straight picture a pixel of the photo comes from.
+    fn straight(&self, at: DVec2, size: DVec2) -> DVec2 {
+        let from_centre = (at - size / 2.0) / (size.length() / 2.0);
+        let k = f64::from(self.distortion);
+        size / 2.0
+            + from_centre * (1.0 + k * from_centre.length_squared()) * self.magnification() * (size.length() / 2.0)
+    }
+
+    /// Moves what the lens bends: the light smoothly, the names of things whole.
+    pub fn bend(&self, exposure: &Exposure) -> Exposure {
+        let (width, height) = (exposure.light.width, exposure.light.height);
+        let size = DVec2::new(width as f64, height as f64);
+        let from = |x: usize, y: usize| self.straight(DVec2::new(x as f64 + 0.5, y as f64 + 0.5), size);
+        let light = &exposure.light;
+        let moved = |x: usize, y: usize| -> [f32; 3] {
+            let p = from(x, y);
+            std::array::from_fn(|c| light.sample(p.x, p.y, c))
+        };
+        let nearest = |i: usize| {
+            let p = from(i % width, i / width);
+            (p.y as usize).min(height - 1) * width + (p.x as usize).min(width - 1)
+        };
+        Exposure {
+            light: Image::from_fn(width, height, moved).expect("a picture"),
+            classes: (0..width * height).map(|i| exposure.classes[nearest(i)]).collect(),
+            lamps: (0..width * height).map(|i| exposure.lamps[nearest(i)]).collect(),
+        }
+    }
+
+    /// The bytes of the JPEG file.
+    pub fn photograph(&self, exposure: &Exposure, seed: u64) -> Vec<u8> {
+        let optical = self.starred(&self.glowing(&exposure.light));
+        let exposed = self.sensor(&optical, exposure, seed);
+        let developed = self.develop(&exposed);
+        encode(&developed, self.quality)
+    }
+
+    /// Lens blur and glow.
+    fn glowing(&self, light: &Image) -> Image {
+        let mut sum = blurred(light, self.blur);
+        let spread: f32 = self.glow.iter().map(|(share, _)| share).sum();
+        sum.data.iter_mut().for_each(|v| *v *= 1.0 - spread);
+        for (share, size) in self.glow {
+            let glow = coarsely_blurred(light, size * light.height as f32);
+            sum.data.iter_mut().zip(&glow.data).for_each(|(a, b)| *a += share * b);
+        }
+        sum
+    }
+
+    /// Rays about what is far brighter than the rest.
+    fn starred(&self, light: &Image) -> Image {
+        let (rays, share, length, turn) = self.star;
+        let mut out = light.clone();
+        if rays == 0 {
+            return out;
+        }
+        let bright = 20.0 * median_luminance(light);
+        let steps = (length * light.height as f32) as i32;
+        let weights: f32 = (1..=steps).map(|t| (-3.0 * t as f32 / steps as f32).exp()).sum::<f32>() * rays as f32;
+        for y in 0..light.height {
+            for x in 0..light.width {
+                let colour = light.rgb(x, y);
+                if luminance(colour) < bright {
+                    continue;
+                }
+                for ray in 0..rays {
+                    let way = glam::Vec2::from_angle(turn + std::f32::consts::TAU * ray as f32 / rays as f32);
+                    for t in 1..=steps {
+                        let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + way * t as f32;
+                        if at.min_element() >= 0.0 && (at.x as usize) < light.width && (at.y as usize) < light.height {
+                            let weight = (-3.0 * t as f32 / steps as f32).exp() / weights * share;
+                            let pixel = out.pixel_mut(at.x as usize, at.y as usize);
+                            (Vec3::from_slice(pixel) + colour * weight).write_to_slice(pixel);
+                        }
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Exposure, white balance, vignetting, noise and clipping: linear values from 0 to 1.
+    fn sensor(&self, light: &Image, exposure: &Exposure, seed: u64) -> Image {
+        let scene = &exposure.light;
+        let median = metered(exposure).max(1e-6);
+        let lamp = brightest(scene).max(1e-6);
+        let exposure =
+            if self.for_lamps { (1.3 / lamp).max(0.02 / median).min(self.key / median) } else { self.key / median };
+        let mean = scene.data.chunks_exact(3).map(|p| Vec3::from_slice(p).min(Vec3::splat(8.0 * median))).sum::<Vec3>();
+        let mean = (mean / luminance(mean).max(1e-6)).max(Vec3::splat(0.05));
+        let balance = mean.powf(-self.balance);
+        let balance = balance / luminance(mean * balance);
+        let centre = DVec2::new(light.width as f64, light.height as f64) / 2.0;
+        let falloff = |x: usize, y: usize| {
+            let radius = (DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - centre).length() / centre.length();
+            1.0 - (1.0 - self.vignette) * (radius * radius) as f32
+        };
+        Image::from_fn(light.width, light.height, |x, y| {
+            let mut rng = Rng::new(seed, &[77, x as u64, y as u64]);
+            let colour = light.rgb(x, y) * balance * (exposure * falloff(x, y));
+            colour.to_array().map(|value| {
+                let electrons = value.max(0.0) * self.well;
+                let noise = (electrons + self.read_out * self.read_out).sqrt() * rng.normal() as f32;
+                ((electrons + noise) / self.well).clamp(0.0, 1.2)
+            })
+        })
+        .expect("a picture")
+    }
+
+    /// Noise reduction and sharpening, saturation, and the tone curve: display values from 0 to 1.
+    fn develop(&self, exposed: &Image) -> Image {
+        let soft = blurred(exposed, 0.6);
+        let wide = blurred(exposed, 1.2);
+        Image::from_fn(exposed.width, exposed.height, |x, y| {
+            let colour = soft.rgb(x, y) + (soft.rgb(x, y) - wide.rgb(x, y)) * self.sharpening;
+            let grey = luminance(colour);
+            let colour = Vec3::splat(grey) + (colour - grey) * self.saturation;
+            colour.to_array().map(|v| self.tone(v))
+        })
+        .expect("a picture")
+    }
+
+    fn tone(&self, linear: f32) -> f32 {
+        let v = linear.max(0.0);
+        const KNEE: f32 = 0.65;
+        let v = if self.shoulder && v > KNEE {
+            KNEE + (1.0 - KNEE) * (1.0 - (-(v - KNEE) / (1.0 - KNEE) * 1.5).exp())
+        } else {
+            v
+        };
+        let v = linear_to_srgb(v.min(1.0));
+        (v + self.contrast * v * (1.0 - v) * (v - 0.42)).clamp(0.0, 1.0)
+    }
+}
+
+fn blurred(image: &Image, sigma: f32) -> Image {
+    pyramid::blur(image, sigma, Monitor::default().job()).expect("a blur")
+}
+
+/// A wide blur, at a fraction of the size.
+fn coarsely_blurred(image: &Image, sigma: f32) -> Image {
+    let reduce = ((sigma / 2.0) as usize).max(1);
+    let job = Monitor::default();
+    let resize = |image: &Image, w: usize, h: usize| pyramid::resize(image, w, h, job.job()).expect("a size");
+    let small = resize(image, image.width.div_ceil(reduce), image.height.div_ceil(reduce));
+    resize(&blurred(&small, sigma / reduce as f32), image.width, image.height)
+}
+
+/// The luminance that the exposure is measured by: the median of what is neither lamp nor window, unless these fill most of the
+/// picture.
+fn metered(exposure: &Exposure) -> f32 {
+    let shines = |class: u8| class == Class::Lamp as u8 || class == Class::Window as u8;
+    let pixels = exposure.light.data.chunks_exact(3).zip(&exposure.classes);
+    let dull = pixels.filter(|(_, class)| !shines(**class)).map(|(pixel, _)| luminance(Vec3::from_slice(pixel)));
+    let mut levels: Vec<f32> = dull.collect();
+    if levels.len() * 5 < exposure.classes.len() {
+        return 0.5 * median_luminance(&exposure.light);
+    }
+    // What is bright beside something large and dark should not be lost in white.
+    let mut at = |share: f32| {
+        let place = (levels.len() as f32 * share) as usize;
+        *levels.select_nth_unstable_by(place, f32::total_cmp).1
+    };
+    at(0.5).max(0.45 * at(0.8))
+}
+
+fn median_luminance(image: &Image) -> f32 {
+    let mut levels: Vec<f32> = image.data.chunks_exact(3).map(|p| luminance(Vec3::from_slice(p))).collect();
+    let half = levels.len() / 2;
+    *levels.select_nth_unstable_by(half, f32::total_cmp).1
+}
+
+/// The luminance that a two-hundredth of the picture exceeds.
+fn brightest(image: &Image) -> f32 {
+    let mut levels: Vec<f32> = image.data.chunks_exact(3).map(|p| luminance(Vec3::from_slice(p))).collect();
+    let at = levels.len() - 1 - levels.len() / 200;
+    *levels.select_nth_unstable_by(at, f32::total_cmp).1
+}
+
+fn encode(display: &Image, quality: u8) -> Vec<u8> {
+    let bytes: Vec<u8> = display.data.iter().map(|v| (v * 255.0).round() as u8).collect();
+    let mut out = Vec::new();
+    let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut out, quality);
+    let size = [display.width as u32, display.height as u32];
+    encoder.encode(&bytes, size[0], size[1], image::ExtendedColorType::Rgb8).expect("a JPEG file");
+    out
+}

@@ -1,0 +1,240 @@
+//! Verdicts on a run, computed from its masks and its texture; the criteria stand in the bench's head comment.
+
+use super::masks::Mask;
+use super::outcome::Outcome;
+use super::shapes::{Lamps, Shape, median};
+use super::truth::{Lamp, Photo, Truth};
+use glam::DVec2;
+use luxfer::geometry::Homography;
+use luxfer::rectify::Unwarped;
+
+/// How far, in photo pixels, lit area may lie from a lamp and still count as the lamp's. [convention]
+const NEAR: u32 = 6;
+/// Points along each side of the grid on which an unwarping is held against the true one.
+const GRID: usize = 12;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    Right,
+    Usable,
+    Wrong,
+    /// Nothing is known to judge by.
+    Unjudged,
+}
+
+impl Verdict {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Usable => "usable",
+            Self::Wrong => "wrong",
+            Self::Unjudged => "-",
+        }
+    }
+}
+
+/// What a verdict asks for: least shares, and largest factors between the texture's lamps and the true ones.
+struct Limits {
+    precision: f64,
+    found: f64,
+    area: f64,
+    aspect: f64,
+    spacing: f64,
+    lit: f64,
+    /// Largest share of the lamps that may be of another kind than in truth.
+    kinds: f64,
+}
+
+/// A texture that anyone recognises as the photo's. [convention]
+const RIGHT: Limits =
+    Limits { precision: 0.8, found: 0.9, area: 1.25, aspect: 1.25, spacing: 1.1, lit: 1.35, kinds: 0.25 };
+/// A texture that needs a correction or two. [convention]
+const USABLE: Limits =
+    Limits { precision: 0.5, found: 0.7, area: 2.0, aspect: 1.6, spacing: 1.3, lit: 2.0, kinds: 0.5 };
+
+/// Logarithms of the ratios of the texture's lamps to the true ones; absent where one side does not tell.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Agreement {
+    /// Median area; of lines, median width.
+    pub area: Option<f64>,
+    /// Median aspect ratio; of lines, not compared.
+    pub aspect: Option<f64>,
+    /// Median distance to the nearest lamp; of lines, across.
+    pub spacing: Option<f64>,
+    /// Lit share of the plane.
+    pub lit: Option<f64>,
+    /// Larger of the two for the steps of the lattice, each against its own.
+    pub lattice: Option<f64>,
+    /// Share of the lamps that are of another kind than in truth, where that has several.
+    pub kinds: Option<f64>,
+}
+
+impl Agreement {
+    pub fn between(texture: &Lamps, truth: &Lamps) -> Self {
+        let ratio = |a: Option<f64>, b: Option<f64>| Some((a? / b?).ln());
+        // A texture that lacks what the truth has is as far off as can be.
+        let demanded = |a: Option<f64>, b: Option<f64>| b.map(|b| a.map_or(f64::INFINITY, |a| (a / b).ln()));
+        let lines = truth.are_lines();
+        let spacing = |lamps: &Lamps| if lines { lamps.spacing_across() } else { lamps.spacing() };
+        let lit = texture.lit.zip(truth.lit).map(|([lit, _], [low, high])| (lit / lit.clamp(low, high)).ln());
+        let steps = texture.steps().zip(truth.steps());
+        let kinds = truth.by_kind();
+        if !kinds.is_empty() {
+            return Self { spacing: demanded(spacing(texture), spacing(truth)), lit, ..Self::by_kind(texture, &kinds) };
+        }
+        Self {
+            kinds: None,
+            area: if lines { demanded(texture.width(), truth.width()) } else { demanded(texture.area(), truth.area()) },
+            aspect: if lines { None } else { ratio(texture.aspect(), truth.aspect()) },
+            spacing: if truth.whole.len() < 3 {
+                ratio(spacing(texture), spacing(truth))
+            } else {
+                demanded(spacing(texture), spacing(truth))
+            },
+            lit,
+            lattice: steps.map(|(a, b)| (a[0] / b[0]).ln().abs().max((a[1] / b[1]).ln().abs())),
+        }
+    }
+
+    /// Each lamp of the texture is held against the true kind that its area is nearest to.
+    fn by_kind(texture: &Lamps, kinds: &[[f64; 3]]) -> Self {
+        let nearest = |shape: &Shape| {
+            let off = |kind: &[f64; 3]| (shape.area / kind[0]).ln().abs();
+            (0..kinds.len()).min_by(|a, b| off(&kinds[*a]).total_cmp(&off(&kinds[*b]))).unwrap_or(0)
+        };
+        let assigned: Vec<(&Shape, usize)> = texture.whole.iter().map(|shape| (shape, nearest(shape))).collect();
+        if assigned.is_empty() {
+            return Self { area: Some(f64::INFINITY), ..Self::default() };
+        }
+        let share = |kind: usize| assigned.iter().filter(|(_, k)| *k == kind).count() as f64 / assigned.len() as f64;
+        let off = kinds.iter().enumerate().map(|(kind, [.., truth])| (share(kind) - truth).abs()).sum::<f64>() / 2.0;
+        Self {
+            area: median(assigned.iter().map(|(shape, kind)| (shape.area / kinds[*kind][0]).ln())),
+            aspect: median(assigned.iter().map(|(shape, kind)| (shape.aspect() / kinds[*kind][1]).ln())),
+            kinds: Some(off),
+            ..Self::default()
+        }
+    }
+
+    fn is_within(&self, limits: &Limits) -> bool {
+        let within = |value: Option<f64>, factor: f64| value.is_none_or(|v| v.abs() <= factor.ln());
+        within(self.area, limits.area)
+            && within(self.aspect, limits.aspect)
+            && within(self.spacing, limits.spacing)
+            && within(self.lit, limits.lit)
+            && self.kinds.is_none_or(|off| off <= limits.kinds)
+    }
+}
+
+/// All that is computed of one run.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// Share of the mask of lights that lies on a lamp or near one; absent without truth.
+    pub precision: Option<f64>,
+    /// Share of the lamps whose centre lies in the mask of lights.
+    pub found: Option<f64>,
+    pub lights_iou: Option<f64>,
+    pub plane_iou: Option<f64>,
+    /// Deviation of the unwarped plane from a similar figure of the true one, relative to its extent.
+    pub unwarp: Option<f64>,
+    pub agreement: Option<Agreement>,
+    pub verdict: Verdict,
+}
+
+impl Judgement {
+    pub fn of(photo: &Photo, outcome: &Outcome) -> Self {
+        let truth = &photo.truth;
+        let results = outcome.results();
+        let lights = results.lights.as_ref().map(|lights| Mask::of(&lights.mask));
+        let plane = results.plane.as_ref().map(|plane| Mask::of(&plane.mask));
+        let has_lamps = !truth.lamps.is_empty();
+        let agreement = truth.layout.as_ref().map(|truth| match outcome.lamps() {
+            Some(texture) => Agreement::between(&texture, truth),
+            None => Agreement { area: Some(f64::INFINITY), ..Agreement::default() },
+        });
+        let mut judgement = Self {
+            precision: has_lamps.then(|| lights.as_ref().map_or(0.0, |lights| precision(lights, truth))),
+            found: has_lamps.then(|| lights.as_ref().map_or(0.0, |lights| found(lights, truth))),
+            lights_iou: lights.filter(|_| truth.plane.is_some()).map(|lights| lights.iou(&truth.lights)),
+            plane_iou: plane.as_ref().and_then(|plane| plane_iou(plane, truth)),
+            unwarp: results.unwarped.as_ref().zip(truth.to_photo).and_then(|(unwarped, map)| deviation(unwarped, &map)),
+            agreement,
+            verdict: Verdict::Unjudged,
+        };
+        let declined = truth.is_trap && !outcome.warnings().is_empty();
+        judgement.verdict = if declined { Verdict::Right } else { judgement.weigh(outcome) };
+        judgement
+    }
+
+    fn weigh(&self, outcome: &Outcome) -> Verdict {
+        let (Some(precision), Some(found)) = (self.precision, self.found) else { return Verdict::Unjudged };
+        let meets = |limits: &Limits| {
+            precision > limits.precision
+                && found >= limits.found
+                && self.agreement.is_none_or(|agreement| agreement.is_within(limits))
+        };
+        match () {
+            _ if outcome.failure.is_some() => Verdict::Wrong,
+            _ if meets(&RIGHT) => Verdict::Right,
+            _ if meets(&USABLE) => Verdict::Usable,
+            _ => Verdict::Wrong,
+        }
+    }
+}
+
+/// Share of a mask's area that lies on a lamp or near one.
+fn precision(lights: &Mask, truth: &Truth) -> f64 {
+    lights.common(&truth.lights.dilated(NEAR)) as f64 / lights.count().max(1) as f64
+}
+
+/// Share of the lamps whose centre lies in a mask, or half of whose pixels where these are known.
+fn found(lights: &Mask, truth: &Truth) -> f64 {
+    let is_found = |lamp: &&Lamp| match lamp.pixels.len() {
+        0 => lights.holds(lamp.centre),
+        count => 2 * lamp.pixels.iter().filter(|&&i| lights.on[i as usize]).count() >= count,
+    };
+    truth.lamps.iter().filter(is_found).count() as f64 / truth.lamps.len() as f64
+}
+
+/// Intersection over union with the true plane, over the pixels that are plane or not.
+fn plane_iou(plane: &Mask, truth: &Truth) -> Option<f64> {
+    let mut plane = plane.clone();
+    if let Some(either) = &truth.either {
+        plane.on.iter_mut().zip(&either.on).for_each(|(on, either)| *on &= !either);
+    }
+    truth.plane.as_ref().map(|truth| plane.iou(truth))
+}
+
+/// Root mean square distance of unwarped points, as far as the plane is seen, from the best similar figure of the true ones,
+/// relative to that of the points from their mean. Mirrored figures count as similar.
+fn deviation(unwarped: &Unwarped, to_photo: &Homography) -> Option<f64> {
+    let from_photo = to_photo.inverse();
+    let (width, height) = (unwarped.valid.width, unwarped.valid.height);
+    let grid =
+        (0..GRID * GRID).map(|i| [(i % GRID * 2 + 1) * width / (2 * GRID), (i / GRID * 2 + 1) * height / (2 * GRID)]);
+    let seen = grid.filter(|[x, y]| unwarped.valid.pixel(*x, *y)[0] > 0.5);
+    let pairs: Vec<[DVec2; 2]> = seen
+        .map(|[x, y]| DVec2::new(x as f64 + 0.5, y as f64 + 0.5))
+        .map(|at| [at, from_photo.apply(unwarped.to_photo.apply(at))])
+        .filter(|pair| pair[1].is_finite())
+        .collect();
+    if pairs.len() < 4 {
+        return None;
+    }
+    let mean = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<DVec2>() / pairs.len() as f64;
+    let means = [mean(0), mean(1)];
+    let extent: f64 = pairs.iter().map(|pair| pair[0].distance_squared(means[0])).sum();
+    // Of complex numbers: a = c b + d, or a = c conj(b) + d.
+    let residual = |mirror: DVec2| {
+        let pairs = pairs.iter().map(|pair| [pair[0] - means[0], (pair[1] - means[1]) * mirror]);
+        let (mut product, mut square) = (DVec2::ZERO, 0.0);
+        for [a, b] in pairs.clone() {
+            product += DVec2::new(a.dot(b), b.perp_dot(a));
+            square += b.length_squared();
+        }
+        let factor = product / square;
+        pairs.map(|[a, b]| a.distance_squared(factor.rotate(b))).sum::<f64>()
+    };
+    let least = residual(DVec2::ONE).min(residual(DVec2::new(1.0, -1.0)));
+    Some((least / extent).sqrt())
+}

@@ -1,0 +1,85 @@
+//! Masks of whole pixels: drawn from polygons, grown, compared, and taken apart into connected parts.
+
+use glam::DVec2;
+use luxfer::image::Image;
+
+/// One flag per pixel, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mask {
+    pub width: usize,
+    pub height: usize,
+    pub on: Vec<bool>,
+}
+
+impl Mask {
+    pub fn new(width: usize, height: usize) -> Self {
+        Self { width, height, on: vec![false; width * height] }
+    }
+
+    /// The pixels of an image's first channel that are above one half.
+    pub fn of(image: &Image) -> Self {
+        let on = image.data.chunks_exact(image.channels).map(|pixel| pixel[0] > 0.5).collect();
+        Self { width: image.width, height: image.height, on }
+    }
+
+    pub fn count(&self) -> usize {
+        self.on.iter().filter(|on| **on).count()
+    }
+
+    /// Number of pixels that are in both masks.
+    pub fn common(&self, other: &Self) -> usize {
+        self.on.iter().zip(&other.on).filter(|(a, b)| **a && **b).count()
+    }
+
+    /// Intersection over union; 1 of two empty masks.
+    pub fn iou(&self, other: &Self) -> f64 {
+        let common = self.common(other);
+        let union = self.count() + other.count() - common;
+        if union == 0 { 1.0 } else { common as f64 / union as f64 }
+    }
+
+    /// Whether the pixel that holds a point is in the mask; a point outside the image counts for the nearest pixel.
+    pub fn holds(&self, point: DVec2) -> bool {
+        let clip = |v: f64, size: usize| (v.max(0.0) as usize).min(size - 1);
+        self.on[clip(point.y, self.height) * self.width + clip(point.x, self.width)]
+    }
+
+    /// Adds the pixels whose centres lie inside a polygon by the even-odd rule.
+    pub fn fill(&mut self, polygon: &[DVec2]) {
+        let (low, high) = polygon.iter().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
+        let first = (low - 0.5).ceil().max(0.0) as usize;
+        let end = ((high + 0.5).floor().max(0.0) as usize).min(self.height);
+        for y in first..end {
+            let level = y as f64 + 0.5;
+            let mut cuts: Vec<f64> = (0..polygon.len())
+                .map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+                .filter(|(a, b)| (a.y <= level) != (b.y <= level))
+                .map(|(a, b)| a.x + (level - a.y) / (b.y - a.y) * (b.x - a.x))
+                .collect();
+            cuts.sort_by(f64::total_cmp);
+            for pair in cuts.chunks_exact(2) {
+                let from = ((pair[0] - 0.5).ceil().max(0.0) as usize).min(self.width);
+                let to = ((pair[1] + 0.5).floor().max(0.0) as usize).clamp(from, self.width);
+                self.on[y * self.width + from..y * self.width + to].fill(true);
+            }
+        }
+    }
+
+    /// The pixels at most `steps` steps to a side, up or down away from the mask.
+    pub fn dilated(&self, steps: u32) -> Self {
+        let (w, h) = (self.width, self.height);
+        let mut distance: Vec<u32> = self.on.iter().map(|&on| if on { 0 } else { u32::MAX / 2 }).collect();
+        // Distances along rows and columns: one pass from the top left, one from the bottom right.
+        for i in 0..w * h {
+            let left = if i % w > 0 { distance[i - 1] } else { u32::MAX / 2 };
+            let up = if i >= w { distance[i - w] } else { u32::MAX / 2 };
+            distance[i] = distance[i].min(left + 1).min(up + 1);
+        }
+        for i in (0..w * h).rev() {
+            let right = if i % w + 1 < w { distance[i + 1] } else { u32::MAX / 2 };
+            let down = if i + w < w * h { distance[i + w] } else { u32::MAX / 2 };
+            distance[i] = distance[i].min(right + 1).min(down + 1);
+        }
+        Self { on: distance.into_iter().map(|d| d <= steps).collect(), ..*self }
+    }
+}

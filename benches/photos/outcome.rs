@@ -1,0 +1,113 @@
+//! A whole transfer from a photo by its strokes, with default settings, and what it took.
+
+use super::shapes::{Lamps, Shape};
+use super::truth::Photo;
+use crate::harness::{Clock, time};
+use glam::DVec2;
+use luxfer::emission::Emission;
+use luxfer::job::Monitor;
+use luxfer::scene::Scene;
+use luxfer::transfer::{Input, Params, Results, Stage, Transfer};
+use std::sync::Arc;
+
+/// Size of the picture of the lit room, and its paths per pixel.
+const PICTURE: ([usize; 2], u32) = ([320, 192], 8);
+
+/// A run and its results, as far as it came.
+pub struct Outcome {
+    pub transfer: Transfer,
+    /// Why the run ended early.
+    pub failure: Option<String>,
+    /// Seconds on the wall from the photo to the emissive texture, and processor seconds of all threads.
+    pub seconds: f64,
+    pub cpu_seconds: f64,
+}
+
+impl Outcome {
+    /// Runs all stages up to the emissive texture on the ceiling of a scene.
+    pub fn of(photo: &Photo, scene: &Arc<Scene>) -> Self {
+        Self::from(
+            Transfer { input: input(photo, scene), params: Params::default(), results: Results::default() },
+            Stage::View,
+        )
+    }
+
+    /// Runs the stages from one on up to the emissive texture.
+    pub fn from(transfer: Transfer, first: Stage) -> Self {
+        Self::between(transfer, first, Stage::Emission)
+    }
+
+    fn between(mut transfer: Transfer, first: Stage, last: Stage) -> Self {
+        let mut seconds = 0.0;
+        let (cpu_seconds, failure) = time(Clock::Process, || {
+            let job = Monitor::default();
+            let (wall, result) = time(Clock::Wall, || transfer.run(first, last, job.job(), |_| {}));
+            seconds = wall;
+            result.err().map(|e| e.to_string())
+        });
+        Self { transfer, failure, seconds, cpu_seconds }
+    }
+
+    /// Runs the stages up to the masks only.
+    pub fn masks(photo: &Photo) -> Self {
+        let input = Input { photo: Some(photo.image.clone()), strokes: photo.strokes.clone(), ..Input::default() };
+        Self::between(Transfer { input, ..Transfer::default() }, Stage::View, Stage::Lights)
+    }
+
+    /// Solves for the light's strength and renders the room, for people to look at.
+    pub fn render(&mut self) {
+        if self.failure.is_none() {
+            let render = &mut self.transfer.params.render;
+            ([render.width, render.height], render.samples) = PICTURE;
+            let job = Monitor::default();
+            self.failure =
+                self.transfer.run(Stage::Relight, Stage::Render, job.job(), |_| {}).err().map(|e| e.to_string());
+        }
+    }
+
+    pub fn results(&self) -> &Results {
+        &self.transfer.results
+    }
+
+    pub fn emission(&self) -> Option<&Emission> {
+        self.results().emission.as_deref()
+    }
+
+    /// The run's own words that its texture may not be the photo's. An error is the clearest of them. Empty otherwise: the
+    /// library has no warnings yet; they are to be read here.
+    pub fn warnings(&self) -> Vec<String> {
+        self.failure.iter().cloned().collect()
+    }
+
+    /// The lamps of the texture, where 1 is the distance of the photo's camera from its plane.
+    pub fn lamps(&self) -> Option<Lamps> {
+        let (emission, lit) = (self.emission()?, self.results().unsolved.as_ref()?);
+        Some(lamps(emission, lit.texel_size / self.transfer.params.plane_distance))
+    }
+}
+
+fn lamps(emission: &Emission, unit: f64) -> Lamps {
+    let size = DVec2::new(emission.mask.width as f64, emission.mask.height as f64);
+    let is_whole = |p: &DVec2| p.min_element() > 0.0 && (size - *p).min_element() > 0.0;
+    let shape = |outline: &[DVec2], area: f64| {
+        let outline: Vec<DVec2> = outline.iter().map(|p| *p * unit).collect();
+        Shape::of(&outline, Some(area * unit * unit))
+    };
+    let of = |whole: bool| -> Vec<Shape> {
+        let wanted = emission.luminaires.iter().filter(|lamp| lamp.outline.iter().all(is_whole) == whole);
+        wanted.filter_map(|lamp| shape(&lamp.outline, lamp.area)).collect()
+    };
+    let lit = emission.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / emission.mask.data.len() as f64;
+    Lamps { whole: of(true), cut: of(false), lit: Some([lit; 2]), ..Lamps::default() }
+}
+
+/// What a transfer onto the ceiling of a scene starts from.
+pub fn input(photo: &Photo, scene: &Arc<Scene>) -> Input {
+    Input {
+        photo: Some(photo.image.clone()),
+        strokes: photo.strokes.clone(),
+        scene: Some(scene.clone()),
+        surface: "Ceiling".into(),
+        ..Input::default()
+    }
+}

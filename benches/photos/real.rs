@@ -1,0 +1,53 @@
+//! Real photographs, end to end by strokes.
+
+use super::corpus::{self, HELD, Source};
+use super::hall::hall;
+use super::outcome::Outcome;
+use super::sheet::Sheets;
+use super::tally::{Line, Tally};
+use crate::harness::{absent, figure, median};
+use std::sync::Arc;
+
+/// Photos of the development part, or those whose names contain one of some words.
+pub fn real(words: &[String]) {
+    let Some(tally) = run("real", words, |source| !HELD.contains(&source.name.as_str())) else { return };
+    if words.is_empty() {
+        tally.verdicts("real");
+        tally.lights("lights");
+        tally.stated_errors("real");
+        let seconds = tally.values(|line| Some(line.seconds / line.megapixels));
+        figure("photos.real.seconds", median(&seconds), "s per MP, median");
+    }
+}
+
+/// The quarter of the corpus that nothing is tuned on.
+pub fn held() {
+    if let Some(tally) = run("held", &[], |source| HELD.contains(&source.name.as_str())) {
+        tally.verdicts("held");
+        tally.lights("held.lights");
+        tally.stated_errors("held");
+    }
+}
+
+fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool) -> Option<Tally> {
+    let sources = corpus::sources().map_err(|reason| absent(&format!("photos.{section}.right"), &reason)).ok()?;
+    let is_wanted = |source: &&Source| words.is_empty() || words.iter().any(|word| source.name.contains(word.as_str()));
+    let scene = Arc::new(hall());
+    let (mut sheets, mut tally) = (Sheets::new(section), Tally::default());
+    for source in sources.iter().filter(|source| belongs(source)).filter(is_wanted) {
+        match corpus::load(source) {
+            Ok(photo) => {
+                let mut outcome = Outcome::of(&photo, &scene);
+                outcome.render();
+                let line = Line::of(&photo, &outcome);
+                sheets.add(&photo, &outcome, &line.caption());
+                line.warnings.iter().for_each(|warning| println!("# {}: {warning}", line.name));
+                tally.lines.push(line);
+            }
+            Err(reason) => println!("# {} is absent: {reason}", source.name),
+        }
+    }
+    sheets.finish();
+    tally.table("Real photos by strokes; × is the factor from the true lamps to the texture's");
+    Some(tally)
+}

@@ -1,0 +1,149 @@
+//! Lamps as shapes in a plane, and what a set of them has in common: size, form, and how far apart they are.
+
+use glam::DVec2;
+use luxfer::geometry::polygon;
+
+/// Lamps longer than this many times their width are lines: their ends are where the photo or a joint cuts them, so width and
+/// distance across describe them. [convention]
+const LINE_ASPECT: f64 = 6.0;
+
+/// One lamp.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    pub centre: DVec2,
+    /// Sides of the smallest rectangle around it, the long one first.
+    pub sides: DVec2,
+    /// Direction of the long side.
+    pub axis: DVec2,
+    pub area: f64,
+}
+
+impl Shape {
+    /// Of a polygon; `area` is the lit area where that is not the polygon's.
+    pub fn of(outline: &[DVec2], area: Option<f64>) -> Option<Self> {
+        let hull = polygon::convex_hull(outline.to_vec());
+        if hull.len() < 3 {
+            return None;
+        }
+        // One side of the smallest rectangle lies along a side of the hull.
+        let along = |i: usize| (hull[(i + 1) % hull.len()] - hull[i]).normalize_or_zero();
+        let rectangle = |axis: DVec2| DVec2::new(polygon::extent(&hull, axis), polygon::extent(&hull, axis.perp()));
+        let axes = (0..hull.len()).map(along).filter(|axis| *axis != DVec2::ZERO);
+        let axis = axes.min_by(|a, b| rectangle(*a).element_product().total_cmp(&rectangle(*b).element_product()))?;
+        let sides = rectangle(axis);
+        let (sides, axis) =
+            if sides.x >= sides.y { (sides, axis) } else { (DVec2::new(sides.y, sides.x), axis.perp()) };
+        // The middle of that rectangle.
+        let middle = |axis: DVec2| {
+            let at = hull.iter().map(|p| p.dot(axis));
+            at.clone().fold(f64::MAX, f64::min) / 2.0 + at.fold(f64::MIN, f64::max) / 2.0
+        };
+        let centre = axis * middle(axis) + axis.perp() * middle(axis.perp());
+        let area = area.unwrap_or_else(|| polygon::area(outline).abs());
+        (area > 0.0 && sides.y > 0.0).then_some(Self { centre, sides, axis, area })
+    }
+
+    pub fn aspect(&self) -> f64 {
+        self.sides.x / self.sides.y
+    }
+}
+
+/// A set of lamps of one plane, in one unit of length.
+#[derive(Clone, Debug, Default)]
+pub struct Lamps {
+    /// The lamps that are seen whole.
+    pub whole: Vec<Shape>,
+    /// The kind of each of these, where known.
+    pub kinds: Vec<usize>,
+    /// Lamps that the border of a texture cuts: lines are compared by these too.
+    pub cut: Vec<Shape>,
+    /// Centres of further lamps, which are cut or hidden in part: they say how far apart lamps are.
+    pub others: Vec<DVec2>,
+    /// Least and largest share of the plane that may be said to be lit.
+    pub lit: Option<[f64; 2]>,
+}
+
+impl Lamps {
+    /// Whether most of them are lines.
+    pub fn are_lines(&self) -> bool {
+        median(self.whole.iter().map(Shape::aspect)).is_some_and(|aspect| aspect > LINE_ASPECT)
+    }
+
+    /// Of each kind, if there are several: median area, median aspect ratio, and share of the lamps.
+    pub fn by_kind(&self) -> Vec<[f64; 3]> {
+        let last = self.kinds.iter().max().copied().unwrap_or(0);
+        let of =
+            |kind: usize| self.whole.iter().zip(&self.kinds).filter(move |(_, k)| **k == kind).map(|(shape, _)| shape);
+        let kinds = (0..=last).filter(|_| last > 0).filter_map(|kind| {
+            let share = of(kind).count() as f64 / self.whole.len() as f64;
+            Some([median(of(kind).map(|s| s.area))?, median(of(kind).map(Shape::aspect))?, share])
+        });
+        kinds.collect()
+    }
+
+    pub fn area(&self) -> Option<f64> {
+        median(self.whole.iter().map(|s| s.area))
+    }
+
+    /// All that is known of lines.
+    fn lines(&self) -> impl Iterator<Item = &Shape> {
+        self.whole.iter().chain(&self.cut)
+    }
+
+    /// Median width of lines.
+    pub fn width(&self) -> Option<f64> {
+        median(self.lines().map(|s| s.sides.y))
+    }
+
+    pub fn aspect(&self) -> Option<f64> {
+        median(self.whole.iter().map(Shape::aspect))
+    }
+
+    /// Median distance from a lamp's centre to the nearest other.
+    pub fn spacing(&self) -> Option<f64> {
+        let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centre).chain(self.others.iter().copied()).collect();
+        median((0..centres.len()).filter_map(|i| {
+            let others = (0..centres.len()).filter(|j| *j != i);
+            others.map(|j| centres[i].distance(centres[j])).min_by(f64::total_cmp)
+        }))
+    }
+
+    /// Median distance across from a line to the nearest beside it.
+    pub fn spacing_across(&self) -> Option<f64> {
+        let beside = |a: &Shape, b: &Shape| {
+            let apart = b.centre - a.centre;
+            let across = apart.dot(a.axis.perp()).abs();
+            let overlaps = apart.dot(a.axis).abs() < (a.sides.x + b.sides.x) / 2.0;
+            (overlaps && across > a.sides.y + b.sides.y).then_some(across)
+        };
+        median(self.lines().filter_map(|a| self.lines().filter_map(|b| beside(a, b)).min_by(f64::total_cmp)))
+    }
+
+    /// Lengths of the two shortest steps from lamp to lamp that are not along one line, the shorter first: the periods of a
+    /// lattice, whichever of its places are empty.
+    pub fn steps(&self) -> Option<[f64; 2]> {
+        let nearest = self.spacing()?;
+        let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centre).chain(self.others.iter().copied()).collect();
+        let pairs = centres.iter().enumerate().flat_map(|(i, a)| centres[i + 1..].iter().map(move |b| *b - *a));
+        let mut steps: Vec<DVec2> = pairs.filter(|d| d.length() > 0.5 * nearest).collect();
+        steps.sort_by(|a, b| a.length().total_cmp(&b.length()));
+        let first = steps.iter().find(|d| d.length() > 0.85 * nearest)?;
+        let first = mean_like(&steps, *first);
+        let is_across = |d: &&DVec2| d.perp_dot(first).abs() > 0.35 * d.length() * first.length();
+        let second = mean_like(&steps, *steps.iter().find(is_across)?);
+        Some([first.length(), second.length()])
+    }
+}
+
+/// The mean of the steps within a tenth of one, whichever way they point.
+fn mean_like(steps: &[DVec2], step: DVec2) -> DVec2 {
+    let turned = steps.iter().map(|d| if d.dot(step) < 0.0 { -*d } else { *d });
+    let like: Vec<DVec2> = turned.filter(|d| d.distance(step) < 0.1 * step.length()).collect();
+    if like.is_empty() { step } else { like.iter().sum::<DVec2>() / like.len() as f64 }
+}
+
+/// The median of some values, if there are any.
+pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let values: Vec<f64> = values.into_iter().collect();
+    (!values.is_empty()).then(|| crate::harness::median(&values))
+}

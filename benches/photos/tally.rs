@@ -1,0 +1,168 @@
+//! The table of many runs, and the figures over them.
+
+use super::judge::{Judgement, Verdict};
+use super::outcome::Outcome;
+use super::truth::Photo;
+use crate::harness::{Table, figure, median, quantile};
+
+/// What is kept of one run.
+pub struct Line {
+    pub name: String,
+    pub megapixels: f64,
+    pub judgement: Judgement,
+    /// The texture's own stated error.
+    pub error: Option<f64>,
+    pub seconds: f64,
+    pub cpu_seconds: f64,
+    pub warnings: Vec<String>,
+}
+
+impl Line {
+    pub fn of(photo: &Photo, outcome: &Outcome) -> Self {
+        Self {
+            name: photo.name.clone(),
+            megapixels: photo.image.width as f64 * photo.image.height as f64 * 1e-6,
+            judgement: Judgement::of(photo, outcome),
+            error: outcome.emission().map(|emission| emission.error),
+            seconds: outcome.seconds,
+            cpu_seconds: outcome.cpu_seconds,
+            warnings: outcome.warnings(),
+        }
+    }
+
+    /// One line of words for a contact sheet.
+    pub fn caption(&self) -> String {
+        let Judgement { precision, found, .. } = self.judgement;
+        let stated = percent(self.error);
+        let verdict = self.judgement.verdict.name();
+        let masks = format!("precise {} found {}", percent(precision), percent(found));
+        let warning = self.warnings.first().map_or(String::new(), |w| format!("  {w}"));
+        format!("{}  {verdict}  {masks}  error {stated}{warning}", self.name)
+    }
+
+    fn cells(&self) -> Vec<String> {
+        let j = &self.judgement;
+        let agreement = j.agreement.unwrap_or_default();
+        let factor = |v: Option<f64>| v.map_or("-".into(), |v| format!("{:.2}", v.exp()));
+        vec![
+            self.name.clone(),
+            j.verdict.name().into(),
+            percent(j.precision),
+            percent(j.found),
+            percent(j.lights_iou),
+            percent(j.plane_iou),
+            j.unwarp.map_or("-".into(), |v| format!("{:.1}", 100.0 * v)),
+            factor(agreement.area),
+            factor(agreement.aspect),
+            factor(agreement.spacing),
+            factor(agreement.lit),
+            agreement.lattice.map_or("-".into(), |v| format!("{:.1}", 100.0 * v.exp_m1())),
+            percent(self.error),
+            format!("{:.2}", self.megapixels),
+            format!("{:.2}", self.seconds),
+            format!("{:.2}", self.cpu_seconds),
+            self.warnings.len().to_string(),
+        ]
+    }
+}
+
+fn percent(value: Option<f64>) -> String {
+    value.map_or("-".into(), |v| format!("{:.0}", 100.0 * v))
+}
+
+/// All runs of a section.
+#[derive(Default)]
+pub struct Tally {
+    pub lines: Vec<Line>,
+}
+
+impl Tally {
+    pub fn table(&self, title: &str) {
+        let mut table = Table::new([
+            "photo",
+            "verdict",
+            "precise %",
+            "found %",
+            "lights IoU",
+            "plane IoU",
+            "unwarp %",
+            "× area",
+            "× aspect",
+            "× spacing",
+            "× lit",
+            "lattice %",
+            "stated %",
+            "MP",
+            "s",
+            "CPU s",
+            "warnings",
+        ]);
+        self.lines.iter().for_each(|line| table.row(line.cells()));
+        table.print(title);
+    }
+
+    /// Counts of the verdicts by the pattern that a generated photo's name ends in.
+    pub fn by_pattern(&self) {
+        let pattern = |line: &Line| line.name.split('_').nth(1).unwrap_or_default().to_string();
+        let mut patterns: Vec<String> = self.lines.iter().map(pattern).collect();
+        patterns.sort();
+        patterns.dedup();
+        let mut table = Table::new(["pattern", "photos", "right", "usable", "wrong"]);
+        for name in patterns {
+            let of = |verdict: Option<Verdict>| {
+                let is = |line: &&Line| pattern(line) == name && verdict.is_none_or(|v| line.judgement.verdict == v);
+                self.lines.iter().filter(is).count().to_string()
+            };
+            let verdicts = [Verdict::Right, Verdict::Usable, Verdict::Wrong].map(|v| of(Some(v)));
+            table.row([name.clone(), of(None)].into_iter().chain(verdicts));
+        }
+        table.print("By pattern");
+    }
+
+    /// Values that a run may have, of all that have one.
+    pub fn values(&self, of: impl Fn(&Line) -> Option<f64>) -> Vec<f64> {
+        self.lines.iter().filter_map(of).collect()
+    }
+
+    /// Share of the judged runs, in percent.
+    fn share(&self, is: impl Fn(&Line) -> bool) -> f64 {
+        let judged = || self.lines.iter().filter(|line| line.judgement.verdict != Verdict::Unjudged);
+        100.0 * judged().filter(|line| is(line)).count() as f64 / judged().count() as f64
+    }
+
+    /// The shares of the verdicts.
+    pub fn verdicts(&self, section: &str) {
+        let of = |verdict: Verdict| self.share(|line| line.judgement.verdict == verdict);
+        figure(&format!("photos.{section}.right"), of(Verdict::Right), "%");
+        figure(&format!("photos.{section}.usable"), of(Verdict::Usable), "%");
+        figure(&format!("photos.{section}.wrong"), of(Verdict::Wrong), "%");
+        let unwarned = |line: &Line| line.judgement.verdict == Verdict::Wrong && line.warnings.is_empty();
+        figure(&format!("photos.{section}.wrong_unwarned"), self.share(unwarned), "%");
+    }
+
+    /// How well the masks of lights do.
+    pub fn lights(&self, prefix: &str) {
+        let precision = self.values(|line| line.judgement.precision);
+        let precise = precision.iter().filter(|p| **p > 0.8).count() as f64 / precision.len() as f64;
+        figure(&format!("photos.{prefix}.precision"), median(&precision), "of the lit area, median");
+        figure(&format!("photos.{prefix}.precise_photos"), 100.0 * precise, "% of the photos");
+        let found = self.values(|line| line.judgement.found);
+        figure(
+            &format!("photos.{prefix}.found"),
+            100.0 * found.iter().sum::<f64>() / found.len() as f64,
+            "% of the lamps, mean",
+        );
+    }
+
+    /// The stated errors of the textures.
+    pub fn stated_errors(&self, section: &str) {
+        let errors = self.values(|line| line.error);
+        let at = |p: f64| format!("{:.2}", quantile(&errors, p));
+        println!(
+            "# stated errors of {} textures, deciles: {}",
+            errors.len(),
+            (0..=10).map(|i| at(f64::from(i) / 10.0)).collect::<Vec<_>>().join(" ")
+        );
+        figure(&format!("photos.{section}.stated_error"), median(&errors), "median");
+    }
+}

@@ -1,0 +1,46 @@
+//! What a photo truly shows, as far as it is known: where its lamps are, and how they lie in their plane.
+
+use super::masks::Mask;
+use super::shapes::Lamps;
+use glam::DVec2;
+use luxfer::geometry::Homography;
+use luxfer::image::Image;
+use luxfer::segment::StrokeSet;
+use std::sync::Arc;
+
+/// A photo with the strokes drawn on it and its truth.
+#[derive(Clone)]
+pub struct Photo {
+    pub name: String,
+    /// Linear RGB, 1 = display white.
+    pub image: Arc<Image>,
+    pub strokes: StrokeSet,
+    pub truth: Truth,
+}
+
+/// A lamp as the photo shows it.
+#[derive(Clone, Debug)]
+pub struct Lamp {
+    /// In photo pixels.
+    pub centre: DVec2,
+    pub polygons: Vec<Vec<DVec2>>,
+    /// Its pixels (`y * width + x`), where they are known one by one.
+    pub pixels: Vec<u32>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// Pixels of lamps.
+    pub lights: Mask,
+    /// Pixels of the plane with its lamps, where known.
+    pub plane: Option<Mask>,
+    /// Pixels that may be taken for the plane or not, as of beams under a ceiling.
+    pub either: Option<Mask>,
+    pub lamps: Vec<Lamp>,
+    /// The lamps in their plane, where the camera is known; 1 is the distance of the camera from the plane.
+    pub layout: Option<Lamps>,
+    /// From that plane to photo pixels.
+    pub to_photo: Option<Homography>,
+    /// Whether the photo holds no answer, so that a run should decline or warn.
+    pub is_trap: bool,
+}

@@ -1,0 +1,194 @@
+//! Where a room is photographed from, and where the camera sees things.
+
+use super::dice::Dice;
+use super::room::{Class, Room};
+use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
+use luxfer::geometry::Homography;
+use luxfer::job::Monitor;
+use luxfer::scene::Camera;
+use luxfer::scene::accel::{Accel, Ray};
+
+/// Diagonal of the 36 × 24 mm picture that focal lengths are given for, in mm. [convention]
+const DIAGONAL: f32 = 43.27;
+/// Places that are tried before a room is given up.
+const TRIES: usize = 160;
+/// Rays across and down that judge a view.
+const RAYS: [usize; 2] = [40, 30];
+/// Least share of the picture that shows the ceiling, and least number of pixels across a lamp that counts as seen.
+const MIN_CEILING: f32 = 0.08;
+const MIN_WIDTH: f64 = 4.0;
+
+/// A room's surfaces, for rays: what they meet is told by its mesh.
+pub struct Surfaces {
+    accel: Accel,
+    meshes: Vec<u32>,
+    firsts: Vec<u32>,
+}
+
+/// What a ray meets: the mesh, its triangle, and where in it.
+pub struct Seen {
+    pub mesh: usize,
+    pub triangle: usize,
+    pub barycentric: Vec2,
+}
+
+impl Surfaces {
+    pub fn of(room: &Room) -> Self {
+        let (mut triangles, mut meshes, mut firsts) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, mesh) in room.scene.meshes.iter().enumerate() {
+            firsts.push(triangles.len() as u32);
+            triangles.extend((0..mesh.triangles.len()).map(|t| mesh.corners(t)));
+            meshes.resize(triangles.len(), number as u32);
+        }
+        Self { accel: Accel::build(&triangles, Monitor::default().job()).expect("a room"), meshes, firsts }
+    }
+
+    pub fn seen(&self, from: Vec3, direction: Vec3) -> Option<Seen> {
+        let hit = self.accel.closest(&Ray::new(from, direction), |_| true)?;
+        let mesh = self.meshes[hit.triangle as usize] as usize;
+        let triangle = (hit.triangle - self.firsts[mesh]) as usize;
+        Some(Seen { mesh, triangle, barycentric: Vec2::new(hit.u, hit.v) })
+    }
+}
+
+/// A camera in a room.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    pub camera: Camera,
+    pub width: usize,
+    pub height: usize,
+    /// Metres from the camera to the ceiling.
+    pub distance: f32,
+    /// Focal length in mm, for a picture of 36 × 24 mm.
+    pub focal: f32,
+}
+
+impl Shot {
+    /// The view with most lamps among some that will do; none where the room hides its lamps.
+    pub fn choose(room: &Room, surfaces: &Surfaces, dice: &mut Dice) -> Option<Self> {
+        let (width, height) = size(dice);
+        // Most photos show several lamps.
+        let wanted = if dice.chance(0.05) { 1 } else { 3 };
+        let aim = [dice.between(-10.0, 60.0), dice.between(-10.0, 60.0), dice.between(0.0, 45.0)];
+        (0..TRIES)
+            .map(|_| Self::random(room, dice, [width, height], aim))
+            .find(|shot| shot.will_do(room, surfaces, wanted))
+    }
+
+    fn random(room: &Room, dice: &mut Dice, [width, height]: [usize; 2], aim: [f32; 3]) -> Self {
+        let size = room.size;
+        let eye = if dice.chance(0.15) { dice.between(0.4, 1.1) } else { dice.between(1.2, 1.75) }.min(size.y - 0.7);
+        let inset = |dice: &mut Dice, length: f32| dice.between(0.05, 0.95) * (length - 0.6) + 0.3;
+        let position = Vec3::new(inset(dice, size.x), eye, inset(dice, size.z));
+        let (pitch, yaw) =
+            ((dice.pick(&aim) + 4.0 * dice.normal()).clamp(-10.0, 60.0), dice.between(0.0, std::f32::consts::TAU));
+        let (pitch, roll) = (pitch.to_radians(), (1.5 * dice.normal()).to_radians());
+        let focal = if dice.chance(0.12) { dice.log_between(50.0, 120.0) } else { dice.log_between(24.0, 42.0) };
+        let forward = Vec3::new(yaw.sin() * pitch.cos(), pitch.sin(), -yaw.cos() * pitch.cos());
+        let upright = Camera::look_at(position, position + forward, 1.0);
+        let right = upright.forward.cross(upright.up);
+        let up = upright.up * roll.cos() + right * roll.sin();
+        let (w, h) = (width as f32, height as f32);
+        let fov_y = 2.0 * (h / 2.0 / (focal / DIAGONAL * w.hypot(h))).atan();
+        let camera = Camera { up, fov_y, ..upright };
+        Self { camera, width, height, distance: size.y - eye, focal }
+    }
+
+    fn will_do(&self, room: &Room, surfaces: &Surfaces, wanted: usize) -> bool {
+        let rays = RAYS[0] * RAYS[1];
+        let place = |i: usize| [(i % RAYS[0]) as f32 + 0.5, (i / RAYS[0]) as f32 + 0.5];
+        let class = |i: usize| {
+            let [x, y] = place(i);
+            let direction = self.direction(DVec2::new(
+                (x * self.width as f32 / RAYS[0] as f32).into(),
+                (y * self.height as f32 / RAYS[1] as f32).into(),
+            ));
+            surfaces.seen(self.camera.position, direction).map(|seen| room.classes[seen.mesh].0)
+        };
+        let classes: Vec<Option<Class>> = (0..rays).map(class).collect();
+        let share = |of: &[Class]| classes.iter().flatten().filter(|c| of.contains(c)).count() as f32 / rays as f32;
+        if share(&[Class::Ceiling, Class::Lamp]) < MIN_CEILING || share(&[Class::Thing]) > 0.6 {
+            return false;
+        }
+        self.lamps_seen(room, surfaces) >= wanted
+    }
+
+    /// Number of lamps that lie wholly within the picture, are large enough, and whose middle nothing hides.
+    fn lamps_seen(&self, room: &Room, surfaces: &Surfaces) -> usize {
+        let lamps = room.classes.iter().enumerate().filter(|(_, (class, _))| *class == Class::Lamp);
+        let is_seen = |&(mesh, (_, number)): &(usize, &(Class, usize))| {
+            let fitting = &room.ceiling.fittings[*number];
+            let place = |p: Vec2| Vec3::new(p.x, room.size.y - fitting.drop, p.y);
+            let outline = fitting.form.outline(0.0);
+            let corners: Option<Vec<DVec2>> =
+                outline.iter().map(|p| self.project(place(fitting.centre + *p))).collect();
+            let Some(corners) = corners else { return false };
+            let size = DVec2::new(self.width as f64, self.height as f64);
+            // Lines of light leave the picture, others should not.
+            let count = corners.iter().filter(|p| inside_picture(**p, size)).count();
+            let is_line = room.ceiling.pattern == "slots";
+            let inside = if is_line { 2 * count >= corners.len() } else { count == corners.len() };
+            let (low, high) = corners.iter().fold((DVec2::MAX, DVec2::MIN), |(l, h), p| (l.min(*p), h.max(*p)));
+            // A point of the lamp itself: a ring's middle is ceiling.
+            let edge = if is_line && !inside_picture(corners[0], size) {
+                outline[2] + outline[3]
+            } else {
+                outline[0] + outline[1]
+            };
+            let point = place(fitting.centre + edge * 0.46);
+            let direction = (point - self.camera.position).normalize();
+            let is_met = |seen: Seen| seen.mesh == mesh;
+            inside
+                && (high - low).min_element() >= MIN_WIDTH
+                && surfaces.seen(self.camera.position, direction).is_some_and(is_met)
+        };
+        lamps.filter(is_seen).count()
+    }
+
+    /// Pixels of focal length.
+    pub fn focal_pixels(&self) -> f64 {
+        self.height as f64 / 2.0 / f64::from(self.camera.fov_y / 2.0).tan()
+    }
+
+    /// Direction of the ray through a point of the picture.
+    pub fn direction(&self, pixel: DVec2) -> Vec3 {
+        let (w, h) = (self.width as f64, self.height as f64);
+        self.camera.direction((pixel.x / w) as f32, (pixel.y / h) as f32, (w / h) as f32)
+    }
+
+    /// Where the camera sees a point, in pixels; nowhere behind it.
+    pub fn project(&self, point: Vec3) -> Option<DVec2> {
+        let camera = &self.camera;
+        let v = (point - camera.position).as_dvec3();
+        let (forward, up) = (camera.forward.as_dvec3(), camera.up.as_dvec3());
+        let depth = v.dot(forward);
+        let offset = DVec2::new(v.dot(forward.cross(up)), -v.dot(up)) / depth * self.focal_pixels();
+        (depth > 1e-3).then(|| DVec2::new(self.width as f64, self.height as f64) / 2.0 + offset)
+    }
+
+    /// From the ceiling to pixels; on the ceiling 1 is its distance from the camera, x and z run as in the room.
+    pub fn to_photo(&self) -> Homography {
+        let camera = &self.camera;
+        let (forward, up) = (camera.forward.as_dvec3(), camera.up.as_dvec3());
+        let right = forward.cross(up);
+        let distance = f64::from(self.distance);
+        // A point of the ceiling from the camera: x and z times the distance, and the distance up.
+        let from = camera.position.as_dvec3();
+        let rows = |axis: DVec3| {
+            DVec3::new(axis.x * distance, axis.z * distance, axis.y * distance - axis.x * from.x - axis.z * from.z)
+        };
+        let (f, c) = (self.focal_pixels(), DVec2::new(self.width as f64, self.height as f64) / 2.0);
+        let (r, u, w) = (rows(right), rows(up), rows(forward));
+        Homography(DMat3::from_cols(r * f + w * c.x, w * c.y - u * f, w).transpose())
+    }
+}
+
+fn inside_picture(p: DVec2, size: DVec2) -> bool {
+    p.min_element() > 1.0 && (size - p).min_element() > 1.0
+}
+
+/// Pixels across and down: most photos are small, for the sake of time; some have a megapixel.
+fn size(dice: &mut Dice) -> (usize, usize) {
+    let (width, height) = dice.weighted(&[((640, 480), 6.0), ((704, 470), 3.0), ((768, 432), 1.5), ((1152, 864), 1.0)]);
+    if dice.chance(0.15) { (height, width) } else { (width, height) }
+}
