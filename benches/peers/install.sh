@@ -28,6 +28,17 @@ install onnx onnxruntime numpy
 # For the guide.
 install docs -r docs/requirements.txt
 install mitsuba mitsuba numpy
+# Its vectorised back end needs a shared LLVM that knows this processor: 15 has no maximum for vectors of AVX-512.
+install_llvm() {
+  case " ${wanted:-mitsuba} " in *" mitsuba "*) ;; *) return ;; esac
+  ls /usr/lib/*/libLLVM*19* >/dev/null 2>&1 && return
+  if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+    apt-get install -y -qq --no-install-recommends libllvm19 </dev/null >/dev/null 2>&1 ||
+      { apt-get update -qq && apt-get install -y -qq --no-install-recommends libllvm19; } </dev/null >/dev/null 2>&1 ||
+      echo "libllvm19 could not be installed: Mitsuba runs without its vectorised back end" >&2
+  fi
+}
+install_llvm
 # Cycles; its wheels fit one version of Python each.
 install bpy 'bpy==5.0.*' 'numpy<2'
 
@@ -64,11 +75,4 @@ install_ebsynth() {
 }
 install_ebsynth
 
-[ -z "$wanted" ] || exit 0
-
-# Mitsuba's vectorised back end needs a shared LLVM that knows this processor.
-if ! ls /usr/lib/*/libLLVM*19* >/dev/null 2>&1 && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
-  apt-get install -y -qq --no-install-recommends libllvm19 </dev/null >/dev/null 2>&1 ||
-    echo "libllvm19 could not be installed: Mitsuba runs without its vectorised back end" >&2
-fi
 exit 0
