@@ -1,7 +1,7 @@
 """What mkdocs.yml asks for beyond Markdown: pictures made by programs, the reference, and values that are never typed.
 
 On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
-`{{ limits stage }}` is what the source of a stage says it leaves out, `{{ figure name }}` is a figure of `make bench`,
+`{{ limits stage }}` is what the source of a stage says it leaves out, `{{ constant stage NAME }}` is a limit of its warnings, `{{ figure name }}` is a figure of `make bench`,
 `{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, `{{ table name bench }}` a table, and `{{ front name }}` the settings of a plot of error
 against time that no other beats in both. `{{ test name }}` is the name of a test, which there must be. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py. Names of the C interface
 in code spans become links; one that does not exist is an error.
@@ -92,6 +92,8 @@ def value(kind: str, words: list[str], path: str, files) -> str:
         return header.table(words[0], path, ("struct_size", "reserved"))
     if kind == "limits":
         return limits(words[0], path)
+    if kind == "constant":
+        return constant(*words, path)
     if kind == "figure":
         number, unit = found(words, path)[0][1:]
         return f"{number} {unit}"
@@ -157,6 +159,14 @@ def limits(stage: str, path: str) -> str:
     if not out:
         raise PluginError(f"{path}: src/{stage}/mod.rs does not say what it leaves out")
     return "\n\n".join(part.strip() for part in out)
+
+
+def constant(stage: str, name: str, path: str) -> str:
+    """The number that a limit of a stage's warnings has in the source."""
+    found = re.search(rf"const {name}: \w+ = ([\d.]+);", (ROOT / "src" / stage / "warnings.rs").read_text())
+    if not found:
+        raise PluginError(f"{path}: src/{stage}/warnings.rs has no limit {name}")
+    return f"{float(found[1]):g}"
 
 
 def figures() -> dict[str, tuple[str, str]]:

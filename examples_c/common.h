@@ -39,6 +39,27 @@ static inline void finish(luxfer_job *job, const char *title) {
     check(luxfer_job_release(job), title);
 }
 
+/* --8<-- [start:warnings] */
+/* Prints each warning with its remedy, its place in the photo and its code, and releases the list. */
+static inline void print_warnings(luxfer_warnings *warnings) {
+    static const char *stages[] = {"view", "features", "plane", "lights", "unwarp", "emission", "relight", "render"};
+    luxfer_warning warning;
+    uint32_t i, count = 0;
+    warning.struct_size = sizeof warning;
+    check(luxfer_warnings_count(warnings, &count), "warnings");
+    for (i = 0; i < count; i++) {
+        char message[512], advice[512];
+        check(luxfer_warnings_get(warnings, i, &warning), "warning");
+        check(luxfer_warnings_get_message(warnings, i, message, sizeof message, NULL), "warning");
+        check(luxfer_warnings_get_advice(warnings, i, advice, sizeof advice, NULL), "warning");
+        fprintf(stderr, "%s: %s\n    %s", stages[warning.stage], message, advice);
+        if (warning.has_place) fprintf(stderr, " (at %.0f, %.0f)", warning.place[0], warning.place[1]);
+        fprintf(stderr, " [%s]\n", luxfer_warning_name(warning.code));
+    }
+    check(luxfer_warnings_release(warnings), "warnings");
+}
+/* --8<-- [end:warnings] */
+
 /* A photo of the generated office. To load your own photo, use luxfer_image_load. */
 static inline luxfer_image *take_photo(uint32_t width, uint32_t height, uint32_t samples) {
     luxfer_demo_photo_params params;

@@ -34,6 +34,7 @@ int main(void) {
     static const float tiles[] = {73, 42, 112, 81}, far_tiles[] = {62, 112, 105, 105};
     const float radius = 1.5f;
     luxfer_transfer *transfer = NULL;
+    luxfer_warnings *warnings = NULL;
     luxfer_image *photo;
     sheet s = panels_begin(2, 2, 300, 200);
 
@@ -62,6 +63,10 @@ int main(void) {
     run(transfer, LUXFER_STAGE_LIGHTS, LUXFER_STAGE_LIGHTS, LUXFER_TRANSFER_LIGHTS_CONFIDENCE, &s, 1, 1);
     /* --8<-- [end:strokes] */
     check(panels_save(&s, context, "custom_strokes.png"), "custom_strokes.png");
+
+    /* The reasons to doubt the masks, and the places where one more stroke helps. */
+    check(luxfer_transfer_get_warnings(transfer, &warnings), "warnings");
+    print_warnings(warnings);
 
     luxfer_transfer_release(transfer);
     luxfer_image_release(photo);

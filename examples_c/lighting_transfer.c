@@ -4,7 +4,8 @@
  *
  * Without arguments it generates its input: the photo of an office, and a living room. FILE holds the
  * strokes: an image of the photo's size (green: plane, red: not plane, yellow: light, blue: not light) or a text (.txt).
- * Writes overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR.
+ * Writes overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR, and prints the
+ * warnings about the result.
  */
 #include "luxfer.h"
 #include "common.h"
@@ -146,7 +147,27 @@ static void write_number(FILE *file, double value) {
     else fprintf(file, "null");
 }
 
-static void write_report(const options *o, const luxfer_transfer_report *r, const luxfer_relight_report *s) {
+/* The warnings by their names and figures. */
+static void write_warnings(FILE *file, const char *const *stages, luxfer_warnings *warnings) {
+    luxfer_warning w;
+    uint32_t i, count = 0;
+    w.struct_size = sizeof w;
+    check(luxfer_warnings_count(warnings, &count), "warnings");
+    fprintf(file, "  \"warnings\": [");
+    for (i = 0; i < count; i++) {
+        check(luxfer_warnings_get(warnings, i, &w), "warning");
+        fprintf(file, "%s\n    {\"stage\": \"%s\", \"code\": \"%s\", \"severity\": ", i ? "," : "", stages[w.stage],
+                luxfer_warning_name(w.code));
+        write_number(file, w.severity);
+        fprintf(file, ", \"limit\": %.6g", w.limit);
+        if (w.has_place) fprintf(file, ", \"place\": [%.1f, %.1f]", w.place[0], w.place[1]);
+        fprintf(file, "}");
+    }
+    fprintf(file, "%s],\n", count ? "\n  " : "");
+}
+
+static void write_report(const options *o, const luxfer_transfer_report *r, const luxfer_relight_report *s,
+                         luxfer_warnings *warnings) {
     static const char *stages[8] = {"view", "features", "plane", "lights", "unwarp", "emission", "relight", "render"};
     static const char *units[8] = {"radians",
                                    "1 - trust in depth",
@@ -169,7 +190,9 @@ static void write_report(const options *o, const luxfer_transfer_report *r, cons
         write_number(file, errors[i]);
         fprintf(file, ", \"error_is\": \"%s\"}%s\n", units[i], i < 7 ? "," : "");
     }
-    fprintf(file, "  },\n  \"target\": [%.6g, %.6g, %.6g],\n", r->target[0], r->target[1], r->target[2]);
+    fprintf(file, "  },\n");
+    write_warnings(file, stages, warnings);
+    fprintf(file, "  \"target\": [%.6g, %.6g, %.6g],\n", r->target[0], r->target[1], r->target[2]);
     fprintf(file, "  \"scale\": [%.6g, %.6g, %.6g],\n", s->scale[0], s->scale[1], s->scale[2]);
     fprintf(file, "  \"half_width\": [%.6g, %.6g, %.6g],\n", s->half_width[0], s->half_width[1], s->half_width[2]);
     fprintf(file, "  \"luminaires\": %u,\n  \"texel_m\": %.6g\n}\n", r->fixtures, r->texel_size);
@@ -185,6 +208,7 @@ int main(int argc, char **argv) {
     luxfer_relight_report solution;
     luxfer_image *photo = NULL, *lit = NULL, *emission = NULL, *before, *white;
     luxfer_scene *scene = NULL, *lit_scene = NULL, *white_scene = NULL;
+    luxfer_warnings *warnings = NULL;
     luxfer_job *job = NULL;
     luxfer_camera_params camera;
     report.struct_size = sizeof report;
@@ -218,7 +242,8 @@ int main(int argc, char **argv) {
     check(luxfer_image_save(emission, path(&o, "emission.exr"), 1), "emission.exr");
     check(luxfer_scene_export(lit_scene, path(&o, "lit.glb")), "lit.glb");
     check(luxfer_transfer_save_fixtures(transfer, path(&o, "luminaires.csv")), "luminaires.csv");
-    write_report(&o, &report, &solution);
+    check(luxfer_transfer_get_warnings(transfer, &warnings), "warnings");
+    write_report(&o, &report, &solution, warnings);
 
     /* For comparison: the scene before the transfer, with its own lights or a light at the camera, and in white
      * light. */
@@ -231,6 +256,7 @@ int main(int argc, char **argv) {
           "overview.png");
     printf("%u luminaires; colour and intensity to +-%.2f %%; see %s\n", report.fixtures, 100 * report.relight_error,
            path(&o, "overview.png"));
+    print_warnings(warnings);
 
     luxfer_image_release(white);
     luxfer_image_release(before);

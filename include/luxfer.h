@@ -1672,6 +1672,9 @@ luxfer_status luxfer_features_release(luxfer_features *features);
 /** A segmentation by strokes. See luxfer_segment_create. */
 typedef struct luxfer_segment luxfer_segment;
 
+/** What is segmented: a LUXFER_SUBJECT_ value. */
+typedef int32_t luxfer_subject;
+
 /** Settings of a segmentation. Fill them with luxfer_segment_params_init. */
 typedef struct luxfer_segment_params {
     /** sizeof(luxfer_segment_params), set by luxfer_segment_params_init. */
@@ -1699,6 +1702,13 @@ typedef struct luxfer_segment_params {
      * neighbours as one surface, in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
+    /**
+     * What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. Of lamps the settings above do not
+     * matter.
+     */
+    luxfer_subject subject;
+    /** Must be 0. */
+    uint32_t reserved;
 } luxfer_segment_params;
 
 /** The mask that strokes are for: a LUXFER_PHASE_ value. */
@@ -1739,6 +1749,19 @@ typedef struct luxfer_segment_report {
  * Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
  */
 #define LUXFER_SEGMENT_UNSEEN 2
+
+/** Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a surface. */
+#define LUXFER_SUBJECT_AUTO 0
+
+/** A surface, such as the plane that carries the lamps: each pixel is judged by its features. */
+#define LUXFER_SUBJECT_SURFACE 1
+
+/**
+ * Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
+ * without a stroke that look like them and lie in the mask of luxfer_segment_set_within are found as well. Negative strokes are
+ * not needed. The first three channels of the features must be CIELAB.
+ */
+#define LUXFER_SUBJECT_LAMPS 2
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -1838,6 +1861,9 @@ luxfer_status luxfer_segment_release(luxfer_segment *segment);
 /** A synthesis of an emissive texture. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
 
+/** How the lights of an exemplar go on: a LUXFER_LAW_ value. */
+typedef int32_t luxfer_emission_law;
+
 /** Settings of the emission. Fill them with luxfer_emission_params_init. */
 typedef struct luxfer_emission_params {
     /** sizeof(luxfer_emission_params), set by luxfer_emission_params_init. */
@@ -1893,6 +1919,19 @@ typedef struct luxfer_emission_params {
     uint32_t candidates;
     /** Must be 0. */
     uint32_t reserved;
+    /** How the lights go on: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default LUXFER_LAW_BEST. */
+    luxfer_emission_law law;
+    /**
+     * With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and lie at
+     * the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the outline of the
+     * mask.
+     */
+    uint32_t clean_lamps;
+    /**
+     * Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in [1,
+     * 1e6]: what is magnified more counts as not shown. Default 0: all of it is used.
+     */
+    double max_magnification;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */
@@ -1926,6 +1965,20 @@ typedef struct luxfer_emission_report {
      * exemplars, and for a plan.
      */
     float sampling_error;
+    /** How the lights go on: a LUXFER_LAW_ value. */
+    luxfer_emission_law law;
+    /** The law that would have been next best: a LUXFER_LAW_ value. */
+    luxfer_emission_law runner_up;
+    /**
+     * How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
+     * NaN where too few of the lights are whole lamps to tell.
+     */
+    double law_score;
+    /**
+     * By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+     * slightly better.
+     */
+    double margin;
 } luxfer_emission_report;
 
 /** A lamp of the texture. Set struct_size before the call. */
@@ -1967,8 +2020,30 @@ typedef struct luxfer_luminaire {
 /** Metadata of the result, with these channels. */
 #define LUXFER_EMISSION_METADATA 3
 
+/** The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better. */
+#define LUXFER_LAW_BEST 0
+
+/** The law that the correlation of the lights tells, by least_regularity. */
+#define LUXFER_LAW_CORRELATION 1
+
+/** A lattice of two periods. */
+#define LUXFER_LAW_LATTICE 2
+
+/** A row of one period; the extent of the exemplar serves as the other. */
+#define LUXFER_LAW_ROW 3
+
+/** The exemplar repeats as a whole. */
+#define LUXFER_LAW_WHOLE 4
+
+/** Patches go anywhere. */
+#define LUXFER_LAW_FREE 5
+
+/** Of results only: the texture is a part of the exemplar, or was given. */
+#define LUXFER_LAW_COPY 6
+
 /**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is
+ * wrong.
  */
 luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
                                           size_t size);
@@ -4020,6 +4095,197 @@ luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
  */
 luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
                                             const char *path);
+
+/* ====================================================================================================================
+ * Warnings
+ *
+ * Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the place in the
+ * photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all its stages. A list is a
+ * copy, which stays as it is when the stage is started again. An empty list does not prove a result right.
+ * ==================================================================================================================== */
+
+/** A list of warnings. See luxfer_transfer_get_warnings. */
+typedef struct luxfer_warnings luxfer_warnings;
+
+/** The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added. */
+typedef int32_t luxfer_warning_code;
+
+/** A reason to doubt a result. Set struct_size before the call. */
+typedef struct luxfer_warning {
+    /** sizeof(luxfer_warning), set by the caller. */
+    uint32_t struct_size;
+    /** LUXFER_WARNING_ value. */
+    luxfer_warning_code code;
+    /**
+     * The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look within,
+     * PLANE without.
+     */
+    luxfer_stage stage;
+    /** 1 if the warning has a place in the photo, else 0. */
+    uint32_t has_place;
+    /** The figure that raised it; each code has its own. */
+    double severity;
+    /** The limit that the figure has passed. */
+    double limit;
+    /** The place in the photo, x and y in pixels; 0 without one. */
+    double place[2];
+} luxfer_warning;
+
+/**
+ * The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard deviation.
+ */
+#define LUXFER_WARNING_FOCAL_ASSUMED 1
+
+/** The directions of the room axes are uncertain; the severity is the largest standard deviation in radians. */
+#define LUXFER_WARNING_VIEW_UNCERTAIN 2
+
+/** The lens bends straight lines; the severity is the distortion of luxfer_rectify_report without its sign. */
+#define LUXFER_WARNING_LENS_DISTORTION 3
+
+/**
+ * The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in radians.
+ */
+#define LUXFER_WARNING_NOT_SQUARE 4
+
+/**
+ * The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust, below the
+ * limit.
+ */
+#define LUXFER_WARNING_LAYOUT_UNCERTAIN 5
+
+/**
+ * Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the severity is
+ * their share of the mask and these regions. The place is the pixel where one more stroke helps most.
+ */
+#define LUXFER_WARNING_UNSEEN 6
+
+/** Strokes of both classes cover the same pixels; the severity is their number per sample. */
+#define LUXFER_WARNING_CONTRADICTORY_STROKES 7
+
+/** Strokes lie outside the photo; the severity is the number of these pixels per sample. */
+#define LUXFER_WARNING_OFF_IMAGE_STROKES 8
+
+/** A mask is uncertain; the severity is the expected share of wrong pixels. */
+#define LUXFER_WARNING_UNCERTAIN_MASK 9
+
+/** A mask has no pixel; the severity is 0, below the limit. */
+#define LUXFER_WARNING_EMPTY_MASK 10
+
+/**
+ * A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one of them.
+ */
+#define LUXFER_WARNING_MISSED_STROKES 11
+
+/** Lights cover much of their plane; the severity is its share. */
+#define LUXFER_WARNING_ALMOST_ALL_LIT 12
+
+/** Much of the unwarped plane is magnified; the severity is its share. The place is the one that is magnified most. */
+#define LUXFER_WARNING_MAGNIFIED 13
+
+/**
+ * The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the limit. The
+ * place is the flattest.
+ */
+#define LUXFER_WARNING_PLANE_NEAR_HORIZON 14
+
+/** The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report. */
+#define LUXFER_WARNING_PATTERN_UNCERTAIN 15
+
+/** The photo shows too few whole lamps for a pattern; the severity is their number, below the limit. */
+#define LUXFER_WARNING_FEW_LAMPS 16
+
+/** The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report. */
+#define LUXFER_WARNING_NO_LATTICE 17
+
+/** Colour channels do not meet their target; the severity is their number. */
+#define LUXFER_WARNING_UNREACHABLE 18
+
+/** The photo clips the target, which is a lower bound; the severity is the number of these channels. */
+#define LUXFER_WARNING_TARGET_CLIPPED 19
+
+/**
+ * Gets the warnings of all stages that have a result, in their order. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before the first stage has ended.
+ */
+luxfer_status luxfer_transfer_get_warnings(luxfer_transfer *transfer,
+                                           luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_rectify_get_warnings(luxfer_rectify *rectify,
+                                          luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the features. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_features_get_warnings(luxfer_features *features, luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are now. The
+ * caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_segment_get_warnings(luxfer_segment *segment,
+                                          luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the texture; a plan has none. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_emission_get_warnings(luxfer_emission *emission, luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the solution. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_relight_get_warnings(luxfer_relight *relight, luxfer_warnings **warnings);
+
+/** Counts the warnings of a list. Any thread. */
+luxfer_status luxfer_warnings_count(luxfer_warnings *warnings, uint32_t *count);
+
+/**
+ * Gets the code, the stage, the figures and the place of a warning. Any thread.
+ * LUXFER_NOT_FOUND if there is no such warning.
+ */
+luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
+                                  uint32_t index,
+                                  luxfer_warning *warning);
+
+/**
+ * Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be; *needed
+ * receives the capacity for all of it, unless NULL. Any thread.
+ * LUXFER_NOT_FOUND if there is no such warning.
+ */
+luxfer_status luxfer_warnings_get_message(luxfer_warnings *warnings,
+                                          uint32_t index,
+                                          char *buffer,
+                                          size_t capacity,
+                                          size_t *needed);
+
+/**
+ * Copies the remedy, as luxfer_warnings_get_message does the defect. Any thread.
+ * LUXFER_NOT_FOUND if there is no such warning.
+ */
+luxfer_status luxfer_warnings_get_advice(luxfer_warnings *warnings,
+                                         uint32_t index,
+                                         char *buffer,
+                                         size_t capacity,
+                                         size_t *needed);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_warnings_retain(luxfer_warnings *warnings);
+
+/** Gives a reference back. Any thread. */
+luxfer_status luxfer_warnings_release(luxfer_warnings *warnings);
+
+/**
+ * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The string
+ * is static: never free it. Any thread.
+ */
+const char *luxfer_warning_name(luxfer_warning_code code);
 
 /* ====================================================================================================================
  * Planning

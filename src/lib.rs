@@ -16,8 +16,8 @@
 //!
 //! Every stage has the same interface: `Params` with defaults, ranges and units; an input; an output with its own
 //! error estimate; and a function that runs it with a [`job::Job`], which reports progress and carries cancel
-//! requests. All parallel work goes through [`exec`] in units that do not depend on the number of threads: equal input
-//! yields equal bits.
+//! requests. The stages that read the photo compute [`warning`]s from their results. All parallel work goes through
+//! [`exec`] in units that do not depend on the number of threads: equal input yields equal bits.
 //!
 //! Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709 RGB; for photometric light their
 //! luminance is in cd/m². Illuminance is in lux, flux in lumens. Images and rays use `f32`, geometry and solvers
@@ -62,6 +62,7 @@ mod reserve;
 pub mod rng;
 pub mod scene;
 mod simd;
+pub mod warning;
 
 pub mod emission;
 pub mod features;

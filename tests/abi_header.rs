@@ -51,6 +51,7 @@ const GROUPS: &[&str] = &[
     "pattern",
     "transfer",
     "transfer_results",
+    "warning",
     "plan",
     "guides",
     "stylize_params",
@@ -353,7 +354,7 @@ layouts! {
     luxfer_luminaire_params: struct_size reserved flux position axis c0 colour;
     luxfer_features_params: struct_size near_plane far_plane normal_radius;
     luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
-    luxfer_segment_params: struct_size samples_per_class channels refine_radius ridge seed refine_tolerance;
+    luxfer_segment_params: struct_size samples_per_class channels refine_radius ridge seed refine_tolerance subject reserved;
     luxfer_segment_report: struct_size channels error negative_samples positive_samples contradictory_pixels;
     luxfer_rectify_params: struct_size detector search metric hough_band focal principal plane_axes max_side reserved
         max_magnification seed;
@@ -361,8 +362,9 @@ layouts! {
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
         distortion distortion_error squareness squareness_errors;
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
-        whole_lamps offset clip_level even_lamps tileable centred candidates reserved;
-    luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error;
+        whole_lamps offset clip_level even_lamps tileable centred candidates reserved law clean_lamps max_magnification;
+    luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error law runner_up
+        law_score margin;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour kind;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo
         flat_triangles;
@@ -397,6 +399,7 @@ layouts! {
     luxfer_pattern_params: struct_size scale length texel_size rotation offset margin;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved;
+    luxfer_warning: struct_size code stage has_place severity limit place;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;

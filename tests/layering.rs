@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 /// For each part of `src`, what it may use; a part may always use itself. Later parts use earlier ones.
 const ARROWS: &[(&str, &[&str])] = &[
     ("error", &[]),
+    ("warning", &[]),
     ("reserve", &[]),
     ("job", &["error", "reserve"]),
     ("exec", &["reserve", "error", "job"]),
@@ -19,11 +20,11 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("render", &["error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
     ("patch", &["simd", "error", "job", "exec", "rng", "image"]),
     // Stages: never each other. Segmentation knows how many channels the features have.
-    ("features", &["simd", "error", "job", "exec", "rng", "image", "geometry", "network"]),
-    ("segment", &["simd", "error", "job", "exec", "rng", "image", "geometry", "features"]),
-    ("rectify", &["simd", "error", "job", "exec", "rng", "image", "geometry"]),
-    ("emission", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
-    ("relight", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
+    ("features", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "network"]),
+    ("segment", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "features"]),
+    ("rectify", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry"]),
+    ("emission", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
+    ("relight", &["error", "warning", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
     ("stylize", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
     // Those that pass data between stages.
     ("guides", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
@@ -33,6 +34,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "transfer",
         &[
             "error",
+            "warning",
             "job",
             "exec",
             "rng",

@@ -45,6 +45,7 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     pool.run(|| transfer.run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap();
     assert_eq!(monitor.progress(), 1.0);
     let results = &transfer.results;
+    assert_eq!(results.warnings(&transfer.input.strokes), [], "a clean photo raises no warning");
 
     // The camera: 66 degrees across.
     let perspective = &results.view.as_ref().unwrap().perspective;

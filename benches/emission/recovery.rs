@@ -2,7 +2,7 @@
 
 use crate::harness::{Clock, Table, figure, time};
 use glam::{DMat3, DVec2, Vec3};
-use luxfer::emission::{Input, Params, Plan};
+use luxfer::emission::{Composition, Input, Params};
 use luxfer::geometry::Homography;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
@@ -88,7 +88,7 @@ fn recovered(photo: &Image, map: Homography) -> (f64, Image) {
     let input = Input { unwarped: &unwarped, light: &light, valid: &valid, photo: Some((photo, map)) };
     let params = Params { width: SIDE, height: SIDE, clip_level: 0.0, ..Params::default() };
     let monitor = Monitor::default();
-    let plan = Plan::new(&input, &[], &params, monitor.job()).expect("a plan");
+    let plan = Composition::new(&input, &[], &params, monitor.job()).expect("a plan");
     let render = || plan.tile(&input, &[], plan.whole(), monitor.job()).expect("a texture").0;
     time(Clock::Process, render)
 }

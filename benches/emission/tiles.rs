@@ -2,7 +2,7 @@
 
 use crate::harness::{Clock, Table, absent, figure, forget_peak_memory, peak_memory, time};
 use crate::{DESIGNS, Exemplar};
-use luxfer::emission::{Params, Plan, Tile};
+use luxfer::emission::{Composition, Params, Tile};
 use luxfer::job::Monitor;
 
 const SIDES: [usize; 4] = [2048, 4096, 8192, 16_384];
@@ -43,12 +43,17 @@ pub fn tiles() {
     table.print("In tiles of 1024 x 1024, from 512 x 512; the texture of 16384 x 16384 itself has 3072 MiB");
 }
 
-fn plan(exemplar: &Exemplar, params: &Params) -> Plan {
-    Plan::new(&exemplar.input(), &[], params, Monitor::default().job()).expect("a plan")
+fn plan(exemplar: &Exemplar, params: &Params) -> Composition {
+    Composition::new(&exemplar.input(), &[], params, Monitor::default().job()).expect("a plan")
 }
 
 /// Renders a tile; the number of its values that are not those of the whole.
-fn differing(exemplar: &Exemplar, plan: &Plan, (x, y): (usize, usize), whole: Option<&luxfer::image::Image>) -> usize {
+fn differing(
+    exemplar: &Exemplar,
+    plan: &Composition,
+    (x, y): (usize, usize),
+    whole: Option<&luxfer::image::Image>,
+) -> usize {
     let tile = Tile { x, y, width: TILE, height: TILE };
     let (texture, _) = plan.tile(&exemplar.input(), &[], tile, Monitor::default().job()).expect("a tile");
     let Some(whole) = whole else { return 0 };

@@ -37,3 +37,4 @@
 #include "luxfer/stylize.hpp"
 #include "luxfer/transfer.hpp"
 #include "luxfer/view.hpp"
+#include "luxfer/warning.hpp"

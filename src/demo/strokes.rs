@@ -25,9 +25,9 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     let between = |column: usize, row: usize| lamp(column, row) + grid.period * Vec2::new(0.5, 0.0);
     let half = Vec2::new(0.3, 0.0) * grid.size;
 
-    // Positive strokes on the ceiling: along it between two columns of lamps, and across between two rows. Negative
-    // strokes: on the walls and the objects in front of them. No two strokes cross, so that a single drawing can hold
-    // them all.
+    // Positive strokes on the ceiling: along it between two columns of lamps, far and near, and across between two
+    // rows. Negative strokes: on the walls and the objects in front of them. No two strokes cross, so that a single
+    // drawing can hold them all.
     let along = |column: usize, row: usize| [on_ceiling(between(column, row)), on_ceiling(between(column, row + 1))];
     let across = |column: usize, row: usize| {
         let middle = Vec2::new(0.0, 0.5) * grid.period;
@@ -42,6 +42,7 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     ];
     let mut set = StrokeSet::default();
     set.plane.push(stroke(&along(0, 1), true)?);
+    set.plane.push(stroke(&along(0, 4), true)?);
     set.plane.push(stroke(&across(1, 3), true)?);
     for points in &not_plane {
         set.plane.push(stroke(points, false)?);

@@ -1,9 +1,12 @@
 //! What an exemplar shows, for those who set the size of its pattern by its lamps.
 
-use super::exemplar::Exemplar;
-use super::period::{self, Continuation};
-use super::plan::working_side;
-use super::{Input, Params, check_input, statistics};
+use super::agreement::statistics;
+use super::compose::layer::outlines;
+use super::exemplar::components::Component;
+use super::lamps::design::Designs;
+use super::lattice::continuation::Continuation;
+use super::params::{Input, Params};
+use super::reading::Reading;
 use crate::error::Result;
 use crate::job::Job;
 use glam::DVec2;
@@ -12,42 +15,21 @@ use glam::DVec2;
 pub struct Measure {
     /// Median over its whole lamps of the longer side; 0 without one.
     pub lamp_length: f64,
-    /// The shorter period of the lattice of the lamps; without one the median distance from a whole lamp to the nearest other, 0
-    /// if there are less than two.
+    /// The shorter period of the lattice of the lamps; without one the median distance from a whole lamp to the
+    /// nearest other, 0 if there are less than two.
     pub spacing: f64,
     /// Width of what it shows.
     pub width: f64,
     pub(super) reading: Reading,
 }
 
-/// An exemplar that has been read: its lamps, and how they go on.
-pub(super) struct Reading {
-    pub exemplar: Exemplar,
-    pub continuation: Continuation,
-    pub regularity: f64,
-    /// What it was read with.
-    working_side: f64,
-    least_regularity: f32,
-}
-
-impl Reading {
-    /// Whether a texture of such settings would read the exemplar in the same way.
-    pub fn serves(&self, input: &Input, params: &Params) -> bool {
-        let Exemplar { width, height, .. } = self.exemplar;
-        [width, height] == [input.unwarped.width, input.unwarped.height]
-            && self.working_side == working_side(input, params)
-            && self.least_regularity == params.least_regularity
-    }
-}
-
 /// Measures an exemplar. Errors as of [`super::run`].
 pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
     params.check()?;
-    check_input(input)?;
-    let side = working_side(input, params);
-    let exemplar = Exemplar::new(input, side, job.part(0.0, 0.5))?;
-    let (continuation, regularity) = period::find(&exemplar, params.least_regularity, job.part(0.5, 1.0))?;
-    let spacing = match continuation {
+    input.check()?;
+    let reading = Reading::new(input, params, job)?;
+    let exemplar = &reading.exemplar;
+    let spacing = match reading.continuation {
         Continuation::Lattice([a, b]) => a.length().min(b.length()),
         _ => {
             let centres: Vec<DVec2> = exemplar.lamps().map(|lamp| lamp.centre).collect();
@@ -56,11 +38,19 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
             nearest.get(nearest.len() / 2).copied().filter(|d| d.is_finite()).unwrap_or(0.0)
         }
     };
-    let mut lengths: Vec<usize> = exemplar.lamps().map(|lamp| lamp.size()[0].max(lamp.size()[1])).collect();
-    lengths.sort_unstable();
+    // Lamps that will be shown clean have the length of their design.
+    let designs = match params.whole_lamps && params.clean_lamps && input.photo.is_some() {
+        true => Designs::find(exemplar, &outlines(exemplar, input, job)?),
+        false => Designs::default(),
+    };
+    let whole = exemplar.components.list.iter().enumerate().filter(|(k, _)| exemplar.roles[*k].is_whole());
+    let length = |(k, lamp): (usize, &Component)| match designs.of(k) {
+        Some((design, _)) => 2.0 * design.half_box().max_element(),
+        None => lamp.size()[0].max(lamp.size()[1]) as f64,
+    };
+    let mut lengths: Vec<f64> = whole.map(length).collect();
+    lengths.sort_by(f64::total_cmp);
     let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
-    let (lamp_length, width) = (lengths.get(lengths.len() / 2).map_or(0.0, |&l| l as f64), columns.count() as f64);
-    let least_regularity = params.least_regularity;
-    let reading = Reading { exemplar, continuation, regularity, working_side: side, least_regularity };
+    let (lamp_length, width) = (lengths.get(lengths.len() / 2).copied().unwrap_or(0.0), columns.count() as f64);
     Ok(Measure { lamp_length, spacing, width, reading })
 }

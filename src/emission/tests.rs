@@ -11,9 +11,11 @@ mod variety;
 use super::*;
 use crate::error::ErrorKind;
 use crate::exec::Pool;
+use crate::geometry::Homography;
 use crate::job::Monitor;
 use crate::rng::Rng;
-use glam::DMat2;
+use exemplar::components;
+use glam::{DMat2, DVec2};
 
 struct Design {
     unwarped: Image,

@@ -39,6 +39,7 @@ mod search;
 mod strokes;
 #[cfg(test)]
 mod tests;
+mod warnings;
 
 pub use frustum::Frustum;
 pub use layout::Layout;

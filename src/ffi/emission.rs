@@ -4,6 +4,7 @@
 //! luminaires.
 
 use super::context::{Context, luxfer_context};
+use super::emission_law;
 use super::geometry::numbers;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
@@ -14,7 +15,7 @@ use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::emission::{self, Emission, LampList, Luminaire, Style};
+use crate::emission::{self, Choice, Continuation, Emission, LampList, Luminaire, Style};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
@@ -37,6 +38,23 @@ pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
 /// Metadata of the result, with these channels.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
+
+/// How the lights of an exemplar go on: a LUXFER_LAW_ value.
+pub type luxfer_emission_law = i32;
+/// The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better.
+pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
+/// The law that the correlation of the lights tells, by least_regularity.
+pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
+/// A lattice of two periods.
+pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
+/// A row of one period; the extent of the exemplar serves as the other.
+pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
+/// The exemplar repeats as a whole.
+pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
+/// Patches go anywhere.
+pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
+/// Of results only: the texture is a part of the exemplar, or was given.
+pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;
 
 /// Settings of the emission. Fill them with luxfer_emission_params_init.
 #[repr(C)]
@@ -83,16 +101,25 @@ pub struct luxfer_emission_params {
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
+    /// How the lights go on: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
+    pub law: luxfer_emission_law,
+    /// With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and lie at
+    /// the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the outline of the
+    /// mask.
+    pub clean_lamps: u32,
+    /// Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in [1,
+    /// 1e6]: what is magnified more counts as not shown. Default 0: all of it is used.
+    pub max_magnification: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_params {
     const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[88];
+    const SIZES: &'static [usize] = &[104];
     fn defaults() -> Self {
         let d = emission::Params::default();
         Self {
-            struct_size: 88,
+            struct_size: 104,
             width: d.width as u32,
             height: d.height as u32,
             block: d.block as u32,
@@ -109,6 +136,9 @@ unsafe impl Versioned for luxfer_emission_params {
             centred: u32::from(d.centred),
             candidates: d.candidates as u32,
             reserved: 0,
+            law: LUXFER_LAW_BEST,
+            clean_lamps: u32::from(d.clean_lamps),
+            max_magnification: d.max_magnification,
         }
     }
 }
@@ -133,6 +163,9 @@ impl luxfer_emission_params {
             centred: params::flag(self.centred, "centred")?,
             clip_level: self.clip_level,
             candidates: self.candidates as usize,
+            law: emission_law::law(self.law)?,
+            clean_lamps: params::flag(self.clean_lamps, "clean_lamps")?,
+            max_magnification: self.max_magnification,
             seed: self.seed,
         })
     }
@@ -160,14 +193,35 @@ pub struct luxfer_emission_report {
     /// this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
     /// exemplars, and for a plan.
     pub sampling_error: f32,
+    /// How the lights go on: a LUXFER_LAW_ value.
+    pub law: luxfer_emission_law,
+    /// The law that would have been next best: a LUXFER_LAW_ value.
+    pub runner_up: luxfer_emission_law,
+    /// How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
+    /// NaN where too few of the lights are whole lamps to tell.
+    pub law_score: f64,
+    /// By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+    /// slightly better.
+    pub margin: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_report {
     const NAME: &'static str = "luxfer_emission_report";
-    const SIZES: &'static [usize] = &[32];
+    const SIZES: &'static [usize] = &[56];
     fn defaults() -> Self {
-        Self { struct_size: 32, luminaires: 0, error: 0.0, regularity: 0.0, exemplar_lamps: 0, sampling_error: 0.0 }
+        Self {
+            struct_size: 56,
+            luminaires: 0,
+            error: 0.0,
+            regularity: 0.0,
+            exemplar_lamps: 0,
+            sampling_error: 0.0,
+            law: LUXFER_LAW_COPY,
+            runner_up: LUXFER_LAW_COPY,
+            law_score: f64::NAN,
+            margin: f64::NAN,
+        }
     }
 }
 
@@ -247,7 +301,7 @@ pub(super) struct Made {
 
 /// A plan, its lamps, and what it was made from.
 pub(super) struct Planned {
-    pub plan: emission::Plan,
+    pub plan: emission::Composition,
     pub lamps: LampList,
     pub inputs: Inputs,
 }
@@ -331,7 +385,8 @@ impl Handle for luxfer_emission {
     const NAME: &'static str = "luxfer_emission";
 }
 
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is
+/// wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_params_init(
     params: *mut luxfer_emission_params,
@@ -447,7 +502,16 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
             (_, Some(texture)) => (texture.error, texture.sampling_error, texture.regularity, texture.exemplar_lamps),
             _ => (f64::NAN, 0.0, 0.0, 0),
         };
+        let (law, choice) = match (&made.plan, &made.texture) {
+            (Some(planned), _) => planned.plan.law(),
+            (_, Some(texture)) => (texture.continuation, texture.choice),
+            _ => (Continuation::Copy, Choice::only(Continuation::Copy)),
+        };
         out.set(luxfer_emission_report {
+            law: emission_law::number(law),
+            runner_up: emission_law::number(choice.runner_up),
+            law_score: choice.score,
+            margin: choice.margin(),
             luminaires: count(made.luminaires()),
             error,
             regularity,

@@ -14,7 +14,7 @@ use super::job::luxfer_job;
 use super::params;
 use super::pointer::Out;
 use super::status::luxfer_status;
-use crate::emission::{LampList, Plan, Tile};
+use crate::emission::{Composition, LampList, Tile};
 use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 use crate::job::Monitor;
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
         stage.inputs().with(|_, _| Ok(()))?;
         stage.start(job, move |inputs, _, job| {
             let (plan, lamps) = inputs.with(|input, styles| {
-                let plan = Plan::new(input, styles, &params, job.part(0.0, 0.95))?;
+                let plan = Composition::new(input, styles, &params, job.part(0.0, 0.95))?;
                 let lamps = LampList::new(&plan, input, styles, job.part(0.95, 1.0))?;
                 Ok((plan, lamps))
             })?;

@@ -84,7 +84,7 @@ pub struct luxfer_segment_params {
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_segment_params {
     const NAME: &'static str = "luxfer_segment_params";
-    const SIZES: &'static [usize] = &[40, 48];
+    const SIZES: &'static [usize] = &[48];
     fn defaults() -> Self {
         let defaults = segment::Params::default();
         Self {
@@ -164,8 +164,8 @@ unsafe impl Versioned for luxfer_segment_report {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     features: Option<Arc<Pixels>>,
-    within: Option<Arc<Pixels>>,
-    strokes: Vec<Stroke>,
+    pub(super) within: Option<Arc<Pixels>>,
+    pub(super) strokes: Vec<Stroke>,
 }
 
 impl Handle for luxfer_segment {

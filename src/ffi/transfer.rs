@@ -175,6 +175,10 @@ impl Inputs {
         Ok((photo.width, photo.height))
     }
 
+    pub(super) fn strokes(&self) -> &StrokeSet {
+        &self.strokes
+    }
+
     /// The inputs as the transfer takes them.
     fn input(&self) -> Result<transfer::Input> {
         let depth = match &self.depth {

@@ -116,6 +116,15 @@ pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64
     Perspective { focal, axes, ..*camera }
 }
 
+/// The relative standard deviation of a focal length that was not given: of what the vanishing points of the axes and
+/// photos in general say together.
+pub fn focal_spread(camera: &Perspective, points: &[VanishingPoint; 3]) -> f64 {
+    let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
+    let from_lines =
+        focal_from_points(&known, camera.principal, camera.focal).map_or(f64::INFINITY, |(_, spread)| spread);
+    (from_lines.powi(-2) + USUAL_SPREAD.powi(-2)).sqrt().recip()
+}
+
 /// Unit direction in camera space whose vanishing point is the given homogeneous pixel.
 pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
     (point.truncate() - principal * point.z).extend(point.z * focal).normalize()

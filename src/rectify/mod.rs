@@ -49,6 +49,7 @@ mod taps;
 mod tests;
 mod unwarp;
 pub mod vanishing;
+mod warnings;
 
 pub use distortion::Distortion;
 pub use resample::warp;

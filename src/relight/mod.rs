@@ -32,6 +32,7 @@ mod solve;
 mod steps;
 mod target;
 mod transport;
+mod warnings;
 
 pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, Outcome, solve_groups};

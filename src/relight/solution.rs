@@ -1,5 +1,6 @@
 //! The solution of relighting: the scale of the emission.
 
+use super::sided::Sense;
 use glam::DVec3;
 
 /// Whether the target is met in one colour channel, and if not, why.
@@ -24,6 +25,8 @@ pub struct Solution {
     /// Half-widths of the 95 % confidence intervals of `scale`.
     pub half_width: DVec3,
     pub status: [TargetStatus; 3],
+    /// Whether the target of each channel was exact or a limit.
+    pub sense: [Sense; 3],
     /// Mean radiance of the target under the unscaled emission, in cd/m².
     pub response: DVec3,
     /// Mean radiance of the target under all other light, in cd/m².

@@ -63,6 +63,7 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
         scale: DVec3::from(scale),
         half_width: DVec3::from(answers.each_ref().map(|a| a.half_width)),
         status,
+        sense,
         response,
         background,
         delta_e: colour_interval(&answers, response, seen),

@@ -68,7 +68,7 @@ impl<'a> Spread<'a> {
         }
         let mut distances: Vec<f64> = self.members.iter().map(|&i| distances[i]).collect();
         let reach = (distances.len() - 1) * WITHIN / 100;
-        let reach = distances.select_nth_unstable_by(reach, f64::total_cmp).1.max(1e-12);
+        let reach = distances.select_nth_unstable_by(reach, f64::total_cmp).1.max(1.0);
         ellipsoid.inverse.iter_mut().for_each(|v| *v /= reach);
         ellipsoid
     }

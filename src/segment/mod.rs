@@ -24,7 +24,10 @@
 //! own colour most: masks follow the edges of the photo, and noise and small mistakes go, small lamps with them if the
 //! radius is larger than they are.
 //!
-//! Not modelled: neighbourhood in the learning itself, and shapes.
+//! Lamps are found as things rather than pixel by pixel ([`instances`]), unless the caller wants a surface ([`Subject`]). A plane
+//! stays on the face of the room that its strokes lie on ([`face`]).
+//!
+//! Not modelled: neighbourhood in the learning itself.
 
 mod classify;
 mod distance;
@@ -41,9 +44,11 @@ pub mod strokes;
 mod table;
 #[cfg(test)]
 mod tests;
+mod warnings;
 
 pub use distance::dilate;
 pub use strokes::{Stroke, StrokeSet};
+pub use warnings::almost_all_lit;
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;
@@ -58,8 +63,8 @@ pub struct Input<'a> {
     /// 1 to 16 channels of the photo's size; finite everywhere.
     pub features: &'a Image,
     pub strokes: &'a [Stroke],
-    /// Where to look (1) and where not (0): the plane's mask in the second phase. Outside it the confidence is 0.
-    /// Strokes outside it still count as examples.
+    /// Where to look (1) and where not (0): the plane's mask in the second phase. Outside it the confidence is 0,
+    /// but for lamps with a stroke. Strokes outside it still count as examples.
     pub within: Option<&'a Image>,
 }
 
@@ -250,7 +255,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     if params.refine_radius > 0 {
         classified.refine(input, params, job.part(done, 1.0))?;
     }
-    if input.within.is_none() {
+    if input.within.is_none() && features.channels == CHANNELS {
         face::restrict(input, &mut classified)?;
     }
     let unseen = classified.mean_unseen;

@@ -342,6 +342,7 @@ fn refinement_smooths_what_is_of_one_colour_and_keeps_to_where_it_looks() {
     assert!(after > before + 0.005, "{before} {after}");
     assert!(got.mask.data.iter().zip(&got.confidence.data).all(|(m, c)| (*m > 0.5) == (*c > 0.5)));
     let within = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 100)]).unwrap();
+    let refined = Params { subject: Subject::Surface, ..refined };
     let got = segment(&features, &plane_strokes(), Some(&within), &refined).unwrap();
     assert!(got.confidence.data[100 * WIDTH..].iter().all(|c| *c == 0.0));
     for (radius, tolerance) in [(1025, 1.0), (1, 0.0), (1, f64::NAN)] {

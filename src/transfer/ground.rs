@@ -1,6 +1,6 @@
 //! Where on the surface's rectangle there is room for light.
 
-use crate::emission::Ground;
+use crate::emission::Placement;
 use crate::error::Result;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
@@ -23,7 +23,7 @@ pub(super) fn of(
     zones: &[DVec4],
     size: UVec2,
     job: Job,
-) -> Result<Option<Vec<Ground>>> {
+) -> Result<Option<Vec<Placement>>> {
     let is_full = surface.area >= FULL * surface.size.element_product();
     let keeps_margin = margin >= 0.0;
     if is_full && !keeps_margin && zones.is_empty() {
@@ -51,12 +51,12 @@ pub(super) fn of(
         keeps_margin && edge < radius.max(1.0)
     };
 
-    let mut ground = try_vec(width * height, Ground::Open)?;
+    let mut ground = try_vec(width * height, Placement::Open)?;
     for (i, out) in ground.iter_mut().enumerate() {
         *out = match () {
-            _ if blocked.data[i] > 0.5 || beyond(i % width, i / width) => Ground::KeepOut,
-            _ if !covered[i] => Ground::Hidden,
-            _ => Ground::Open,
+            _ if blocked.data[i] > 0.5 || beyond(i % width, i / width) => Placement::KeepOut,
+            _ if !covered[i] => Placement::Hidden,
+            _ => Placement::Open,
         };
     }
     Ok(Some(ground))
@@ -129,7 +129,7 @@ mod tests {
         (scene, surface)
     }
 
-    fn share(ground: &[Ground], of: Ground) -> f64 {
+    fn share(ground: &[Placement], of: Placement) -> f64 {
         ground.iter().filter(|g| **g == of).count() as f64 / ground.len() as f64
     }
 
@@ -142,15 +142,19 @@ mod tests {
         };
         // 4 of 24 m², less the texel's breadth along its two inner edges.
         let cut = of(-1.0, &[]);
-        assert!((share(&cut, Ground::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, Ground::KeepOut) == 0.0);
+        assert!((share(&cut, Placement::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, Placement::KeepOut) == 0.0);
         // With a margin of 0.3 m what is open is the L shrunk by it, whose inner corner is a quarter of a disc.
         let kept = of(0.3, &[]);
         let exact = 5.4 * 3.4 - (2.0 * 2.0 + std::f64::consts::FRAC_PI_4 * 0.09 - 0.09);
-        assert!((share(&kept, Ground::Open) * 24.0 - exact).abs() < 0.08, "{}", share(&kept, Ground::Open) * 24.0);
+        assert!(
+            (share(&kept, Placement::Open) * 24.0 - exact).abs() < 0.08,
+            "{}",
+            share(&kept, Placement::Open) * 24.0
+        );
         // A zone of 2 × 1 m within the L.
         let zone = of(-1.0, &[DVec4::new(1.0, 2.5, 3.0, 3.5)]);
-        assert!((share(&zone, Ground::KeepOut) * 24.0 - 2.0).abs() < 0.05);
-        assert_eq!(zone[300 * 600 + 200], Ground::KeepOut);
+        assert!((share(&zone, Placement::KeepOut) * 24.0 - 2.0).abs() < 0.05);
+        assert_eq!(zone[300 * 600 + 200], Placement::KeepOut);
     }
 
     #[test]
@@ -161,7 +165,11 @@ mod tests {
         let zone = DVec4::new(1.0, 2.5, 3.0, 3.5);
         let ground = of(&scene, (&turned, &surface), 0.0, &[zone], size, Monitor::default().job()).unwrap().unwrap();
         let area = f64::from(turned.size.element_product());
-        assert!((share(&ground, Ground::Open) * area - 18.0).abs() < 0.15, "{}", share(&ground, Ground::Open) * area);
+        assert!(
+            (share(&ground, Placement::Open) * area - 18.0).abs() < 0.15,
+            "{}",
+            share(&ground, Placement::Open) * area
+        );
         assert!((turned.size.x - (6.0 * 0.5f32.cos() + 2.0 * 0.5f32.sin())).abs() < 1.5);
     }
 
@@ -197,7 +205,7 @@ mod tests {
         assert!((by_name.size.element_product() - 24.0).abs() < 1e-3, "{}", by_name.size);
         let size = UVec2::new(600, 400);
         let ground = of(&scene, (&by_name, &by_name), -1.0, &[], size, Monitor::default().job()).unwrap().unwrap();
-        assert!((share(&ground, Ground::Hidden) - 1.0 / 6.0).abs() < 0.01);
+        assert!((share(&ground, Placement::Hidden) - 1.0 / 6.0).abs() < 0.01);
     }
 
     #[test]

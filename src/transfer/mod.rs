@@ -14,6 +14,7 @@ mod schedule;
 mod schedule_file;
 mod stages;
 mod viewpoint;
+mod warnings;
 
 pub use check::check_zones;
 pub use colour::TargetColour;

@@ -176,6 +176,21 @@ class AddOn(unittest.TestCase):
             kind.draw(SimpleNamespace(layout=Layout()), bpy.context)
         self.assertEqual(panels.lines("a word too long for it all", 10), ["a word too", "long for", "it all"])
 
+    def test_what_is_doubtful_is_shown_with_what_to_do(self):
+        self.load_photo()
+        self.assertEqual(bpy.ops.luxfer.preview_masks(), {"FINISHED"})
+        self.assertTrue(all(isinstance(warning, luxfer.StageWarning) for warning in lighting.warnings))
+
+        labels = []
+        stub = SimpleNamespace(column=lambda **_: stub, box=lambda: stub, label=lambda text, **_: labels.append(text))
+        code, stage = luxfer.types.WarningCode.UNSEEN, luxfer.types.Stage.PLANE
+        warning = luxfer.StageWarning(code, stage, 0.3, 0.1, "a third of the mask is new", "paint there", (30.5, 12.5))
+        panels.show_warnings(stub, bpy.context, [warning])
+        self.assertEqual(labels[0], panels.STAGES["PLANE"])
+        shown = " ".join(labels[1:])
+        self.assertEqual(shown, "A third of the mask is new. Paint there, at 30, 12 from the photo's top left.")
+        self.assertEqual(set(panels.STAGES), set(luxfer.types.Stage.__members__))
+
     def test_masks(self):
         self.load_photo()
         bpy.ops.luxfer.preview_masks()

@@ -141,6 +141,7 @@ def photo() -> Scenario:
     s.make("rectify_get_image", rectify, 0)
     s.make("rectify_warp", rectify, photo)
     s.call("rectify_get_report", rectify, struct("rectify_report", "size"))
+    s.make("rectify_get_warnings", rectify)
     features = s.make("features_create", s.context)
     s.references("features", features)
     s.call("features_set_photo", features, photo)
@@ -155,6 +156,7 @@ def photo() -> Scenario:
     s.run("features_start", features, struct("features_params"))
     channels = s.make("features_get_image", features, 0)
     s.call("features_get_report", features, struct("features_report", "size"))
+    s.make("features_get_warnings", features)
     segment = s.make("segment_create", s.context)
     s.references("segment", segment)
     s.call("segment_set_features", segment, channels)
@@ -167,6 +169,7 @@ def photo() -> Scenario:
     s.run("segment_start", segment, struct("segment_params"))
     s.make("segment_get_image", segment, 0)
     s.call("segment_get_report", segment, struct("segment_report", "size"))
+    s.make("segment_get_warnings", segment)
     return s
 
 
@@ -180,6 +183,13 @@ def emission() -> Scenario:
     s.run("emission_start", stage, struct("emission_params", width=48, height=40))
     s.make("emission_get_image", stage, 0)
     s.call("emission_get_report", stage, struct("emission_report", "size"))
+    warnings = s.make("emission_get_warnings", stage)  # there are no whole lamps
+    s.references("warnings", warnings)
+    s.call("warnings_count", warnings, ROOM)
+    s.call("warnings_get", warnings, 0, struct("warning", "size"))
+    s.call("warnings_get_message", warnings, 0, ROOM, 300, ROOM)
+    s.call("warnings_get_advice", warnings, 0, ROOM, 300, ROOM)
+    s.call("warning_name", 6)
     s.call("emission_get_luminaire", stage, 0, struct("luminaire", "size"))
     s.call("emission_get_corner", stage, 0, 0, ROOM, ROOM)
     s.call("emission_clear_styles", stage)
@@ -238,6 +248,7 @@ def light() -> Scenario:
     s.call("relight_set_sense", relight, 1, 0, 2)
     s.run("relight_start", relight, struct("relight_params", paths=2048))
     s.call("relight_get_report", relight, struct("relight_report", "size"))
+    s.make("relight_get_warnings", relight)
     return s
 
 
@@ -322,6 +333,7 @@ def transfer() -> Scenario:
     s.make("transfer_get_image", stage, 7)
     s.make("transfer_get_scene", stage, 0)
     s.call("transfer_get_report", stage, struct("transfer_report", "size"))
+    s.make("transfer_get_warnings", stage)
     s.call("transfer_get_view", stage, struct("rectify_report", "size"))
     s.call("transfer_get_solution", stage, struct("relight_report", "size"))
     s.call("transfer_get_fixture", stage, 0, struct("fixture", "size"))

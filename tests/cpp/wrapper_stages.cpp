@@ -154,6 +154,28 @@ void lighting_transfer(const Context &context) {
     CHECK(std::ifstream("wrapper_stages.csv").good());
     CHECK(transfer.view().focal == view.focal && transfer.solution().scale[0] > 0);
 
+    // The warnings of the transfer and of each stage: as many as there are, and an error beyond.
+    const luxfer::Warnings lists[] = {transfer.warnings(), rectify.warnings(), features.warnings(), plane.warnings(),
+                                      emission.warnings()};
+    for (const luxfer::Warnings &list : lists) {
+        const luxfer::Warnings warnings = copied(list);
+        const std::uint32_t count = warnings.count();
+        for (std::uint32_t i = 0; i < count; i++) {
+            const luxfer_warning warning = warnings.warning(i);
+            CHECK(warning.stage >= LUXFER_STAGE_VIEW && warning.stage <= LUXFER_STAGE_RENDER);
+            CHECK(std::strcmp(luxfer::Warnings::name(warning.code), "LUXFER_WARNING_UNKNOWN") != 0);
+            CHECK(!warnings.message(i).empty() && !warnings.advice(i).empty());
+        }
+        luxfer_status beyond = LUXFER_OK;
+        try {
+            warnings.warning(count);
+        } catch (const luxfer::Error &error) {
+            beyond = error.status();
+        }
+        CHECK_STATUS(beyond, LUXFER_NOT_FOUND);
+    }
+    CHECK(lists[4].count() == 0); // A plan has none.
+
     const auto plan = luxfer::Plan::create(context);
     luxfer::PlanParams budget;
     budget.time_budget_ms = 500;

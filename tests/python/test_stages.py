@@ -99,6 +99,56 @@ class Transfer(Case):
         self.assertEqual(outline.shape, (lamps[0].corners, 2))
         self.assertTrue(((outline >= 0) & (outline <= (128, 96))).all())
 
+    def test_warnings(self):
+        photo, strokes = demo()
+        transfer = luxfer.Transfer(context(), photo)
+        with self.assertRaises(errors.NotReady):
+            transfer.warnings
+        transfer.add_strokes_image(strokes)
+        # What the strokes call lights covers nearly the whole plane.
+        transfer.use_mask("plane", np.ones(photo.size[1::-1], np.float32))
+        transfer.use_mask("lights", np.ones(photo.size[1::-1], np.float32))
+        transfer.run(last="features")
+        lit = [w for w in transfer.warnings if w.code == luxfer.types.WarningCode.ALMOST_ALL_LIT]
+        self.assertEqual(len(lit), 1, transfer.warnings)
+        self.assertEqual((lit[0].stage, lit[0].severity, lit[0].place), (luxfer.types.Stage.LIGHTS, 1.0, None))
+        self.assertIn("100 %", lit[0].message)
+        self.assertTrue(lit[0].advice and str(lit[0]).startswith("lights: lights cover 100 %"))
+
+        # A face that no stroke has touched, and the place that asks for one.
+        face = np.random.default_rng(1).normal(0, 0.05, (60, 80, 1)).astype(np.float32)
+        face[:30] += 1
+        face[:30, 50:] += 5
+        segment = luxfer.Segment(context(), face)
+        for y, positive in ((5, True), (20, True), (40, False), (50, False)):
+            segment.add_stroke([(5, y), (45, y)], radius=2, positive=positive)
+        segment.run()
+        unseen = [w for w in segment.warnings if w.code == luxfer.types.WarningCode.UNSEEN]
+        self.assertEqual([w.stage for w in unseen], [luxfer.types.Stage.PLANE])
+        self.assertGreater(unseen[0].severity, unseen[0].limit)
+        x, y = unseen[0].place
+        self.assertTrue(50 < x < 80 and y < 30, unseen[0])
+        segment.add_stroke([(x, y)], radius=2, positive=True)
+        self.assertNotIn(luxfer.types.WarningCode.UNSEEN, [w.code for w in segment.run().warnings])
+
+        # Each stage has a list.
+        dark = np.zeros((32, 32, 3), np.float32)
+        dark[8:12, 8:12] = 1
+        single = luxfer.Emission(context(), dark, dark[..., 0], np.ones((32, 32))).run(width=96, height=96)
+        self.assertIn(luxfer.types.WarningCode.FEW_LAMPS, [w.code for w in single.warnings])
+        features = luxfer.Features(context(), photo).run()
+        self.assertEqual([w.code for w in features.warnings], [luxfer.types.WarningCode.LAYOUT_UNCERTAIN])
+        self.assertIsInstance(luxfer.Rectify(context(), photo).run().warnings, list)
+        room = luxfer.Scene.demo(context(), "target-room")
+        mesh, material = room.place_emission("Ceiling", np.eye(8).repeat(3).reshape(8, 8, 3), (100, 100, 100))
+        relight = luxfer.Relight(context())
+        relight.set_scene(room, material, mesh)
+        relight.set_target((12, 10, 8))
+        self.assertEqual(relight.run(paths=1 << 14).warnings, [])
+        relight.set_sense(("at-least", "exactly", "exactly"))
+        clipped = relight.run(paths=1 << 14).warnings
+        self.assertEqual([w.code for w in clipped], [luxfer.types.WarningCode.TARGET_CLIPPED])
+
     def test_tiles_and_styles(self):
         def exemplar(lamp):
             image = np.zeros((80, 80, 3), np.float32)

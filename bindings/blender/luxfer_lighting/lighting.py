@@ -35,6 +35,8 @@ class Result:
 
 
 result: Result | None = None
+#: Reasons to doubt the masks or the transfer that were made last.
+warnings: list[luxfer.StageWarning] = []
 
 
 def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
@@ -52,8 +54,21 @@ def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
 
 
 def mask_steps(transfer: luxfer.Transfer, photo: np.ndarray) -> Generator[work.Step, Any, None]:
-    yield transfer.start("view", "lights")
+    yield from follow(transfer, transfer.start("view", "lights"))
     store_masks(photo, *masks(transfer))
+
+
+def follow(transfer: luxfer.Transfer, job: work.Step) -> Generator[work.Step, Any, None]:
+    """Waits for a job of a transfer and keeps its warnings. Those of a job that has failed may say why it has."""
+    global warnings
+    warnings = []
+    try:
+        yield job
+    finally:
+        try:
+            warnings = transfer.warnings
+        except luxfer.errors.NotReady:
+            pass  # its first stage has not ended
 
 
 def masks(transfer: luxfer.Transfer) -> tuple[np.ndarray, np.ndarray]:
@@ -75,7 +90,7 @@ def transfer_steps(
     transfer: luxfer.Transfer, photo: np.ndarray, room: luxfer.Scene, name: str, params: dict[str, Any], apply: bool
 ) -> Generator[work.Step, Any, None]:
     global result
-    yield transfer.start("view", "relight", **params)
+    yield from follow(transfer, transfer.start("view", "relight", **params))
     store_masks(photo, *masks(transfer))
     lit = transfer.scene("lit")
     emission = lit.material(lit.counts.materials - 1)["emission"]  # that of the surface is the last one
@@ -292,6 +307,8 @@ CLASSES = (LUXFER_OT_new_strokes, LUXFER_OT_paint, LUXFER_OT_preview_masks, LUXF
 
 
 def register() -> None:
+    global warnings
+    warnings = []
     for kind in CLASSES:
         bpy.utils.register_class(kind)
 

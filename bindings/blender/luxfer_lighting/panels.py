@@ -3,12 +3,26 @@
 from __future__ import annotations
 
 import bpy
+import luxfer
 
 from . import lighting, live, painting, work
 
 
 #: The colours of the strokes, by icons that every version has (those of bones).
 ICONS = {"PLANE": "COLORSET_03_VEC", "NOT_PLANE": "COLORSET_01_VEC", "LIGHT": "COLORSET_09_VEC", "NOT_LIGHT": "COLORSET_04_VEC"}
+
+
+#: Titles of the stages of a transfer.
+STAGES = {
+    "VIEW": "Camera",
+    "FEATURES": "Depth",
+    "PLANE": "Plane",
+    "LIGHTS": "Lights",
+    "UNWARP": "Plane Seen Straight On",
+    "EMISSION": "Texture",
+    "RELIGHT": "Strength",
+    "RENDER": "Picture",
+}
 
 
 def show_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -41,6 +55,16 @@ def lines(text: str, width: int) -> list[str]:
             out.append("")
         out[-1] = f"{out[-1]} {word}".strip()
     return out
+
+
+def show_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, warnings: list[luxfer.StageWarning]) -> None:
+    """Reasons to doubt a result, each with its remedy and the place in the photo."""
+    for warning in warnings:
+        box = layout.box()
+        box.label(text=STAGES[warning.stage.name], icon="ERROR")
+        say(box, context, f"{warning.message[:1].upper()}{warning.message[1:]}.")
+        at = "" if warning.place is None else f", at {warning.place[0]:.0f}, {warning.place[1]:.0f} from the photo's top left"
+        say(box, context, f"{warning.advice[:1].upper()}{warning.advice[1:]}{at}.")
 
 
 class Sidebar:
@@ -82,6 +106,7 @@ class LightingPanel(Sidebar):
         if lighting.result is not None:
             layout.operator("luxfer.apply", icon="MATERIAL")
             say(layout, context, f"Strength known to {lighting.result.error:.1%}; see the text {lighting.LAMPS}")
+        show_warnings(layout, context, lighting.warnings)
         show_progress(layout, context)
 
 

@@ -6,7 +6,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
 
-#include "core.hpp"
+#include "warning.hpp"
 
 namespace luxfer {
 
@@ -38,6 +38,9 @@ public:
     Result<Image> warp(const Image &source) const { return make<Image>(luxfer_rectify_warp, source.get()); }
 
     Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
+
+    /// Reasons to doubt the camera, and the plane if it has been unwarped.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_rectify_get_warnings); }
 };
 
 /// The features of each pixel of a photo, for segmentation. See luxfer_features.
@@ -81,6 +84,9 @@ public:
     Result<Image> image(luxfer_features_image which) const { return make<Image>(luxfer_features_get_image, which); }
 
     Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
+
+    /// Reasons to doubt the features.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_features_get_warnings); }
 };
 
 /// Computes a mask from strokes. See luxfer_segment.
@@ -116,6 +122,9 @@ public:
     Result<Image> image(luxfer_segment_image which) const { return make<Image>(luxfer_segment_get_image, which); }
 
     Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
+
+    /// Reasons to doubt the mask.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_segment_get_warnings); }
 };
 
 /// Synthesises an emissive texture of any size from unwarped lights. See luxfer_emission.
@@ -167,6 +176,9 @@ public:
     Result<Image> image(luxfer_emission_image which) const { return make<Image>(luxfer_emission_get_image, which); }
 
     Result<luxfer_emission_report> report() const { return value<luxfer_emission_report>(luxfer_emission_get_report); }
+
+    /// Reasons to doubt the texture.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_emission_get_warnings); }
 
     Result<luxfer_luminaire> luminaire(std::uint32_t index) const {
         return value<luxfer_luminaire>(luxfer_emission_get_luminaire, index);

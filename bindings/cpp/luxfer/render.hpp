@@ -4,6 +4,7 @@
 #pragma once
 
 #include "scene.hpp"
+#include "warning.hpp"
 
 namespace luxfer {
 
@@ -144,6 +145,9 @@ public:
     }
 
     Result<luxfer_relight_report> report() const { return value<luxfer_relight_report>(luxfer_relight_get_report); }
+
+    /// Reasons to doubt the solution.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_relight_get_warnings); }
 };
 
 } // namespace luxfer

@@ -41,6 +41,7 @@ from .segment import Segment
 from .sheet import align_sheet, print_sheet
 from .stylize import Stylize
 from .transfer import Transfer
+from .warning import StageWarning
 
 __version__ = f"{abi.LUXFER_VERSION_MAJOR}.{abi.LUXFER_VERSION_MINOR}.{abi.LUXFER_VERSION_PATCH}"
 
@@ -63,6 +64,7 @@ __all__ = [
     "Render",
     "Scene",
     "Segment",
+    "StageWarning",
     "Stylize",
     "Transfer",
     "abi",

@@ -88,10 +88,20 @@ LUXFER_PHASE_LIGHTS = 1
 LUXFER_SEGMENT_MASK = 0
 LUXFER_SEGMENT_CONFIDENCE = 1
 LUXFER_SEGMENT_UNSEEN = 2
+LUXFER_SUBJECT_AUTO = 0
+LUXFER_SUBJECT_SURFACE = 1
+LUXFER_SUBJECT_LAMPS = 2
 LUXFER_EMISSION_TEXTURE = 0
 LUXFER_EMISSION_MASK = 1
 LUXFER_EMISSION_EXEMPLAR_METADATA = 2
 LUXFER_EMISSION_METADATA = 3
+LUXFER_LAW_BEST = 0
+LUXFER_LAW_CORRELATION = 1
+LUXFER_LAW_LATTICE = 2
+LUXFER_LAW_ROW = 3
+LUXFER_LAW_WHOLE = 4
+LUXFER_LAW_FREE = 5
+LUXFER_LAW_COPY = 6
 LUXFER_RENDER_BEAUTY = 0
 LUXFER_RENDER_VARIANCE = 1
 LUXFER_RENDER_PATHS = 2
@@ -165,6 +175,25 @@ LUXFER_TRANSFER_RENDER_PREVIEW = 11
 LUXFER_SCENE_UNSOLVED = 0
 LUXFER_SCENE_LIT = 1
 LUXFER_SCENE_WHITE = 2
+LUXFER_WARNING_FOCAL_ASSUMED = 1
+LUXFER_WARNING_VIEW_UNCERTAIN = 2
+LUXFER_WARNING_LENS_DISTORTION = 3
+LUXFER_WARNING_NOT_SQUARE = 4
+LUXFER_WARNING_LAYOUT_UNCERTAIN = 5
+LUXFER_WARNING_UNSEEN = 6
+LUXFER_WARNING_CONTRADICTORY_STROKES = 7
+LUXFER_WARNING_OFF_IMAGE_STROKES = 8
+LUXFER_WARNING_UNCERTAIN_MASK = 9
+LUXFER_WARNING_EMPTY_MASK = 10
+LUXFER_WARNING_MISSED_STROKES = 11
+LUXFER_WARNING_ALMOST_ALL_LIT = 12
+LUXFER_WARNING_MAGNIFIED = 13
+LUXFER_WARNING_PLANE_NEAR_HORIZON = 14
+LUXFER_WARNING_PATTERN_UNCERTAIN = 15
+LUXFER_WARNING_FEW_LAMPS = 16
+LUXFER_WARNING_NO_LATTICE = 17
+LUXFER_WARNING_UNREACHABLE = 18
+LUXFER_WARNING_TARGET_CLIPPED = 19
 LUXFER_GUIDES_FULL = 0
 LUXFER_GUIDES_DIRECT = 1
 LUXFER_GUIDES_SPECULAR = 2
@@ -268,6 +297,10 @@ class luxfer_importance(Structure):
 
 class luxfer_transfer(Structure):
     """A lighting transfer. See luxfer_transfer_create."""
+
+
+class luxfer_warnings(Structure):
+    """A list of warnings. See luxfer_transfer_get_warnings."""
 
 
 class luxfer_plan(Structure):
@@ -607,7 +640,10 @@ class luxfer_segment_params(Structure):
         ("ridge", c_double),
         ("seed", c_uint64),
         ("refine_tolerance", c_double),
+        ("subject", c_int32),
+        ("reserved", c_uint32),
     ]
+    enumerations: dict[str, type] = {"subject": types.Subject}
 
 
 class luxfer_segment_report(Structure):
@@ -645,7 +681,11 @@ class luxfer_emission_params(Structure):
         ("centred", c_uint32),
         ("candidates", c_uint32),
         ("reserved", c_uint32),
+        ("law", c_int32),
+        ("clean_lamps", c_uint32),
+        ("max_magnification", c_double),
     ]
+    enumerations: dict[str, type] = {"law": types.EmissionLaw}
 
 
 class luxfer_emission_report(Structure):
@@ -658,7 +698,12 @@ class luxfer_emission_report(Structure):
         ("regularity", c_double),
         ("exemplar_lamps", c_uint32),
         ("sampling_error", c_float),
+        ("law", c_int32),
+        ("runner_up", c_int32),
+        ("law_score", c_double),
+        ("margin", c_double),
     ]
+    enumerations: dict[str, type] = {"law": types.EmissionLaw, "runner_up": types.EmissionLaw}
     result = types.EmissionReport
 
 
@@ -1088,6 +1133,22 @@ class luxfer_fixture(Structure):
     result = types.Fixture
 
 
+class luxfer_warning(Structure):
+    """A reason to doubt a result."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("code", c_int32),
+        ("stage", c_int32),
+        ("has_place", c_uint32),
+        ("severity", c_double),
+        ("limit", c_double),
+        ("place", c_double * 2),
+    ]
+    enumerations: dict[str, type] = {"code": types.WarningCode, "stage": types.Stage}
+    result = types.Warning
+
+
 class luxfer_plan_params(Structure):
     """Goal of a plan: set exactly one of time_budget_ms and target_error."""
 
@@ -1483,6 +1544,19 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report))]),
     "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture))]),
     "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
+    "luxfer_transfer_get_warnings": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_rectify_get_warnings": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_features_get_warnings": (c_int32, [("features", POINTER(luxfer_features)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_segment_get_warnings": (c_int32, [("segment", POINTER(luxfer_segment)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_emission_get_warnings": (c_int32, [("emission", POINTER(luxfer_emission)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_relight_get_warnings": (c_int32, [("relight", POINTER(luxfer_relight)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_warnings_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
+    "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning))]),
+    "luxfer_warnings_get_message": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_warnings_get_advice": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_warnings_retain": (c_int32, [("warnings", POINTER(luxfer_warnings))]),
+    "luxfer_warnings_release": (c_int32, [("warnings", POINTER(luxfer_warnings))]),
+    "luxfer_warning_name": (c_char_p, [("code", c_int32)]),
     "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
     "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
     "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),

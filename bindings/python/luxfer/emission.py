@@ -11,6 +11,7 @@ from . import _abi, _arrays, _params
 from .image import Image, _matrix, image_of
 from .job import Job, Progress, StageBase
 from .types import EmissionImage, EmissionReport, Luminaire
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -112,6 +113,11 @@ class Emission(StageBase):
     def report(self) -> EmissionReport:
         """Quality of the texture."""
         return cast(EmissionReport, self._read("get_report", _abi.luxfer_emission_report))
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the texture; a plan has none."""
+        return warnings_of(self)
 
     @property
     def luminaires(self) -> list[Luminaire]:

@@ -10,6 +10,7 @@ from .image import Image, image_of
 from .job import Job, Progress, StageBase
 from .segment import stroke_arguments
 from .types import DepthKind, FeaturesImage, FeaturesReport, Normalisation
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -92,3 +93,8 @@ class Features(StageBase):
     def report(self) -> FeaturesReport:
         """Quality of the features."""
         return cast(FeaturesReport, self._read("get_report", _abi.luxfer_features_report))
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the features."""
+        return warnings_of(self)

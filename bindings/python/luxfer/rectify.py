@@ -8,6 +8,7 @@ from . import _abi, _params
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
 from .types import RectifyImage, RectifyReport
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -64,3 +65,8 @@ class Rectify(StageBase):
     def report(self) -> RectifyReport:
         """The results and their errors."""
         return cast(RectifyReport, self._read("get_report", _abi.luxfer_rectify_report))
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the camera, and the plane if it has been unwarped."""
+        return warnings_of(self)

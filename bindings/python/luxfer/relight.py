@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 from . import _abi, _params
 from .job import Job, Progress, StageBase
 from .types import RelightReport, Sense
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -56,3 +57,8 @@ class Relight(StageBase):
     def report(self) -> RelightReport:
         """The solution and its confidence."""
         return cast(RelightReport, self._read("get_report", _abi.luxfer_relight_report))
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the solution."""
+        return warnings_of(self)

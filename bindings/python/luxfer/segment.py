@@ -11,6 +11,7 @@ from . import _abi, _arrays, _params
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
 from .types import Phase, SegmentImage, SegmentReport
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -89,3 +90,8 @@ class Segment(StageBase):
     def report(self) -> SegmentReport:
         """Quality of the segmentation."""
         return cast(SegmentReport, self._read("get_report", _abi.luxfer_segment_report))
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the mask, held against the strokes as they are now."""
+        return warnings_of(self)

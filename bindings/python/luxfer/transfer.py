@@ -14,6 +14,7 @@ from .job import Job, Progress, StageBase
 from .scene import Scene
 from .segment import stroke_arguments
 from .types import DepthKind, Fixture, Phase, RectifyReport, RelightReport, Stage, TransferImage, TransferReport, TransferScene
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -161,6 +162,11 @@ class Transfer(StageBase):
     def report(self) -> TransferReport:
         """Time and error of each stage."""
         return cast(TransferReport, self._read("get_report", _abi.luxfer_transfer_report))
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """Reasons to doubt the results that there are, in the order of the stages."""
+        return warnings_of(self)
 
     @property
     def view(self) -> RectifyReport:

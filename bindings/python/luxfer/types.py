@@ -217,6 +217,21 @@ class DepthSource(IntEnum):
     """The caller's network."""
 
 
+class Subject(IntEnum):
+    """What is segmented."""
+
+    AUTO = 0
+    """Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a
+    surface."""
+    SURFACE = 1
+    """A surface, such as the plane that carries the lamps: each pixel is judged by its features."""
+    LAMPS = 2
+    """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
+    one or more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_within
+    are found as well. Negative strokes are not needed. The first three channels of the features must be
+    CIELAB."""
+
+
 class Phase(IntEnum):
     """The mask that strokes are for."""
 
@@ -237,6 +252,26 @@ class SegmentImage(IntEnum):
     UNSEEN = 2
     """Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1
     channel."""
+
+
+class EmissionLaw(IntEnum):
+    """How the lights of an exemplar go on."""
+
+    BEST = 0
+    """The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly
+    better."""
+    CORRELATION = 1
+    """The law that the correlation of the lights tells, by least_regularity."""
+    LATTICE = 2
+    """A lattice of two periods."""
+    ROW = 3
+    """A row of one period; the extent of the exemplar serves as the other."""
+    WHOLE = 4
+    """The exemplar repeats as a whole."""
+    FREE = 5
+    """Patches go anywhere."""
+    COPY = 6
+    """Of results only: the texture is a part of the exemplar, or was given."""
 
 
 class EmissionImage(IntEnum):
@@ -467,6 +502,58 @@ class TransferScene(IntEnum):
     """The scene with the solved emission: the result."""
     WHITE = 2
     """As TransferScene.LIT, with white light of equal luminance."""
+
+
+class WarningCode(IntEnum):
+    """The code of a warning."""
+
+    FOCAL_ASSUMED = 1
+    """The vanishing points do not determine the focal length, which was assumed; the severity is its relative
+    standard deviation."""
+    VIEW_UNCERTAIN = 2
+    """The directions of the room axes are uncertain; the severity is the largest standard deviation in
+    radians."""
+    LENS_DISTORTION = 3
+    """The lens bends straight lines; the severity is the distortion of RectifyReport without its sign."""
+    NOT_SQUARE = 4
+    """The walls do not meet at right angles, or the pixels are not square; the severity is the largest
+    deviation in radians."""
+    LAYOUT_UNCERTAIN = 5
+    """The room was laid out from its lines with little trust, and there is no depth map; the severity is that
+    trust, below the limit."""
+    UNSEEN = 6
+    """Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part;
+    the severity is their share of the mask and these regions. The place is the pixel where one more stroke
+    helps most."""
+    CONTRADICTORY_STROKES = 7
+    """Strokes of both classes cover the same pixels; the severity is their number per sample."""
+    OFF_IMAGE_STROKES = 8
+    """Strokes lie outside the photo; the severity is the number of these pixels per sample."""
+    UNCERTAIN_MASK = 9
+    """A mask is uncertain; the severity is the expected share of wrong pixels."""
+    EMPTY_MASK = 10
+    """A mask has no pixel; the severity is 0, below the limit."""
+    MISSED_STROKES = 11
+    """A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one
+    of them."""
+    ALMOST_ALL_LIT = 12
+    """Lights cover much of their plane; the severity is its share."""
+    MAGNIFIED = 13
+    """Much of the unwarped plane is magnified; the severity is its share. The place is the one that is
+    magnified most."""
+    PLANE_NEAR_HORIZON = 14
+    """The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane,
+    below the limit. The place is the flattest."""
+    PATTERN_UNCERTAIN = 15
+    """The texture differs from the photo in its statistics; the severity is the error of EmissionReport."""
+    FEW_LAMPS = 16
+    """The photo shows too few whole lamps for a pattern; the severity is their number, below the limit."""
+    NO_LATTICE = 17
+    """The lamps lie on no lattice that could be found; the severity is the error of EmissionReport."""
+    UNREACHABLE = 18
+    """Colour channels do not meet their target; the severity is their number."""
+    TARGET_CLIPPED = 19
+    """The photo clips the target, which is a lower bound; the severity is the number of these channels."""
 
 
 class GuidesImage(IntEnum):
@@ -1099,6 +1186,9 @@ class SegmentParams(TypedDict, total=False):
     refine_tolerance: float
     """Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
     neighbours as one surface, in [1e-3, 1e6]; default 8."""
+    subject: Subject | str | int
+    """What the positive strokes lie on: Subject; default Subject.AUTO. Of lamps the settings above do not
+    matter."""
 
 
 @dataclass(frozen=True)
@@ -1158,6 +1248,15 @@ class EmissionParams(TypedDict, total=False):
     candidates: int
     """Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536];
     default 192."""
+    law: EmissionLaw | str | int
+    """How the lights go on: EmissionLaw other than EmissionLaw.COPY; default EmissionLaw.BEST."""
+    clean_lamps: int
+    """With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and
+    lie at the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the
+    outline of the mask."""
+    max_magnification: float
+    """Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in
+    [1, 1e6]: what is magnified more counts as not shown. Default 0: all of it is used."""
 
 
 @dataclass(frozen=True)
@@ -1181,6 +1280,16 @@ class EmissionReport:
     for error, between the whole texture and parts of it that are as large as the exemplar. If error is at most
     twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar,
     for blended exemplars, and for a plan."""
+    law: EmissionLaw
+    """How the lights go on: EmissionLaw."""
+    runner_up: EmissionLaw
+    """The law that would have been next best: EmissionLaw."""
+    law_score: float
+    """How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo
+    pixels; NaN where too few of the lights are whole lamps to tell."""
+    margin: float
+    """By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+    slightly better."""
 
 
 @dataclass(frozen=True)
@@ -1727,6 +1836,25 @@ class Fixture:
     """Correlated colour temperature in kelvin; 0 for a lamp that is off."""
     duv: float
     """Distance from the blackbody in the CIE 1960 diagram."""
+
+
+@dataclass(frozen=True)
+class Warning:
+    """A reason to doubt a result."""
+
+    code: WarningCode
+    """WarningCode."""
+    stage: Stage
+    """The stage whose result is in doubt, Stage. Of a luxfer_segment it is LIGHTS with a mask to look within,
+    PLANE without."""
+    has_place: int
+    """1 if the warning has a place in the photo, else 0."""
+    severity: float
+    """The figure that raised it; each code has its own."""
+    limit: float
+    """The limit that the figure has passed."""
+    place: tuple[float, float]
+    """The place in the photo, x and y in pixels; 0 without one."""
 
 
 class PlanParams(TypedDict, total=False):

@@ -66,7 +66,7 @@ fn a_plan_lists_lines_and_whatever_follows_the_patches() {
         ("lamps as the patches cut them", lamps, Params { whole_lamps: false, ..whole }),
     ] {
         let job = Monitor::default();
-        let plan = Plan::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+        let plan = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
         let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
         let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
         assert!(list.get(&plan, list.count()).is_none());

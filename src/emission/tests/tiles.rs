@@ -17,7 +17,7 @@ fn tiles_have_the_bits_of_the_whole_in_any_order() {
     ] {
         let params = Params { width: 310, height: 290, ..params };
         let whole = exemplar.run(&params).unwrap();
-        let plan = Plan::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
+        let plan = Composition::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
         let mut tiles: Vec<Tile> = (0..12)
             .map(|i| Tile { x: i % 3 * 110, y: i / 3 * 77, width: 90 + 20 * usize::from(i % 3 < 2), height: 77 })
             .map(|t| Tile { height: t.height.min(290 - t.y), ..t })
@@ -43,7 +43,7 @@ fn tiles_have_the_bits_of_the_whole_in_any_order() {
 fn tiles_that_are_no_part_of_the_texture_are_refused() {
     let exemplar = Design::new(100, 90, grid(33.0, 29.0, 12.0, 9.0));
     let params = Params { width: 200, height: 150, ..Params::default() };
-    let plan = Plan::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
+    let plan = Composition::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
     for (x, y, width, height) in [(0, 0, 0, 1), (0, 0, 201, 1), (150, 0, 51, 1), (0, 150, 1, 1), (usize::MAX, 1, 2, 2)]
     {
         let tile = Tile { x, y, width, height };
@@ -68,7 +68,7 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         (lattice(), Params { width: 110, height: 90, scale: 1.1, ..whole_pixels }),
     ] {
         let job = Monitor::default();
-        let plan = Plan::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+        let plan = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
         let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
         let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
         assert!(list.get(&plan, list.count()).is_none());
@@ -112,7 +112,7 @@ fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
     let params = Params { width: 800, height: 600, ..Params::default() };
     let styles = [Style { input: large.input(), scale: 1.0, weights: &ramp }];
     let job = Monitor::default();
-    let plan = Plan::new(&small.input(), &styles, &params, job.job()).unwrap();
+    let plan = Composition::new(&small.input(), &styles, &params, job.job()).unwrap();
     let list = LampList::new(&plan, &small.input(), &styles, job.job()).unwrap();
     let shown = blend(&small.input(), &styles, &params, job.job()).unwrap().luminaires;
     let areas = |lamps: &mut dyn Iterator<Item = f64>| {

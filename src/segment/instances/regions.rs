@@ -31,6 +31,20 @@ pub struct Brightness {
     pub gradient: Vec<f32>,
 }
 
+/// Where L* turns from linear to a cube root, and its slope below. [convention: CIE 15]
+const LINEAR_L: f32 = 8.0;
+const SLOPE: f32 = 24389.0 / 27.0;
+
+/// The luminance of an L*, relative to white.
+fn luminance(l: f32) -> f32 {
+    if l > LINEAR_L { ((l + 16.0) / 116.0).powi(3) } else { l.max(0.0) / SLOPE }
+}
+
+/// The L* of a luminance.
+fn lightness(y: f32) -> f32 {
+    if y > LINEAR_L / SLOPE { 116.0 * y.cbrt() - 16.0 } else { y * SLOPE }
+}
+
 /// The level of an L*.
 pub fn level(l: f32) -> f32 {
     let above = if l > 100.0 { LEVELS_PER_DOUBLING * (l / 100.0).log2() } else { 0.0 };
@@ -38,14 +52,18 @@ pub fn level(l: f32) -> f32 {
 }
 
 impl Brightness {
-    pub fn new(features: &Image, job: Job) -> Result<Self> {
+    /// The photo as if it were exposed so that an L* of `white` were 100.
+    pub fn new(features: &Image, white: f32, job: Job) -> Result<Self> {
+        let gain = 1.0 / luminance(white);
         let (width, height) = (features.width, features.height);
         let mut lab = try_vec(width * height, [0.0f32; 3])?;
         let mut l = Image::new(width, height, 1)?;
         let pixels = features.data.chunks_exact(features.channels);
         for ((pixel, lab), l) in pixels.zip(&mut lab).zip(&mut l.data) {
-            lab.copy_from_slice(&pixel[..3]);
-            *l = pixel[0];
+            *l = lightness(gain * luminance(pixel[0]));
+            // Above black, a* and b* are in proportion to L* + 16.
+            let chroma = (*l + 16.0) / (pixel[0] + 16.0);
+            *lab = [*l, pixel[1] * chroma, pixel[2] * chroma];
         }
         let smooth = pyramid::blur(&l, SMOOTHING, job.part(0.0, 0.3))?;
         let smoother = pyramid::blur(&l, GRADIENT_SMOOTHING, job.part(0.3, 0.6))?;
@@ -136,7 +154,7 @@ impl Regions {
             return;
         }
         let (bright, dark) = if photo.levels[i] > photo.levels[j] { (a, b) } else { (b, a) };
-        let gradient = f64::from(photo.gradient[i].max(photo.gradient[j]));
+        let gradient = 0.5 * f64::from(photo.gradient[i] + photo.gradient[j]);
         self.contour_gradient[bright] += gradient;
         self.contour_gradient[dark] -= gradient;
         self.contour_length[bright] += 1.0;

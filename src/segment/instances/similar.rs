@@ -16,11 +16,12 @@ const CHROMA: f64 = 12.0;
 /// Contrast along the contour, relative to the median of the painted lamps: far lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
 /// Contrast to the ring around, relative to the median of the painted lamps. [judged on 28 photos]
-const RING: f64 = 0.55;
+const RING: f64 = 0.5;
 /// Solidity, relative to the least of the painted lamps. [judged on 28 photos]
 const SOLIDITY: f64 = 0.85;
-/// Area, relative to the smallest painted lamp: a lamp at three times the distance has a ninth of the area. [convention]
-const SMALLER: f64 = 1.0 / 9.0;
+/// Area, relative to the smallest painted lamp: at three times the distance a lamp in a ceiling is a third as wide and, foreshortened,
+/// a ninth as high. [convention]
+const SMALLER: f64 = 1.0 / 27.0;
 /// Area, relative to the largest painted lamp. [judged on 28 photos]
 const LARGER: f64 = 1.6;
 /// Breadth, relative to the broadest painted lamp. [judged on 28 photos]

@@ -1,8 +1,8 @@
 //! The confidence of a region: one half on its contour, which so lies between pixels.
 
-use super::regions::{Brightness, Regions};
+use super::regions::Brightness;
+use super::similar::Search;
 use super::surroundings::Bounds;
-use super::tree::Tree;
 use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
 
@@ -16,8 +16,10 @@ const OUTSIDE: f32 = 0.499;
 /// on 44 photos]
 const HOLE: f64 = 0.05;
 
-/// Adds the confidence of a node: it rises across the contour as the brightness does, by about one over a pixel.
-pub fn add(node: u32, tree: &Tree, regions: &Regions, photo: &Brightness, confidence: &mut Image) -> Result<()> {
+/// Adds the confidence of a node: it rises across the contour as the brightness does, by about one over a pixel. Around the region
+/// it stays on the plane.
+pub fn add(node: u32, search: &Search, confidence: &mut Image) -> Result<()> {
+    let Search { tree, regions, photo, plane, .. } = *search;
     let filled = filled(tree.pixels(node), photo)?;
     let pixels = filled.as_slice();
     let bounds = Bounds::of(pixels, photo, REACH.into());
@@ -27,6 +29,9 @@ pub fn add(node: u32, tree: &Tree, regions: &Regions, photo: &Brightness, confid
     let slope = 1.0 / (regions.contrast(node as usize) as f32).max(1.0);
     for (k, &d) in distance.iter().enumerate().filter(|(_, d)| **d <= REACH) {
         let i = bounds.pixel(k, photo.width);
+        if d > 0 && plane.is_some_and(|plane| plane.data[i] <= 0.5) {
+            continue;
+        }
         let p = 0.5 + slope * (photo.smooth.data[i] - contour);
         let p = if d == 0 { p.clamp(INSIDE, 1.0) } else { p.clamp(0.0, OUTSIDE) };
         confidence.data[i] = confidence.data[i].max(p);

@@ -29,7 +29,7 @@ fn features() -> Image {
         let noise = 0.02 * (Rng::new(5, &[i as u64]).next_f32() - 0.5);
         let grey = match () {
             () if LAMPS.iter().any(|r| is_in(*r, x, y)) || is_in(WINDOW, x, y) => 1.0,
-            () if y < 120 => 0.25 + 0.4 * x as f32 / WIDTH as f32,
+            () if y < 120 => 0.25 + 0.2 * x as f32 / WIDTH as f32,
             () => 0.1,
         };
         let lab = colour::linear_to_lab(Vec3::splat((grey + noise).clamp(0.0, 1.0)));

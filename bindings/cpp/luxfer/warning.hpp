@@ -1,0 +1,32 @@
+// Reasons to doubt the result of a job that has succeeded.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "core.hpp"
+
+namespace luxfer {
+
+/// The warnings of a stage, or of a whole transfer, as they were when they were asked for. See luxfer_warnings.
+class Warnings : public Handle<luxfer_warnings, luxfer_warnings_retain, luxfer_warnings_release> {
+public:
+    using Handle::Handle;
+
+    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_warnings_count); }
+
+    /// Code, stage, figure, limit and place.
+    Result<luxfer_warning> warning(std::uint32_t index) const {
+        return value<luxfer_warning>(luxfer_warnings_get, index);
+    }
+
+    /// The defect, with its figure.
+    Result<std::string> message(std::uint32_t index) const { return text(luxfer_warnings_get_message, index); }
+
+    /// The remedy.
+    Result<std::string> advice(std::uint32_t index) const { return text(luxfer_warnings_get_advice, index); }
+
+    /// The name of a code, such as "LUXFER_WARNING_UNSEEN".
+    static const char *name(luxfer_warning_code code) noexcept { return luxfer_warning_name(code); }
+};
+
+} // namespace luxfer

@@ -1,0 +1,66 @@
+"""Reasons to doubt the result of a job that has succeeded: the defect, its figure, the place in the photo, the remedy."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from typing import cast
+
+from . import _abi
+from ._handle import Handle
+from .types import Stage, Warning, WarningCode
+
+
+@dataclass(frozen=True)
+class StageWarning:
+    """A reason to doubt the result of a stage. The package never prints one: show it to the user.
+
+    >>> warning = StageWarning(WarningCode.UNSEEN, Stage.PLANE, 0.2, 0.1, "a part is new", "paint there", (30.5, 12.5))
+    >>> str(warning)
+    'plane: a part is new: paint there (at 30, 12)'
+    """
+
+    code: WarningCode
+    """Its kind."""
+    stage: Stage
+    """The stage whose result is in doubt; of a Segment it is LIGHTS with a mask to look within, PLANE without."""
+    severity: float
+    """The figure that raised it; each code has its own."""
+    limit: float
+    """The limit that the figure has passed."""
+    message: str
+    """The defect, with its figure."""
+    advice: str
+    """The remedy."""
+    place: tuple[float, float] | None
+    """The place in the photo, in pixels."""
+
+    def __str__(self) -> str:
+        at = "" if self.place is None else f" (at {int(self.place[0])}, {int(self.place[1])})"
+        return f"{self.stage.name.lower()}: {self.message}: {self.advice}{at}"
+
+
+class Warnings(Handle):
+    """A list of warnings in the library."""
+
+    kind = "warnings"
+
+    def read(self) -> list[StageWarning]:
+        """All of them."""
+        count = ctypes.c_uint32()
+        self._call("count", count)
+        return [self._at(index) for index in range(count.value)]
+
+    def _at(self, index: int) -> StageWarning:
+        found = cast(Warning, self._read("get", _abi.luxfer_warning, index))
+        message, advice = self._get_text("get_message", index), self._get_text("get_advice", index)
+        place = (found.place[0], found.place[1]) if found.has_place else None
+        return StageWarning(found.code, found.stage, found.severity, found.limit, message, advice, place)
+
+
+def warnings_of(stage: Handle) -> list[StageWarning]:
+    """The warnings of a stage that has some."""
+    pointer = ctypes.POINTER(_abi.luxfer_warnings)()
+    stage._call("get_warnings", pointer)
+    with Warnings._adopt(stage.context, pointer) as warnings:
+        return warnings.read()

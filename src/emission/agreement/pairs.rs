@@ -1,0 +1,88 @@
+//! How far apart the lamps of a pattern are from each other, at all distances: the pair correlation function.
+
+use super::statistics::nearest_distances;
+use glam::DVec2;
+
+/// Distances that are looked at, and the width of the kernel, in mean distances to the nearest other.
+const REACH: f64 = 2.5;
+const KERNEL: f64 = 0.15;
+/// Steps of distance.
+const STEPS: usize = 100;
+
+/// Points in a window that begins at 0.
+pub struct Points<'a> {
+    pub at: &'a [DVec2],
+    pub size: DVec2,
+}
+
+/// Share of the pairs of near points that one pattern has at other distances than another: 0 where both have the same
+/// share at each, 1 where they have no distance in common. `None` where one has no two points near each other.
+///
+/// Pairs are counted by what part of the window shows them (translation correction, Ohser 1983), and spread over
+/// distances by a kernel (Stoyan and Stoyan 1994), whose width the first pattern sets.
+pub fn distance(of: &Points, from: &Points) -> Option<f64> {
+    let nearest = nearest_distances(of.at);
+    let spacing = nearest.iter().sum::<f64>() / nearest.len() as f64;
+    if !(spacing > 0.0 && spacing.is_finite() && from.at.len() > 1) {
+        return None;
+    }
+    let (a, b) = (pairs(of, spacing), pairs(from, spacing));
+    let (all_a, all_b): (f64, f64) = (a.iter().sum(), b.iter().sum());
+    let off: f64 = a.iter().zip(&b).map(|(a, b)| (a / all_a - b / all_b).abs()).sum();
+    (all_a > 0.0 && all_b > 0.0).then_some(off / 2.0)
+}
+
+/// How many pairs there are at each step of distance, to a factor: `g(r) r`.
+fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
+    let (reach, width) = (REACH * spacing, KERNEL * spacing);
+    let mut order: Vec<DVec2> = points.at.to_vec();
+    order.sort_by(|p, q| p.x.total_cmp(&q.x));
+    let mut sums = [0.0; STEPS];
+    for (i, p) in order.iter().enumerate() {
+        for q in order[i + 1..].iter().take_while(|q| q.x - p.x < reach + width) {
+            let apart = (*q - *p).abs();
+            let shown = (points.size - apart).max(DVec2::ZERO).element_product();
+            if shown <= 0.0 {
+                continue;
+            }
+            for (step, sum) in sums.iter_mut().enumerate() {
+                // Epanechnikov's kernel.
+                let r = (step as f64 + 0.5) / STEPS as f64 * reach;
+                let t = (r - apart.length()) / width;
+                *sum += (1.0 - t * t).max(0.0) / shown;
+            }
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn the_same_law_is_near_and_another_far() {
+        let size = DVec2::new(1000.0, 800.0);
+        let grid = |shift: DVec2, jitter: f64, seed: u64| -> Vec<DVec2> {
+            let mut rng = Rng::new(seed, &[]);
+            (0..20 * 25)
+                .map(|i| DVec2::new(f64::from(i % 25), f64::from(i / 25)) * 40.0 + shift)
+                .map(|p| p + (DVec2::new(rng.next_f64(), rng.next_f64()) - 0.5) * jitter)
+                .collect()
+        };
+        let mut rng = Rng::new(7, &[]);
+        let scattered: Vec<DVec2> = (0..500).map(|_| DVec2::new(rng.next_f64(), rng.next_f64()) * size).collect();
+        let between = |a: &[DVec2], b: &[DVec2]| distance(&Points { at: a, size }, &Points { at: b, size }).unwrap();
+        let plain = grid(DVec2::splat(20.0), 0.0, 1);
+        assert_eq!(between(&plain, &plain), 0.0);
+        assert!(between(&plain, &grid(DVec2::splat(3.0), 0.0, 1)) < 1e-9);
+        assert!(between(&plain, &grid(DVec2::splat(20.0), 4.0, 2)) < 0.15);
+        assert!(between(&plain, &scattered) > 0.35);
+        // A part of the same grid: the window is corrected for.
+        let part: Vec<DVec2> = plain.iter().copied().filter(|p| p.x < 400.0 && p.y < 400.0).collect();
+        let part = Points { at: &part, size: DVec2::splat(400.0) };
+        assert!(distance(&Points { at: &plain, size }, &part).unwrap() < 0.02);
+        assert!(distance(&Points { at: &plain[..1], size }, &part).is_none());
+    }
+}

@@ -1,0 +1,56 @@
+//! How far the statistics of an exemplar may be from those of its ceiling, of which it shows a part with few lamps.
+//!
+//! The texture stands in for that ceiling (parametric bootstrap; Efron 1979): parts of it with the extent of the
+//! exemplar, its missing corners included, are measured as the exemplar was. What they differ from the whole no
+//! synthesis could know.
+
+use super::statistics::{Pattern, Statistics};
+use crate::emission::exemplar::{Exemplar, components, roles};
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, try_collect};
+use crate::job::Job;
+use glam::DVec2;
+
+/// Parts that are measured.
+const PARTS: usize = 6;
+
+/// Root mean square over parts of the texture of their largest relative difference from `whole`, its own statistics;
+/// `None` where it has no room for several. A texel is `scale` unwarped pixels; `periods` are in those.
+pub fn error(
+    exemplar: &Exemplar,
+    (texture, mask): (&Image, &Image),
+    whole: &Statistics,
+    periods: [Option<f64>; 2],
+    scale: f64,
+    job: Job,
+) -> Result<Option<f64>> {
+    let side = |pixels: usize| (pixels as f64 / scale).floor() as usize;
+    let (width, height) = (side(exemplar.width), side(exemplar.height));
+    let is_part = (1..=mask.width).contains(&width) && (1..=mask.height).contains(&height);
+    let room = DVec2::new(mask.width as f64 - width as f64, mask.height as f64 - height as f64);
+    if !is_part || room.max_element() < width.min(height) as f64 / 2.0 {
+        return Ok(None);
+    }
+    let pixel = |side: usize, at: usize| (((at as f64 + 0.5) * scale) as usize).min(side - 1);
+    let columns: Vec<usize> = (0..width).map(|x| pixel(exemplar.width, x)).collect();
+    let shown = try_collect((0..height).flat_map(|y| {
+        let start = pixel(exemplar.height, y) * exemplar.width;
+        columns.iter().map(move |x| exemplar.shown[start + x])
+    }))?;
+    let periods = periods.map(|p| p.map(|p| p / scale));
+    let parts = exec::map(PARTS, job, |k| -> Result<f64> {
+        // Spread evenly (Roberts 2018).
+        let step = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
+        let corner = (room * (step * (k as f64 + 0.5)).fract()).round();
+        let at = |i: usize| (corner.y as usize + i / width) * mask.width + corner.x as usize + i % width;
+        let components = components::find(width, height, |i| shown[i] && mask.data[at(i)] > 0.5)?;
+        let roles = roles::classify(&components, &shown, width, height);
+        let pieces: Vec<bool> = roles.iter().map(|role| role.is_piece()).collect();
+        let colour = |i: usize| shown[i].then(|| glam::Vec3::from_slice(&texture.data[3 * at(i)..]));
+        let pattern = Pattern { width, height, components: &components, whole: &pieces, periods, colour };
+        Ok(Statistics::of(&pattern).difference(whole))
+    })?;
+    let squares = parts.into_iter().map(|part| part.map(|off| off * off)).sum::<Result<f64>>()?;
+    Ok(Some((squares / PARTS as f64).sqrt()))
+}

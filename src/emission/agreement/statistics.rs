@@ -1,0 +1,239 @@
+//! What two light patterns have in common: the statistics by which a texture is held against its exemplar.
+//!
+//! A border cuts a pattern anywhere, so plain counts in a window differ by what happens to lie on its rim, and more so
+//! the fewer lamps there are. Every mean here is therefore weighed. Along an axis with a known period the weights are
+//! those of as many whole periods as the window holds, averaged over all their places in it: wherever they are cut,
+//! each part of the period weighs the same. Along others they are a Hann window, which fades to nothing at the border
+//! (Harris 1978).
+
+use crate::emission::exemplar::components::Components;
+use crate::image::colour::luminance;
+use glam::{DMat2, DVec2, Vec3};
+use std::f64::consts::{PI, TAU};
+
+/// Statistics of a light pattern. Lengths are in pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Share of the pattern that is lit.
+    pub lit: f64,
+    /// Mean luminance of what is lit.
+    pub luminance: f64,
+    /// Mean area of a whole lamp; 0 if there is none.
+    pub area: f64,
+    /// Mean distance from a whole lamp to the nearest other; 0 where that is known of none.
+    pub spacing: f64,
+    /// Lamps that end inside.
+    pub whole: usize,
+}
+
+/// A pattern as pixels and as lamps.
+pub struct Pattern<'a, C> {
+    pub width: usize,
+    pub height: usize,
+    /// Its connected lights, and which of them end inside.
+    pub components: &'a Components,
+    pub whole: &'a [bool],
+    /// Period along x and y, if there is one; infinite where the pattern as a whole is the period.
+    pub periods: [Option<f64>; 2],
+    /// Linear colour of a pixel; nothing where the pattern is not shown.
+    pub colour: C,
+}
+
+impl Statistics {
+    pub fn of<C: Fn(usize) -> Option<Vec3>>(pattern: &Pattern<C>) -> Self {
+        let Pattern { width, height, components, whole, periods, colour } = pattern;
+        let columns: Vec<f64> = (0..*width).map(|x| weight(x as f64 + 0.5, *width, periods[0])).collect();
+
+        // Of pixels.
+        let (mut all, mut lit, mut light) = (0.0, 0.0, 0.0);
+        for y in 0..*height {
+            let row = weight(y as f64 + 0.5, *height, periods[1]);
+            for (x, column) in columns.iter().enumerate() {
+                let Some(colour) = colour(y * width + x) else { continue };
+                all += row * column;
+                if components.labels[y * width + x] != 0 {
+                    lit += row * column;
+                    light += row * column * f64::from(luminance(colour));
+                }
+            }
+        }
+
+        // Of lamps.
+        let lamps: Vec<(DVec2, f64)> =
+            components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
+        let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
+        let mean = |of: &dyn Fn(usize) -> bool, value: &dyn Fn(usize) -> f64| {
+            let counted = || (0..lamps.len()).filter(|i| of(*i));
+            let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
+            ratio(counted().map(|i| place(lamps[i].0) * value(i)).sum(), weights)
+        };
+        // Where something cut off is nearer than the nearest whole lamp, the distance to the nearest is not known.
+        let cut = components.list.iter().zip(*whole).filter(|(_, whole)| !**whole).map(|(c, _)| c.centre);
+        let mut centres: Vec<DVec2> = lamps.iter().map(|l| l.0).collect();
+        let nearest = nearest_distances(&centres);
+        centres.extend(cut);
+        let nearest_of_all = nearest_distances(&centres);
+        let is_known = |i: usize| nearest[i].is_finite() && nearest_of_all[i] >= nearest[i];
+        Self {
+            lit: ratio(lit, all),
+            luminance: ratio(light, lit),
+            area: mean(&|_| true, &|i| lamps[i].1),
+            spacing: mean(&is_known, &|i| nearest[i]),
+            whole: lamps.len(),
+        }
+    }
+
+    /// Of a mixture of patterns with the given weights. How far apart lamps of different patterns are it does not
+    /// tell: where there are several, the spacing is 0.
+    pub fn mixed(parts: impl Iterator<Item = (Self, f64)>) -> Self {
+        let parts: Vec<(Self, f64)> = parts.collect();
+        if let [(only, _)] = parts[..] {
+            return only;
+        }
+        let sum = |value: &dyn Fn(&Self) -> f64| parts.iter().map(|(part, weight)| weight * value(part)).sum::<f64>();
+        let lit = sum(&|p| p.lit);
+        Self {
+            lit: ratio(lit, sum(&|_| 1.0)),
+            luminance: ratio(sum(&|p| p.lit * p.luminance), lit),
+            // Lamps are as many as their light over their area.
+            area: ratio(sum(&|p| if p.area > 0.0 { p.lit } else { 0.0 }), sum(&|p| ratio(p.lit, p.area))),
+            spacing: 0.0,
+            whole: parts.iter().map(|(part, _)| part.whole).sum(),
+        }
+    }
+
+    /// The same where a pixel is this many times as long.
+    pub fn scaled(self, scale: f64) -> Self {
+        Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
+    }
+
+    /// The statistics of the same lamps with this many times their area.
+    pub fn with_area(self, ratio: f64) -> Self {
+        Self { lit: (self.lit * ratio).min(1.0), area: self.area * ratio, ..self }
+    }
+
+    /// The largest relative difference from another pattern, of lamps only in what both have. Luminance is left out: a
+    /// texture is relative, and what it is worth is solved for.
+    pub fn difference(&self, other: &Self) -> f64 {
+        let pairs = [(self.lit, other.lit), (self.area, other.area), (self.spacing, other.spacing)];
+        pairs.iter().filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// Root mean square distance of points from the lattice through them, in parts of its periods.
+pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
+    // Phase angles of the points; their circular mean is the origin of the lattice.
+    let inverse = DMat2::from_cols(a, b).inverse();
+    let cells: Vec<DVec2> = points.iter().map(|&p| inverse * p).collect();
+    let angle =
+        |f: &dyn Fn(&DVec2) -> f64| cells.iter().map(|c| DVec2::from_angle(TAU * f(c))).sum::<DVec2>().to_angle() / TAU;
+    let origin = DVec2::new(angle(&|c| c.x), angle(&|c| c.y));
+    let off = |c: &DVec2| {
+        let d = *c - origin;
+        (d - d.round()).length_squared()
+    };
+    (cells.iter().map(off).sum::<f64>() / cells.len().max(1) as f64).sqrt()
+}
+
+/// What a place along a side weighs.
+fn weight(at: f64, side: usize, period: Option<f64>) -> f64 {
+    let side = side as f64;
+    let Some(period) = period else { return (PI * at / side).sin().powi(2) };
+    // Of a single period, all.
+    let spare = if period < side { side % period } else { 0.0 };
+    if spare > 0.0 { (at.min(side - at) / spare).min(1.0) } else { 1.0 }
+}
+
+fn ratio(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
+/// From each point the distance to the nearest other; infinite for one alone. They are swept in the order of x.
+pub fn nearest_distances(points: &[DVec2]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_unstable_by(|&i, &j| points[i].x.total_cmp(&points[j].x));
+    let mut nearest = vec![f64::INFINITY; points.len()];
+    for (place, &i) in order.iter().enumerate() {
+        let search = |others: &mut dyn Iterator<Item = &usize>, mut best: f64| {
+            for &j in others {
+                if (points[j].x - points[i].x).abs() >= best {
+                    break;
+                }
+                best = best.min(points[i].distance(points[j]));
+            }
+            best
+        };
+        let after = search(&mut order[place + 1..].iter(), f64::INFINITY);
+        nearest[i] = search(&mut order[..place].iter().rev(), after);
+    }
+    nearest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emission::exemplar::components;
+    use crate::rng::Rng;
+
+    #[test]
+    fn nearest_neighbours_are_those_of_trying_all() {
+        let mut rng = Rng::new(3, &[]);
+        let points: Vec<DVec2> = (0..300).map(|_| DVec2::new(rng.next_f64(), rng.next_f64())).collect();
+        for (i, found) in nearest_distances(&points).into_iter().enumerate() {
+            let others = points.iter().enumerate().filter(|(j, _)| *j != i);
+            assert_eq!(found, others.map(|(_, p)| p.distance(points[i])).fold(f64::INFINITY, f64::min));
+        }
+    }
+
+    /// Lamps of 9 × 5 pixels every 20 × 16, cut by a window anywhere.
+    fn grid(width: usize, height: usize, shift: [usize; 2], periods: [Option<f64>; 2]) -> Statistics {
+        let lit = |i: usize| (i % width + shift[0]) % 20 < 9 && (i / width + shift[1]) % 16 < 5;
+        let components = components::find(width, height, lit).unwrap();
+        let whole: Vec<bool> = (components.list.iter())
+            .map(|c| c.min.iter().all(|&v| v > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height)
+            .collect();
+        let colour = |i: usize| Some(if lit(i) { Vec3::splat(2.0) } else { Vec3::ZERO });
+        Statistics::of(&Pattern { width, height, components: &components, whole: &whole, periods, colour })
+    }
+
+    #[test]
+    fn where_the_border_cuts_hardly_matters() {
+        let truth = Statistics { lit: 45.0 / 320.0, luminance: 2.0, area: 45.0, spacing: 16.0, whole: 0 };
+        for shift in [[0, 0], [3, 1], [9, 7], [15, 12]] {
+            for (width, height) in [(67, 61), (90, 83), (200, 150)] {
+                let seen = grid(width, height, shift, [None; 2]);
+                assert!(seen.difference(&truth) < 0.02, "{width} x {height}, {shift:?}: {seen:?}");
+            }
+            // Where the periods are known, not at all.
+            for (width, height) in [(47, 39), (67, 61), (80, 64)] {
+                let seen = grid(width, height, shift, [Some(20.0), Some(16.0)]);
+                assert!(seen.difference(&truth) < 1e-9, "{width} x {height}, {shift:?}: {seen:?}");
+            }
+        }
+        // Plain counts would be off by a tenth.
+        let counted = 4.0 * 4.0 * 45.0 / (67.0 * 61.0) / truth.lit;
+        assert!((counted - 1.0f64).abs() > 0.1, "{counted}");
+    }
+
+    #[test]
+    fn differences_are_relative_and_of_what_both_have() {
+        let one = Statistics { lit: 0.1, luminance: 1.0, area: 10.0, spacing: 5.0, whole: 9 };
+        assert_eq!(one.difference(&one), 0.0);
+        assert!((Statistics { area: 12.0, ..one }.difference(&one) - 0.2).abs() < 1e-12);
+        assert_eq!(Statistics { luminance: 2.0, ..one }.difference(&one), 0.0);
+        assert_eq!(Statistics { area: 0.0, spacing: 0.0, whole: 0, ..one }.difference(&one), 0.0);
+        assert!((one.scaled(2.0).difference(&one) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn phase_is_the_distance_from_the_lattice() {
+        let basis = [DVec2::new(10.0, 2.0), DVec2::new(-3.0, 8.0)];
+        let mut rng = Rng::new(5, &[]);
+        let at = |i: i32, j: i32| basis[0] * f64::from(i) + basis[1] * f64::from(j) + DVec2::new(3.7, 1.1);
+        let exact: Vec<DVec2> = (0..100).map(|k| at(k % 10, k / 10)).collect();
+        assert!(phase(&exact, basis) < 1e-12);
+        let off: Vec<DVec2> = exact.iter().map(|p| *p + basis[0] * 0.02 * (2.0 * rng.next_f64() - 1.0)).collect();
+        // Uniform in ± 0.02 of one period.
+        assert!((phase(&off, basis) / (0.02 / 3f64.sqrt()) - 1.0).abs() < 0.15);
+    }
+}

@@ -1,0 +1,48 @@
+//! Bands of rows, and the lamps that may touch each: a texel looks at few.
+
+use super::layer::Layer;
+use crate::emission::lamps::instance::Instance;
+use glam::DVec2;
+
+/// Rows of texels that share one list of lamps. [bench emission:seconds]
+const BAND: usize = 16;
+
+/// Which lamps may touch each band of rows, and their texels: index, then `[x0, y0, x1, y1)`.
+#[derive(Default)]
+pub struct Bands(Vec<Vec<(u32, [u32; 4])>>);
+
+impl Bands {
+    pub fn new(layer: &Layer, width: usize, height: usize) -> Self {
+        let mut bands = vec![Vec::new(); height.div_ceil(BAND)];
+        for (i, instance) in layer.instances.iter().enumerate() {
+            if let Some(range) = texels(layer, instance, width, height) {
+                let rows = range[1] / BAND..=(range[3] - 1) / BAND;
+                bands[rows].iter_mut().for_each(|b: &mut Vec<_>| b.push((i as u32, range.map(|r| r as u32))));
+            }
+        }
+        Self(bands)
+    }
+
+    /// The lamps that may touch a row, and their texels.
+    pub fn of_row(&self, y: usize) -> &[(u32, [u32; 4])] {
+        &self.0[y / BAND]
+    }
+}
+
+/// The texels `[x0, y0, x1, y1)` a lamp may touch.
+fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
+    let shift = layer.rounded(instance.shift);
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let (first, last) = match layer.designs.of(instance.component) {
+        Some((design, fitted)) => (fitted.centre - design.half_box(), fitted.centre + design.half_box()),
+        None => {
+            let lamp = &layer.exemplar.components.list[instance.component];
+            (point(lamp.min), point(lamp.max) + 1.0)
+        }
+    };
+    let low = ((first + shift) / layer.scale).floor() - 1.0;
+    let high = ((last + shift) / layer.scale).ceil() + 1.0;
+    let low = low.max(DVec2::ZERO);
+    let high = high.min(point([width, height]));
+    (low.x < high.x && low.y < high.y).then(|| [low.x as usize, low.y as usize, high.x as usize, high.y as usize])
+}

@@ -1,0 +1,211 @@
+//! The composition of a texture: which lamp and which patch goes where, and no texel yet.
+//!
+//! A composition holds positions only. Any tile of the texture is rendered from it alone, so a texture of any size
+//! needs the memory of a tile; and since a texel depends on nothing but its place, the bits are the same whatever the
+//! tiles, their order and the number of threads.
+
+use super::bands::Bands;
+use super::draw;
+use super::layer::Layer;
+use super::render::{self, Frame, Lights};
+use super::source::{self, Source};
+use super::tile::Tile;
+use super::weights::{Style, Weights};
+use crate::emission::exemplar::components::Components;
+use crate::emission::lamps::{crumbs, instance, luminaires};
+use crate::emission::lattice::continuation::Continuation;
+use crate::emission::params::{Input, Params};
+use crate::emission::reading::{Choice, Reading};
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::job::Job;
+use glam::DVec2;
+
+/// What a texture of `width` × `height` texels shows, and where.
+pub struct Composition {
+    pub width: usize,
+    pub height: usize,
+    /// One of each exemplar.
+    pub(in crate::emission) layers: Vec<Layer>,
+    /// Which lamps of each layer touch which rows.
+    pub(in crate::emission) bands: Vec<Bands>,
+    pub(in crate::emission) weights: Weights,
+    /// Area in texels below which a piece of light is a crumb.
+    pub(in crate::emission) crumb: f64,
+}
+
+impl Composition {
+    /// Plans the texture that [`super::blend`] makes. Errors as there.
+    pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
+        Self::of(None, input, styles, params, job)
+    }
+
+    /// The same where the first exemplar has been read.
+    pub(in crate::emission) fn of(
+        mut reading: Option<Reading>,
+        input: &Input,
+        styles: &[Style],
+        params: &Params,
+        job: Job,
+    ) -> Result<Self> {
+        params.check()?;
+        let weights = Weights::new(styles)?;
+        let count = (1 + styles.len()) as f64;
+        let mut layers = Vec::new();
+        for (k, (input, scale)) in exemplars(input, params.scale, styles).enumerate() {
+            input.check()?;
+            let params = Params { scale, ..params.clone() };
+            params.check()?;
+            let job = job.part(k as f64 / count, (k + 1) as f64 / count);
+            let mut layer = Layer::new(reading.take(), input, &params, job)?;
+            if params.even_lamps {
+                layer.even = Some(source::mean_colours(&layer, input, job)?);
+            }
+            layers.push(layer);
+        }
+        draw::draw(&mut layers, &weights, params);
+        if params.tileable {
+            let size = DVec2::new(params.width as f64, params.height as f64);
+            for layer in &mut layers {
+                layer.instances = instance::wrapped(&layer.instances, size * layer.scale);
+            }
+        }
+        let bands = layers.iter().map(|layer| Bands::new(layer, params.width, params.height)).collect();
+        let smallest = layers.iter().map(Layer::crumb).filter(|c| *c > 0.0);
+        let crumb = smallest.reduce(f64::min).unwrap_or(0.0);
+        Ok(Self { width: params.width, height: params.height, layers, bands, weights, crumb })
+    }
+
+    /// The number of lamps that are copied as a whole.
+    pub fn lamps(&self) -> usize {
+        self.layers.iter().map(|layer| layer.instances.len()).sum()
+    }
+
+    /// How regular the lights of the first exemplar are, as in [`super::Emission::regularity`].
+    pub fn regularity(&self) -> f64 {
+        self.layers.first().map_or(0.0, |layer| layer.regularity)
+    }
+
+    /// How the lights of the first exemplar go on, and what that was chosen by.
+    pub fn law(&self) -> (Continuation, Choice) {
+        let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
+        first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))
+    }
+
+    /// The number of lamps that the exemplars show whole.
+    pub fn exemplar_lamps(&self) -> usize {
+        self.layers.iter().map(|layer| layer.exemplar.lamps().count()).sum()
+    }
+
+    /// Renders a tile of the texture, and its mask, from the exemplars that the composition was made of.
+    ///
+    /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or exemplars of another
+    /// number or size.
+    pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
+        self.check(tile)?;
+        // A crumb, and whatever joins a piece to something larger, lies within its reach of the tile.
+        let margin = if self.has_crumbs() { crumbs::reach(self.crumb) + 2 } else { 0 };
+        let around = tile.widened(margin, self.width, self.height);
+        let (mut texture, mut mask) = self.render(input, styles, around, job)?;
+        if self.has_crumbs() {
+            let mut found = luminaires::components(&mask)?;
+            self.remove_crumbs(&mut texture, &mut mask, &mut found, around);
+        }
+        render::threshold(&mut mask);
+        if around == tile {
+            return Ok((texture, mask));
+        }
+        Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
+    }
+
+    /// The whole texture, its coverage, and the lamps of that.
+    pub(in crate::emission) fn all(
+        &self,
+        input: &Input,
+        styles: &[Style],
+        job: Job,
+    ) -> Result<(Image, Image, Components)> {
+        let (mut texture, mut coverage) = self.render(input, styles, self.whole(), job)?;
+        let mut found = luminaires::components(&coverage)?;
+        if self.has_crumbs() {
+            self.remove_crumbs(&mut texture, &mut coverage, &mut found, self.whole());
+        }
+        Ok((texture, coverage, found))
+    }
+
+    /// Takes the crumbs out of a tile. What the border of the texture leaves of a lamp is none.
+    fn remove_crumbs(&self, texture: &mut Image, mask: &mut Image, found: &mut Components, tile: Tile) {
+        let is_cut = |min: [usize; 2], max: [usize; 2]| {
+            let (low, high) = ([tile.x + min[0], tile.y + min[1]], [tile.x + max[0] + 1, tile.y + max[1] + 1]);
+            low.contains(&0) || high[0] == self.width || high[1] == self.height
+        };
+        crumbs::remove(texture, mask, found, self.crumb, is_cut);
+    }
+
+    fn has_crumbs(&self) -> bool {
+        self.crumb > 1.0
+    }
+
+    /// A tile and its coverage, crumbs and all.
+    fn render(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
+        self.check_exemplars(input, styles)?;
+        self.render_lights(input, styles, tile, Lights::All, job)
+    }
+
+    /// Some lights of a tile, and their coverage.
+    pub(in crate::emission) fn render_lights(
+        &self,
+        input: &Input,
+        styles: &[Style],
+        tile: Tile,
+        lights: Lights,
+        job: Job,
+    ) -> Result<(Image, Image)> {
+        let inputs = exemplars(input, 1.0, styles);
+        let sources: Vec<Source> =
+            self.layers.iter().zip(inputs).map(|(layer, (input, _))| Source { layer, input }).collect();
+        let frame = Frame { width: self.width, height: self.height, weights: &self.weights };
+        render::run(&frame, &sources, &self.bands, tile, lights, job)
+    }
+
+    /// Checks that exemplars are those, or as large as those, that the composition was made of.
+    pub(in crate::emission) fn check_exemplars(&self, input: &Input, styles: &[Style]) -> Result<()> {
+        if styles.len() + 1 != self.layers.len() {
+            let (given, planned) = (styles.len() + 1, self.layers.len());
+            return Err(Error::argument(format!("there are {given} exemplars; the composition was made of {planned}")));
+        }
+        for (layer, (input, _)) in self.layers.iter().zip(exemplars(input, 1.0, styles)) {
+            input.check()?;
+            let (size, planned) = ([input.unwarped.width, input.unwarped.height], &layer.exemplar);
+            if size != [planned.width, planned.height] {
+                return Err(Error::argument(format!(
+                    "the unwarped image is {} x {}; the composition was made of one of {} x {}",
+                    size[0], size[1], planned.width, planned.height
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The whole texture as a tile.
+    pub fn whole(&self) -> Tile {
+        Tile { x: 0, y: 0, width: self.width, height: self.height }
+    }
+
+    /// Checks that a tile is a part of the texture.
+    pub fn check(&self, tile: Tile) -> Result<()> {
+        let fits = |start: usize, side: usize, whole: usize| side > 0 && start < whole && side <= whole - start;
+        if fits(tile.x, tile.width, self.width) && fits(tile.y, tile.height, self.height) {
+            return Ok(());
+        }
+        Err(Error::argument(format!(
+            "the tile of {} x {} texels at {}, {} must be a part of the texture, which has {} x {}",
+            tile.width, tile.height, tile.x, tile.y, self.width, self.height
+        )))
+    }
+}
+
+/// All exemplars and their unwarped pixels per texel.
+pub fn exemplars<'a>(first: &'a Input, scale: f64, styles: &'a [Style]) -> impl Iterator<Item = (&'a Input<'a>, f64)> {
+    std::iter::once((first, scale)).chain(styles.iter().map(|style| (&style.input, style.scale)))
+}

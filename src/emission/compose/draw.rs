@@ -1,0 +1,145 @@
+//! Several exemplars in one texture: the blend of styles that the paper leaves to the future (§8).
+//!
+//! A lamp halfway between two designs is a lamp of neither. So lamps are drawn: each exemplar's pattern is planned
+//! over all of the texture, and each of its lamps is kept with the probability that the exemplar's weight has at the
+//! lamp's centre. Lamps of different exemplars that would overlap share one draw, so that exactly one of them is kept;
+//! every other is kept by a draw of its own. The mean light per area then blends linearly. Where most lamps overlap
+//! several others, neighbours share a draw too, and the styles change from patch to patch; of two that meet there the
+//! later exemplar's gives way. Lights that are no lamps, since they run out of their exemplar, are dimmed by the
+//! weight instead.
+//!
+//! Lattices of different exemplars keep their own period and phase; [`crate::emission::Params::centred`] has them meet
+//! in the middle.
+
+use super::layer::Layer;
+use super::weights::Weights;
+use crate::emission::lamps::instance::{self, Instance};
+use crate::emission::params::Params;
+use crate::rng::Rng;
+use glam::DVec2;
+use std::collections::HashMap;
+
+/// Side of the squares that share a draw where lamps are dense, in sides of the longest lamp.
+const PATCH: f64 = 3.0;
+/// Share of lamps that overlap several others from which they are dense.
+const DENSE: f64 = 0.1;
+
+/// A lamp of some exemplar, and the box around it in texels.
+struct Lamp {
+    low: DVec2,
+    high: DVec2,
+    /// In [0, 1): kept are the lamps of the exemplar whose part of that interval it falls into.
+    draw: f64,
+}
+
+impl Lamp {
+    fn centre(&self) -> DVec2 {
+        (self.low + self.high) / 2.0
+    }
+
+    /// Area that both cover, where the other is moved by `shift`.
+    fn overlap(&self, other: &Self, shift: DVec2) -> f64 {
+        let sides = self.high.min(other.high + shift) - self.low.max(other.low + shift);
+        sides.max(DVec2::ZERO).element_product()
+    }
+}
+
+/// Draws which lamps of every layer stay.
+pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
+    if layers.len() < 2 {
+        return;
+    }
+    let mut lamps: Vec<Vec<Lamp>> =
+        layers.iter().map(|layer| layer.instances.iter().map(|i| boxed(layer, i)).collect()).collect();
+    let longest = lamps.iter().flatten().map(|l| (l.high - l.low).max_element()).fold(1.0, f64::max);
+
+    // Lamps of earlier layers that each lamp overlaps, most first.
+    let mut seen = Near { cells: HashMap::new(), side: longest, size: params.repeats() };
+    let mut below: Vec<Vec<Vec<(usize, usize)>>> = Vec::new();
+    for (k, layer) in lamps.iter().enumerate() {
+        below.push(layer.iter().map(|lamp| seen.overlapping(lamp, &lamps)).collect());
+        layer.iter().enumerate().for_each(|(i, lamp)| seen.add(k, i, lamp));
+    }
+    let several = below.iter().flatten().filter(|b| b.len() > 1).count();
+    let is_dense = several as f64 > DENSE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
+
+    // Draws: of the lamp that is overlapped most, of a patch, or of its own.
+    for k in 0..layers.len() {
+        for (i, others) in below[k].iter().enumerate() {
+            let patch = (lamps[k][i].centre() / (PATCH * longest)).floor();
+            lamps[k][i].draw = match others.first() {
+                Some(&(j, other)) => lamps[j][other].draw,
+                None if is_dense => {
+                    Rng::new(params.seed, &[0x7061, patch.x as i64 as u64, patch.y as i64 as u64]).next_f64()
+                }
+                None => Rng::new(params.seed, &[0x6c61, k as u64, i as u64]).next_f64(),
+            };
+        }
+    }
+
+    // Who stays, and of those that still overlap the first.
+    let size = DVec2::new(params.width as f64, params.height as f64);
+    let mut stays: Vec<Vec<bool>> = Vec::new();
+    for (k, layer) in lamps.iter().enumerate() {
+        let is_drawn = |lamp: &Lamp| {
+            let at = lamp.centre() / size;
+            let start: f64 = (0..k).map(|j| f64::from(weights.at(j, at))).sum();
+            // The last interval ends where all do, whatever rounding makes of the sum.
+            let end = if k + 1 == lamps.len() { 1.0 } else { start + f64::from(weights.at(k, at)) };
+            weights.at(k, at) > 0.0 && (start..end).contains(&lamp.draw)
+        };
+        let kept = layer
+            .iter()
+            .zip(&below[k])
+            .map(|(lamp, others)| is_drawn(lamp) && !others.iter().any(|&(j, i)| stays[j][i]));
+        stays.push(kept.collect());
+    }
+    for (layer, stays) in layers.iter_mut().zip(&stays) {
+        let mut stays = stays.iter();
+        layer.instances.retain(|_| stays.next() == Some(&true));
+    }
+}
+
+/// The box of a lamp in texels.
+fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
+    let lamp = &layer.exemplar.components.list[instance.component];
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let low = (point(lamp.min) + instance.shift) / layer.scale;
+    Lamp { low, high: (point(lamp.max) + 1.0 + instance.shift) / layer.scale, draw: 0.0 }
+}
+
+/// Lamps by the square their centre lies in; squares are as long as the longest lamp, so what overlaps is in one next
+/// to it.
+struct Near {
+    cells: HashMap<[i64; 2], Vec<(usize, usize, DVec2)>>,
+    side: f64,
+    /// Of the texture, if it repeats.
+    size: Option<DVec2>,
+}
+
+impl Near {
+    fn cell(&self, at: DVec2) -> [i64; 2] {
+        (at / self.side).floor().to_array().map(|c| c as i64)
+    }
+
+    fn add(&mut self, layer: usize, index: usize, lamp: &Lamp) {
+        let turns = self.size.map_or(vec![DVec2::ZERO], |size| instance::turns().map(|t| t * size).collect());
+        for shift in turns {
+            let cell = self.cell(lamp.centre() + shift);
+            self.cells.entry(cell).or_default().push((layer, index, shift));
+        }
+    }
+
+    fn overlapping(&self, lamp: &Lamp, lamps: &[Vec<Lamp>]) -> Vec<(usize, usize)> {
+        let [x, y] = self.cell(lamp.centre());
+        let cells = (y - 1..=y + 1).flat_map(|v| (x - 1..=x + 1).map(move |u| [u, v]));
+        let mut found: Vec<(f64, usize, usize)> = cells
+            .filter_map(|c| self.cells.get(&c))
+            .flatten()
+            .map(|&(k, i, shift)| (lamp.overlap(&lamps[k][i], shift), k, i))
+            .filter(|f| f.0 > 0.0)
+            .collect();
+        found.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        found.into_iter().map(|(_, k, i)| (k, i)).collect()
+    }
+}

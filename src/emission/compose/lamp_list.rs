@@ -1,0 +1,172 @@
+//! The lamps of a composition, one by one: what a texture consists of that is never there as a whole.
+//!
+//! Every lamp of a texture is a shifted one of an exemplar, so a list needs their outlines once, and for each lamp its
+//! place. Where texels are not unwarped pixels a lamp is what it is in the exemplar; a texture shows it to the texel.
+//! Lights that are no lamps follow the patches, as those do that run through their exemplar, and without
+//! [`crate::emission::Params::whole_lamps`] all: these are listed as the texture shows them.
+
+use super::composition::{Composition, exemplars};
+use super::layer::Layer;
+use super::weights::Style;
+use super::{patch_lights, source};
+use crate::emission::lamps::instance::Instance;
+use crate::emission::lamps::luminaire::Luminaire;
+use crate::emission::lamps::{kinds, luminaires};
+use crate::emission::lattice::continuation::Continuation;
+use crate::emission::params::Input;
+use crate::error::Result;
+use crate::geometry::polygon;
+use crate::image::colour::luminance;
+use crate::job::Job;
+use glam::{DVec2, Vec2Swizzles};
+
+/// Share of a lamp that must be within the texture for it to be one of its lamps.
+const MIN_SHOWN: f64 = 1e-6;
+
+/// The lamps that a composition shows.
+pub struct LampList {
+    /// The components of each exemplar, in its pixels.
+    shapes: Vec<Vec<Luminaire>>,
+    /// Each lamp and its exemplar.
+    shown: Vec<(u32, Instance)>,
+    /// Lights that follow the patches.
+    others: Vec<Luminaire>,
+    /// Light of all of them.
+    flux: f64,
+}
+
+impl LampList {
+    /// Lists the lamps of a composition, from the exemplars it was made of. Errors as of [`Composition::tile`].
+    pub fn new(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Self> {
+        composition.check_exemplars(input, styles)?;
+        let mut list = Self { shapes: Vec::new(), shown: Vec::new(), others: Vec::new(), flux: 0.0 };
+        for (layer, (input, _)) in composition.layers.iter().zip(exemplars(input, 1.0, styles)) {
+            let colours = source::mean_colours(layer, input, job)?;
+            let Layer { exemplar, .. } = layer;
+            let coverage = |pixel: usize| exemplar.coverage(input.light, pixel);
+            let mut shapes = luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)?;
+            for (shape, (design, fitted)) in
+                shapes.iter_mut().enumerate().filter_map(|(k, s)| Some((s, layer.designs.of(k)?)))
+            {
+                design.describe(fitted.centre, shape);
+            }
+            shapes.iter_mut().zip(colours).for_each(|(shape, colour)| shape.colour = colour);
+            list.shapes.push(shapes);
+        }
+        for (k, layer) in composition.layers.iter().enumerate() {
+            job.check()?;
+            // A part of the exemplar shows the lamps that lie there.
+            let copied = layer.patch_map.shifts.first().filter(|_| layer.continuation == Continuation::Copy);
+            let copies = copied.map(|shift| {
+                let instance = |component| Instance { component, shift: shift.exact };
+                (0..layer.exemplar.components.list.len()).map(instance).collect::<Vec<_>>()
+            });
+            for &instance in copies.as_ref().unwrap_or(&layer.instances) {
+                let lamp = list.placed(composition, k, instance);
+                if lamp.area > MIN_SHOWN {
+                    list.shown.push((k as u32, instance));
+                    list.flux += flux(&lamp);
+                }
+            }
+        }
+        list.others = patch_lights::find(composition, input, styles, job)?;
+        list.number_kinds(composition);
+        list.flux += list.others.iter().map(flux).sum::<f64>();
+        Ok(list)
+    }
+
+    /// Tells the kinds of all exemplars' lamps that are shown, and of lights that are none.
+    fn number_kinds(&mut self, composition: &Composition) {
+        let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
+        for (k, instance) in &self.shown {
+            let is_whole = composition.layers[*k as usize].exemplar.roles[instance.component].is_whole();
+            counts[*k as usize][instance.component] += usize::from(is_whole);
+        }
+        // All in texels.
+        let size = DVec2::new(composition.width as f64, composition.height as f64);
+        let factors = composition.layers.iter().map(|layer| 1.0 / layer.scale);
+        let shown = |(shapes, factor): (&Vec<Luminaire>, f64)| {
+            shapes.iter().map(|shape| shape.moved(DVec2::ZERO, factor)).collect::<Vec<_>>()
+        };
+        let mut lamps: Vec<Luminaire> = self.shapes.iter().zip(factors).flat_map(shown).collect();
+        lamps.extend(self.others.iter().cloned());
+        let counts = counts.into_iter().flatten().chain(self.others.iter().map(|l| usize::from(l.is_within(size))));
+        kinds::number(lamps.iter_mut().zip(counts));
+        let listed = self.shapes.iter_mut().flatten().chain(&mut self.others);
+        listed.zip(lamps).for_each(|(lamp, told)| lamp.kind = told.kind);
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.shown.len() + self.others.len()
+    }
+
+    /// One of them; of those that the border cuts, what is within.
+    pub fn get(&self, composition: &Composition, index: usize) -> Option<Luminaire> {
+        let mut lamp = match self.shown.get(index) {
+            Some(&(k, instance)) => self.placed(composition, k as usize, instance),
+            None => self.others.get(index - self.shown.len())?.clone(),
+        };
+        lamp.flux_share = if self.flux > 0.0 { flux(&lamp) / self.flux } else { 0.0 };
+        Some(lamp)
+    }
+
+    /// A lamp where the texture shows it.
+    fn placed(&self, composition: &Composition, k: usize, instance: Instance) -> Luminaire {
+        let layer: &Layer = &composition.layers[k];
+        let shape = &self.shapes[k][instance.component];
+        let shift = layer.rounded(instance.shift);
+        let size = DVec2::new(composition.width as f64, composition.height as f64);
+        let whole = shape.moved(shift, 1.0 / layer.scale);
+        // Copied lights are dimmed by the exemplar's weight; others are there or not.
+        let whole = match layer.continuation {
+            Continuation::Copy => {
+                Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole }
+            }
+            _ => whole,
+        };
+        if whole.outline.iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {
+            return whole;
+        }
+        within(whole, size)
+    }
+}
+
+fn flux(lamp: &Luminaire) -> f64 {
+    f64::from(luminance(lamp.colour)) * lamp.area
+}
+
+/// What of a lamp lies within a texture of the given size.
+fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
+    let sides = [(DVec2::NEG_X, 0.0), (DVec2::NEG_Y, 0.0), (DVec2::X, size.x), (DVec2::Y, size.y)];
+    let outline =
+        sides.iter().fold(lamp.outline.clone(), |outline, &(normal, offset)| polygon::clip(&outline, normal, offset));
+    let all = polygon::area(&lamp.outline).abs();
+    let left = polygon::area(&outline).abs();
+    let share = if all > 0.0 { (left / all).min(1.0) } else { 0.0 };
+    if share <= 0.0 {
+        return Luminaire { area: 0.0, outline: Vec::new(), kind: 0, ..lamp };
+    }
+    let axis = DVec2::from_angle(lamp.orientation);
+    let extent = |axis: DVec2| polygon::extent(&outline, axis);
+    // What is left may be longer across than along.
+    let (size, quarter) = (DVec2::new(extent(axis), extent(axis.perp())), std::f64::consts::FRAC_PI_2);
+    let (size, orientation) = match lamp.orientation {
+        angle if size.x >= size.y => (size, angle),
+        angle => (size.yx(), if angle > 0.0 { angle - quarter } else { angle + quarter }),
+    };
+    Luminaire { centre: centroid(&outline), size, orientation, area: lamp.area * share, outline, kind: 0, ..lamp }
+}
+
+/// The centre of what a polygon encloses.
+fn centroid(corners: &[DVec2]) -> DVec2 {
+    let origin = corners.first().copied().unwrap_or_default();
+    let (mut sum, mut area) = (DVec2::ZERO, 0.0);
+    for (i, p) in corners.iter().enumerate() {
+        let (p, q) = (*p - origin, corners[(i + 1) % corners.len()] - origin);
+        let part = p.perp_dot(q);
+        sum += (p + q) * part / 3.0;
+        area += part;
+    }
+    origin + if area == 0.0 { DVec2::ZERO } else { sum / area }
+}

@@ -1,0 +1,317 @@
+//! One exemplar over the whole texture: which of its lamps and patches go where.
+
+use super::window::{self, Window};
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::roles::Role;
+use crate::emission::lamps::design::Designs;
+use crate::emission::lamps::instance::Instance;
+use crate::emission::lamps::instances::{self, Rules};
+use crate::emission::lamps::luminaire::Luminaire;
+use crate::emission::lamps::rim_colour::RimColours;
+use crate::emission::lamps::{lattice_fill, luminaires, sharpest, stretched};
+use crate::emission::lattice::continuation::Continuation;
+use crate::emission::lattice::{border_sites, centring, extent};
+use crate::emission::params::{Input, Params, working_side};
+use crate::emission::quilt;
+use crate::emission::quilt::guide::Guide;
+use crate::emission::quilt::metadata;
+use crate::emission::quilt::patch_map::PatchMap;
+use crate::emission::reading::sites::Sites;
+use crate::emission::reading::{Choice, Reading};
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::job::Job;
+use glam::{DVec2, Vec3};
+
+/// Share of the smallest lamp's area below which a piece of light is a crumb of an edge that resampling broke off.
+/// [judged on 5 photos]
+const CRUMB: f64 = 0.02;
+/// Sides of a patch in working pixels, at least. [bench emission:knobs]
+const MIN_BLOCK: f64 = 16.0;
+/// Side of a patch on a lattice, in its longer period. [bench emission:knobs]
+const BLOCK_PERIODS: f64 = 1.5;
+
+/// Where the texture shows which part of an exemplar.
+pub struct Layer {
+    pub exemplar: Exemplar,
+    pub continuation: Continuation,
+    pub regularity: f64,
+    pub choice: Choice,
+    /// Metadata of the exemplar, at working size.
+    pub metadata: Image,
+    pub patch_map: PatchMap,
+    /// Lamps copied as a whole.
+    pub instances: Vec<Instance>,
+    /// Whether lamps are copied as a whole; else all lights follow the patches.
+    pub has_pieces: bool,
+    /// Where the photo is clipped, the colours of the lamps it shows.
+    pub rim_colours: Option<RimColours>,
+    /// The designs of its lamps; none where lamps are shown as the photo has them.
+    pub designs: Designs,
+    /// The mean colour of each component, where lamps shine evenly.
+    pub even: Option<Vec<Vec3>>,
+    /// Unwarped pixels per texel.
+    pub scale: f64,
+}
+
+/// How the exemplar is laid out on the texture.
+struct Setting<'a> {
+    params: &'a Params,
+    /// The lattice as it was found, and as the texture needs it.
+    found: Continuation,
+    continuation: Continuation,
+    /// Where the lattice begins, in unwarped pixels.
+    offset: DVec2,
+    /// Working pixels of the texture.
+    canvas: (usize, usize),
+    /// Side of a patch, and the distance to a lamp that the metadata give as 1, in working pixels.
+    block: usize,
+    cap: f64,
+}
+
+impl Layer {
+    pub fn new(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<Self> {
+        // A texture that fits into the exemplar is a part of it; else find how the pattern goes on.
+        let reading = reading.filter(|r| r.serves(input, params));
+        let (exemplar, read) = match reading {
+            Some(Reading { exemplar, continuation, regularity, choice, .. }) => {
+                (exemplar, Some((continuation, regularity, choice)))
+            }
+            None => {
+                let side = working_side(input, params);
+                (Exemplar::new(input, side, params.max_magnification, job.part(0.0, 0.15))?, None)
+            }
+        };
+        let stays = params.tileable || params.centred;
+        let window = if stays { None } else { Window::find(&exemplar, params)? };
+        let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
+        let (mut exemplar, (found, regularity, choice)) = match (inside, read) {
+            (Some(_), _) => (exemplar, (Continuation::Copy, 0.0, Choice::only(Continuation::Copy))),
+            (None, Some(read)) => (exemplar, read),
+            (None, None) => {
+                let reading = Reading::of(exemplar, input, params, job.part(0.15, 0.25))?;
+                (reading.exemplar, (reading.continuation, reading.regularity, reading.choice))
+            }
+        };
+        if let Continuation::Lattice(basis) = found {
+            border_sites::exclude(&mut exemplar, basis)?;
+        }
+        let setting = Setting::new(&exemplar, found, window, params)?;
+
+        // Compute the metadata, then lay out patches and lamps.
+        let working = &exemplar.working;
+        let is_lit = |pixel: usize| working.is_lit(pixel);
+        let (width, height, job_part) = (working.width, working.height, job.part(0.25, 0.3));
+        let metadata = metadata::compute(&working.confidence, is_lit, width, height, setting.cap, job_part)?;
+        let patch_map = match inside {
+            Some(corner) => window::copy(corner, setting.canvas, working.pitch),
+            None => setting.place_patches(&exemplar, &metadata, job.part(0.3, 0.9))?,
+        };
+        let has_pieces = inside.is_none() && params.whole_lamps;
+        let by_patches = !has_pieces || exemplar.roles.contains(&Role::Through);
+        let designs = match has_pieces && params.clean_lamps && input.photo.is_some() {
+            true => Designs::find(&exemplar, &outlines(&exemplar, input, job.part(0.9, 0.92))?),
+            false => Designs::default(),
+        };
+        let instances = match has_pieces {
+            true => setting.place_lamps(&exemplar, &designs, &patch_map, by_patches, job.part(0.92, 1.0))?,
+            false => Vec::new(),
+        };
+        let patch_map = match setting.stretch().filter(|_| by_patches) {
+            Some(lattices) => {
+                quilt::stretched::stretch(&exemplar, &patch_map, lattices, setting.offset, params.size())?
+            }
+            None => patch_map,
+        };
+        let rim_colours = RimColours::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
+        let (continuation, scale) = (setting.continuation, params.scale);
+        Ok(Self {
+            exemplar,
+            continuation,
+            regularity,
+            choice,
+            metadata,
+            patch_map,
+            instances,
+            has_pieces,
+            rim_colours,
+            designs,
+            even: None,
+            scale,
+        })
+    }
+
+    /// Whether its lamps are shown by their designs.
+    pub fn is_clean(&self) -> bool {
+        !self.designs.kinds.is_empty()
+    }
+
+    /// Whether a component follows the patches pixel by pixel.
+    pub fn is_by_pixel(&self, component: usize) -> bool {
+        !self.has_pieces || self.exemplar.roles[component] == Role::Through
+    }
+
+    /// Whether any component does.
+    pub fn has_by_pixel(&self) -> bool {
+        !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
+    }
+
+    /// Whether some of its lights are shown as the patches have them, in another order than the exemplar's.
+    pub fn follows_patches(&self) -> bool {
+        self.has_by_pixel() && self.continuation != Continuation::Copy
+    }
+
+    /// Shifts become whole pixels where pixels are copied one to one, so that copies are exact.
+    pub fn rounded(&self, shift: DVec2) -> DVec2 {
+        if self.scale == 1.0 { shift.round() } else { shift }
+    }
+
+    /// Area in texels below which a piece of light is a crumb; 0 where no lamp says what is small.
+    pub fn crumb(&self) -> f64 {
+        let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
+        if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
+    }
+}
+
+impl<'a> Setting<'a> {
+    fn new(exemplar: &Exemplar, found: Continuation, window: Option<Window>, params: &'a Params) -> Result<Self> {
+        let working = &exemplar.working;
+        let continuation = if params.tileable { found.fitted(params.size())? } else { found };
+        let block = if params.block > 0 { params.block } else { default_block(exemplar, continuation) };
+        let reach = continuation
+            .lattice()
+            .map_or(f64::INFINITY, |[a, b]| (a / working.pitch).length().max((b / working.pitch).length()) / 2.0);
+        let cap = reach.min(block as f64).max(1.0);
+        let canvas = (params.size() / working.pitch).ceil();
+        let canvas = (canvas.x as usize, canvas.y as usize);
+        let centred = if params.centred { centring::shift(exemplar, continuation, params.size()) } else { None };
+        let offset = params.offset * params.scale + centred.unwrap_or(DVec2::ZERO);
+        let offset = window.map_or(offset, |w| -w.corner);
+        Ok(Self { params, found, continuation, offset, canvas, block, cap })
+    }
+
+    /// The lattice as found and as stretched, where the texture repeats.
+    fn stretch(&self) -> Option<[[DVec2; 2]; 2]> {
+        let lattices = self.found.lattice().zip(self.continuation.lattice());
+        lattices.filter(|_| self.params.tileable).map(|(a, b)| [a, b])
+    }
+
+    /// Which part of the exemplar each part of the texture shows.
+    fn place_patches(&self, exemplar: &Exemplar, metadata: &Image, job: Job) -> Result<PatchMap> {
+        let &Self { params, continuation, canvas, .. } = self;
+        let Params { metadata_weight, candidates, .. } = *params;
+        let working = &exemplar.working;
+        let lamps = &exemplar.components.list;
+        let lit = lamps.iter().map(|lamp| lamp.area).sum::<usize>() as f64;
+        let lamp = lit / lamps.len() as f64 / working.pitch.element_product();
+        let guide = Guide { working, metadata, metadata_weight, cap: self.cap, lamp, candidates };
+
+        // One row is made, and repeated beside itself: the exemplar tells no more.
+        let row = match continuation {
+            Continuation::Row([_, across]) => {
+                let period = across.abs() / working.pitch;
+                let side = |period: f64, all: usize| if period > 0.0 { all.min(period.ceil() as usize) } else { all };
+                Some((across, (side(period.x, canvas.0), side(period.y, canvas.1))))
+            }
+            _ => None,
+        };
+        let size = row.map_or(canvas, |r| r.1);
+        // A row that ends in the exemplar ends in the texture, and begins again at the same distance each time.
+        let laid = match continuation {
+            Continuation::Row([along, across]) if !params.tileable => {
+                Continuation::Row([extent::repeat_of_row(exemplar, along).unwrap_or(along), across])
+            }
+            _ => continuation,
+        };
+        let made = quilt::place(&guide, laid, self.offset, size, self.block, params.seed, job)?;
+        Ok(match row {
+            Some((across, size)) if size != canvas => made.repeated(canvas, across.abs(), working.pitch),
+            _ => made,
+        })
+    }
+
+    /// Lamps on a lattice, each at its site, where designs tell what lamps look like.
+    fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
+        let &Self { params, continuation, offset, .. } = self;
+        let ends = match continuation {
+            Continuation::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
+            _ => false,
+        };
+        if designs.kinds.is_empty() || ends {
+            return shown;
+        }
+        match Sites::new(exemplar, &exemplar.evidence(Role::is_whole), continuation) {
+            Some(sites) => {
+                let area = (offset, params.size());
+                lattice_fill::place(exemplar, designs, &sites, continuation, shown, area, params.seed)
+            }
+            None => shown,
+        }
+    }
+
+    /// The lamps that move as pieces.
+    fn place_lamps(
+        &self,
+        exemplar: &Exemplar,
+        designs: &Designs,
+        patch_map: &PatchMap,
+        by_patches: bool,
+        job: Job,
+    ) -> Result<Vec<Instance>> {
+        let &Self { params, continuation, offset, .. } = self;
+        let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
+        let stretched = self
+            .stretch()
+            .and_then(|lattices| stretched::place(exemplar, patch_map, lattices, offset, params.size(), params.seed));
+        let instances = match continuation {
+            Continuation::Lattice(_) | Continuation::Row(_) if stretched.is_some() => stretched.unwrap_or_default(),
+            Continuation::Tile(basis) => instances::repeat(exemplar, basis, offset, params.size(), params.tileable),
+            _ => self.at_sites(exemplar, designs, instances::resolve(exemplar, patch_map, rules, params.seed, job)?),
+        };
+        let mut instances = instances;
+        sharpest::show_designed(exemplar, designs, &mut instances, params.seed);
+        match continuation {
+            Continuation::Free => shifted(instances, by_patches, params),
+            _ => Ok(instances),
+        }
+    }
+}
+
+/// The outlines of the components of an exemplar, in unwarped pixels.
+pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Luminaire>> {
+    let coverage = |pixel: usize| exemplar.coverage(input.light, pixel);
+    luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
+}
+
+/// Lamps of free patches, shifted by the offset. They begin nowhere; only where they repeat there is something to
+/// shift.
+fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
+    if params.offset == DVec2::ZERO {
+        return Ok(lamps);
+    }
+    if !params.tileable || by_patches {
+        return Err(Error::argument(format!(
+            "emission.offset is {}; the lights lie on no lattice that it could shift: set it to 0, or lower \
+             emission.least_regularity",
+            params.offset
+        )));
+    }
+    let size = params.size();
+    let offset = (params.offset * params.scale).rem_euclid(size);
+    for lamp in &mut lamps {
+        lamp.shift += offset;
+    }
+    Ok(lamps)
+}
+
+/// A patch that holds more than one lamp and its neighbours: one and a half times the longer period; without one, a
+/// quarter of the exemplar.
+fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
+    let working = &exemplar.working;
+    let quarter = working.width.min(working.height) as f64 / 4.0;
+    let side = match continuation {
+        Continuation::Lattice([a, b]) => BLOCK_PERIODS * (a / working.pitch).length().max((b / working.pitch).length()),
+        _ => quarter,
+    };
+    side.clamp(MIN_BLOCK, (2.0 * quarter).max(MIN_BLOCK)).round() as usize
+}

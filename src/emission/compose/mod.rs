@@ -1,0 +1,15 @@
+//! The texture as a whole: the composition of positions, and its texels.
+
+pub mod bands;
+pub mod composition;
+pub mod draw;
+pub mod lamp_list;
+pub mod layer;
+pub mod patch_lights;
+pub mod placement;
+pub mod render;
+pub mod resample;
+pub mod source;
+pub mod tile;
+pub mod weights;
+pub mod window;

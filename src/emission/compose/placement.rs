@@ -1,0 +1,64 @@
+//! Where a texture may show light: surfaces are seldom whole rectangles, and ducts and sprinklers are in the way of
+//! lamps.
+
+use crate::emission::lamps::luminaire::Luminaire;
+use crate::emission::lamps::{crumbs, luminaires};
+use crate::emission::output::Emission;
+use crate::error::{Error, Result};
+use crate::job::Job;
+
+/// What there is at a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// Room for light.
+    Open,
+    /// Nothing that could be seen: light there is taken out.
+    Hidden,
+    /// No place for a lamp: those that reach it are taken out whole.
+    KeepOut,
+}
+
+impl Emission {
+    /// Takes out light that has no place; `ground` has one entry for each texel. The statistics stay those of the
+    /// pattern.
+    ///
+    /// Errors: `Degenerate` if no lamp is left.
+    pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {
+        // Whole lamps first: what is hidden of them counts as well.
+        let found = luminaires::components(&self.mask)?;
+        let mut is_out = vec![false; found.list.len()];
+        for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Placement::KeepOut) {
+            is_out[label as usize - 1] = true;
+        }
+        let goes = |lamp: usize, i: usize| is_out[lamp] || ground[i] == Placement::Hidden;
+        let lit = found.labels.iter().enumerate().filter(|(_, label)| **label != 0);
+        if !lit.map(|(i, &label)| (label as usize - 1, i)).any(|(lamp, i)| goes(lamp, i)) {
+            return Ok(());
+        }
+        job.check()?;
+        crumbs::take_out(&mut self.texture, &mut self.mask, &found, goes);
+        let left = luminaires::components(&self.mask)?;
+        if left.list.is_empty() {
+            return Err(Error::degenerate(format!(
+                "none of the {} lamps has a place on the surface: lessen the margin, or take zones away",
+                found.list.len()
+            )));
+        }
+        // Lamps that stay whole are what they were; of the others the mask tells what is left, to the texel.
+        let mask = &self.mask;
+        let mut lamps = luminaires::find(&self.texture, &left, &|i| mask.data[i], job)?;
+        for (label, (lamp, component)) in (1..).zip(lamps.iter_mut().zip(&left.list)) {
+            let row = component.min[1] * mask.width;
+            let first = (row + component.min[0]..=row + component.max[0]).find(|&i| left.labels[i] == label);
+            let before = first.map_or(0, |i| found.labels[i] as usize - 1);
+            let was = self.luminaires.get(before).filter(|_| found.list[before] == *component);
+            if let Some(was) = was {
+                let Luminaire { colour, flux_share, .. } = *lamp;
+                *lamp = Luminaire { colour, flux_share, ..was.clone() };
+            }
+        }
+        luminaires::number_kinds(&mut lamps, &self.texture);
+        self.luminaires = lamps;
+        Ok(())
+    }
+}

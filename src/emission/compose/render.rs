@@ -1,0 +1,137 @@
+//! Full detail: every lamp and every patch is copied again from the finest source there is ("Lighting Style Transfer",
+//! §6, Fig. 12h).
+//!
+//! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the
+//! photo, where the area the texel covers is averaged. What is light is decided in the unwarped image: where it is
+//! magnified, by its confidence between pixels, so that outlines are no staircases; where it is reduced, by share of
+//! area.
+
+use super::bands::Bands;
+use super::source::{Source, Texel};
+use super::tile::Tile;
+use super::weights::Weights;
+use crate::emission::lamps::instance::Instance;
+use crate::error::Result;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// The largest float below one half, or nearly so. [rounding]
+const BELOW_HALF: f32 = 0.5 - f32::EPSILON;
+
+/// Which lights of a composition are rendered.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Lights {
+    All,
+    /// Those that follow the patches pixel by pixel, where the texture is no copy of a part of the exemplar.
+    OfPatches,
+}
+
+/// The texture that layers share: its size in texels, and the weight of each layer.
+pub struct Frame<'a> {
+    pub width: usize,
+    pub height: usize,
+    pub weights: &'a Weights,
+}
+
+/// A tile of the texture, and how much of each texel is light: of its mask from 0.5 on, of others less.
+pub fn run(
+    frame: &Frame,
+    sources: &[Source],
+    bands: &[Bands],
+    tile: Tile,
+    lights: Lights,
+    job: Job,
+) -> Result<(Image, Image)> {
+    let Tile { width, height, .. } = tile;
+    let mut texture = Image::new(width, height, 3)?;
+    let mut mask = Image::new(width, height, 1)?;
+    let rows = texture.data.par_chunks_exact_mut(3 * width).zip(mask.data.par_chunks_exact_mut(width)).enumerate();
+    rows.try_for_each(|(row, (colours, coverage))| {
+        job.check()?;
+        let shares = try_vec(width, 0f32)?;
+        let mut row = Row { y: tile.y + row, first: tile.x, colours, coverage, shares };
+        for (k, (source, bands)) in sources.iter().zip(bands).enumerate() {
+            if lights == Lights::All {
+                row.add_lamps(source, bands);
+            }
+            let has_more = match lights {
+                Lights::All => source.layer.has_by_pixel(),
+                Lights::OfPatches => source.layer.follows_patches(),
+            };
+            if has_more {
+                row.add_patches(source, frame, k);
+            }
+        }
+        row.finish();
+        Ok(())
+    })?;
+    job.report(1.0);
+    Ok((texture, mask))
+}
+
+/// A row of texels that is being rendered.
+struct Row<'a> {
+    y: usize,
+    /// Column of its first texel.
+    first: usize,
+    colours: &'a mut [f32],
+    /// Mean confidence of the lights at each texel, and the share of its samples that are light.
+    coverage: &'a mut [f32],
+    shares: Vec<f32>,
+}
+
+impl Row<'_> {
+    fn add(&mut self, x: usize, shown: Texel) {
+        let at = x - self.first;
+        self.coverage[at] += shown.coverage;
+        if shown.share > 0.0 {
+            self.shares[at] += shown.share;
+            let out = self.colours[3 * at..3 * at + 3].iter_mut();
+            out.zip(shown.colour.to_array()).for_each(|(o, c)| *o += c);
+        }
+    }
+
+    /// Adds the lamps that are copied as a whole.
+    fn add_lamps(&mut self, source: &Source, bands: &Bands) {
+        for &(i, range) in bands.of_row(self.y) {
+            let [x0, y0, x1, y1] = range.map(|r| r as usize);
+            if (y0..y1).contains(&self.y) {
+                let Instance { component, shift } = source.layer.instances[i as usize];
+                let columns = x0.max(self.first)..x1.min(self.first + self.coverage.len());
+                let is_shown = |label: u32| label == component as u32 + 1;
+                columns.for_each(|x| {
+                    let designed = source.designed_texel(x, self.y, shift, component);
+                    self.add(x, designed.unwrap_or_else(|| source.texel(x, self.y, shift, is_shown)));
+                });
+            }
+        }
+    }
+
+    /// Adds the lights that follow the patches.
+    fn add_patches(&mut self, source: &Source, frame: &Frame, k: usize) {
+        let size = DVec2::new(frame.width as f64, frame.height as f64);
+        for x in self.first..self.first + self.coverage.len() {
+            let at = (DVec2::new(x as f64, self.y as f64) + 0.5) / size;
+            let weight = frame.weights.at(k, at);
+            if let Some(shift) = source.shift_at(x, self.y).filter(|_| weight > 0.0) {
+                let is_shown = |label: u32| label != 0 && source.layer.is_by_pixel(label as usize - 1);
+                let shown = source.texel(x, self.y, shift, is_shown);
+                self.add(x, Texel { colour: shown.colour * weight, ..shown });
+            }
+        }
+    }
+
+    /// Holds the coverage to the share of the samples: at least half of a lit texel is light.
+    fn finish(&mut self) {
+        for (coverage, &share) in self.coverage.iter_mut().zip(&self.shares) {
+            *coverage = if share >= 0.5 { coverage.clamp(0.5, 1.0) } else { coverage.min(BELOW_HALF) };
+        }
+    }
+}
+
+/// The mask of what is at least half light, in its place.
+pub fn threshold(coverage: &mut Image) {
+    coverage.data.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
+}

@@ -1,0 +1,188 @@
+//! The source of a texel: the exemplar, and through it the photo.
+
+use super::layer::Layer;
+use super::resample;
+use crate::emission::exemplar::LIT;
+use crate::emission::params::Input;
+use crate::error::Result;
+use crate::job::Job;
+use glam::{DVec2, DVec3, Vec3, Vec4};
+
+/// Least and most samples along each side of a texel that is larger than an unwarped pixel. Fewer would not tell where
+/// half of it is light to an eighth of its side. [rounding]
+const MIN_SAMPLES: f64 = 4.0;
+const MAX_SAMPLES: f64 = 16.0;
+
+/// The mean colour of every component of the exemplar.
+pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>> {
+    let source = Source { layer, input };
+    let exemplar = &layer.exemplar;
+    let mut sums = vec![DVec3::ZERO; exemplar.components.list.len()];
+    for y in 0..exemplar.height {
+        job.check()?;
+        for x in 0..exemplar.width {
+            let label = exemplar.components.labels[y * exemplar.width + x];
+            if label != 0 {
+                let centre = DVec2::new(x as f64, y as f64) + 0.5;
+                let value = source.from_photo(centre, 1.0).unwrap_or_else(|| input.unwarped.rgb(x, y));
+                sums[label as usize - 1] += source.unclipped(label, value).as_dvec3();
+            }
+        }
+    }
+    Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
+}
+
+/// Width in photo pixels of the rim that blur darkens, and the share of a lamp that is looked at, at least. [judged on
+/// 20 photos]
+const RIM: f64 = 1.5;
+const MIN_INNER: f64 = 0.5;
+
+/// What a texel shows of some lights.
+#[derive(Clone, Copy)]
+pub struct Texel {
+    pub colour: Vec3,
+    /// Share of its samples that are light, and mean confidence that they are: the same but for the finer steps of
+    /// this.
+    pub share: f32,
+    pub coverage: f32,
+}
+
+/// What is shown, and the images it is taken from.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    pub layer: &'a Layer,
+    pub input: &'a Input<'a>,
+}
+
+impl Source<'_> {
+    /// The shift of the patch that shows a texel's centre.
+    pub fn shift_at(&self, x: usize, y: usize) -> Option<DVec2> {
+        let Layer { patch_map, exemplar, scale, .. } = self.layer;
+        let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * *scale / exemplar.working.pitch;
+        let (u, v) = ((p.x as usize).min(patch_map.width - 1), (p.y as usize).min(patch_map.height - 1));
+        patch_map.shift(u, v).map(|s| s.exact)
+    }
+
+    /// The light of the components that `is_shown` names by label, averaged over a texel.
+    pub fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> Texel {
+        let scale = self.layer.scale;
+        let n = if scale > 1.0 { scale.ceil().clamp(MIN_SAMPLES, MAX_SAMPLES) } else { 1.0 };
+        let spacing = scale / n;
+        let corner = DVec2::new(x as f64, y as f64) * scale - self.layer.rounded(shift);
+        let (mut colour, mut inside, mut coverage) = (Vec3::ZERO, 0u32, 0f32);
+        for i in 0..(n * n) as usize {
+            let step = DVec2::new((i % n as usize) as f64 + 0.5, (i / n as usize) as f64 + 0.5);
+            let p = corner + step * spacing;
+            let is_magnified = spacing <= 0.999;
+            let taps = self.taps(p, !is_magnified);
+            let light: f32 = taps.iter().map(|&(pixel, w)| w * self.light(pixel, &is_shown)).sum();
+            coverage += light;
+            let is_light = if is_magnified { light >= LIT } else { self.is_light(taps[0].0, &is_shown) };
+            if is_light {
+                inside += 1;
+                let lamp = taps.iter().map(|&(pixel, _)| self.label(pixel)).find(|&label| is_shown(label));
+                colour += match (&self.layer.even, lamp) {
+                    (Some(means), Some(label)) if label != 0 => means[label as usize - 1],
+                    _ => self.colour(p, spacing, &taps, lamp, &is_shown),
+                };
+            }
+        }
+        let samples = (n * n) as f32;
+        Texel { colour: colour / samples, share: inside as f32 / samples, coverage: coverage / samples }
+    }
+
+    /// What a texel shows of a lamp that has a design.
+    pub fn designed_texel(&self, x: usize, y: usize, shift: DVec2, component: usize) -> Option<Texel> {
+        let (design, fitted) = self.layer.designs.of(component)?;
+        let scale = self.layer.scale;
+        let at = (DVec2::new(x as f64, y as f64) + 0.5) * scale - self.layer.rounded(shift) - fitted.centre;
+        let share = design.coverage(at, scale) as f32;
+        if share <= 0.0 {
+            return Some(Texel { colour: Vec3::ZERO, share: 0.0, coverage: 0.0 });
+        }
+        // Look where the lamp of the photo, larger by its bloom, shows the same part, but not at its blurred rim.
+        let axes = [design.axis, design.axis.perp()];
+        let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
+        let half = design.size / 2.0;
+        let local = DVec2::new(at.dot(axes[0]), at.dot(axes[1])).clamp(-half, half) * inner;
+        let p = fitted.centre + axes[0] * local.x + axes[1] * local.y;
+        let label = component as u32 + 1;
+        let colour = match &self.layer.even {
+            Some(means) => means[component],
+            None => self.colour(p, scale, &self.taps(p, true), Some(label), &|l| l == label),
+        };
+        Some(Texel { colour: colour * share, share, coverage: share })
+    }
+
+    /// The light at a point, from the finest source there is.
+    fn colour(
+        &self,
+        p: DVec2,
+        side: f64,
+        taps: &[(usize, f32); 4],
+        lamp: Option<u32>,
+        is_shown: &impl Fn(u32) -> bool,
+    ) -> Vec3 {
+        let value = self.from_photo(p, side).unwrap_or_else(|| {
+            // Only light mixes with light.
+            let unwarped = self.input.unwarped;
+            let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
+            let sum: Vec4 =
+                lit.map(|&(i, w)| (unwarped.rgb(i % unwarped.width, i / unwarped.width) * w).extend(w)).sum();
+            sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
+        });
+        self.unclipped(lamp.unwrap_or(0), value)
+    }
+
+    /// The light of a component where the photo shows `value`.
+    fn unclipped(&self, label: u32, value: Vec3) -> Vec3 {
+        match (&self.layer.rim_colours, label.checked_sub(1)) {
+            (Some(rim_colours), Some(component)) => rim_colours.undo(component as usize, value),
+            _ => value,
+        }
+    }
+
+    /// Label of an unwarped pixel; `usize::MAX` is none.
+    fn label(&self, pixel: usize) -> u32 {
+        self.layer.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
+    }
+
+    /// Whether an unwarped pixel is of the light that is shown.
+    fn is_light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> bool {
+        let label = self.label(pixel);
+        label != 0 && is_shown(label)
+    }
+
+    /// How much an unwarped pixel is. Beside a lamp confidence fades away; where it is none of a lamp's, it is
+    /// nobody's.
+    fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
+        let label = self.label(pixel);
+        if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }
+    }
+
+    /// Pixels and weights of a bilinear look-up, or of the pixel a point lies in.
+    fn taps(&self, p: DVec2, nearest: bool) -> [(usize, f32); 4] {
+        let (width, height) = (self.layer.exemplar.width, self.layer.exemplar.height);
+        let at = |x: f64, y: f64| {
+            let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+            if inside { y as usize * width + x as usize } else { usize::MAX }
+        };
+        if nearest {
+            return [(at(p.x, p.y), 1.0), (usize::MAX, 0.0), (usize::MAX, 0.0), (usize::MAX, 0.0)];
+        }
+        let low = (p - 0.5).floor();
+        let t = (p - 0.5 - low).as_vec2();
+        [
+            (at(low.x, low.y), (1.0 - t.x) * (1.0 - t.y)),
+            (at(low.x + 1.0, low.y), t.x * (1.0 - t.y)),
+            (at(low.x, low.y + 1.0), (1.0 - t.x) * t.y),
+            (at(low.x + 1.0, low.y + 1.0), t.x * t.y),
+        ]
+    }
+
+    /// The photo's colour at a point of the unwarped image, averaged over a square of the given side there.
+    fn from_photo(&self, p: DVec2, side: f64) -> Option<Vec3> {
+        let (photo, to_photo) = self.input.photo?;
+        resample::mean(photo, &to_photo, p, side)
+    }
+}

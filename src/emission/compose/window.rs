@@ -1,0 +1,55 @@
+//! A texture that fits inside the exemplar is a part of it.
+
+use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
+use crate::emission::params::Params;
+use crate::emission::quilt::patch_map::{PatchMap, Shift};
+use crate::error::Result;
+use glam::DVec2;
+
+/// A part of the exemplar as large as the texture.
+pub struct Window {
+    pub corner: DVec2,
+    /// Whether all of it is.
+    pub is_shown: bool,
+}
+
+impl Window {
+    /// Of the parts that are shown everywhere that whose share of light is nearest to the exemplar's, less the offset;
+    /// nothing where there is none.
+    pub fn find(exemplar: &Exemplar, params: &Params) -> Result<Option<Self>> {
+        let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
+        let (w, h) = (side(params.width), side(params.height));
+        if w > exemplar.width as f64 || h > exemplar.height as f64 {
+            return Ok(None);
+        }
+        let (w, h) = (w as usize, h as usize);
+        let shown = AreaSums::new(|i| exemplar.shown[i], exemplar.width, exemplar.height)?;
+        let lit = AreaSums::new(|i| exemplar.components.labels[i] != 0, exemplar.width, exemplar.height)?;
+        let target = exemplar.lit_share * (w * h) as f64;
+        let mut best: Option<(f64, DVec2)> = None;
+        for y in 0..=exemplar.height - h {
+            for x in 0..=exemplar.width - w {
+                if shown.count(x, y, w, h) == w * h {
+                    let off = (lit.count(x, y, w, h) as f64 - target).abs();
+                    if best.is_none_or(|b| off < b.0) {
+                        best = Some((off, DVec2::new(x as f64, y as f64)));
+                    }
+                }
+            }
+        }
+        Ok(best.map(|(_, best)| {
+            let corner = best - (params.offset * params.scale).round();
+            let inside = corner.cmpge(DVec2::ZERO).all()
+                && corner.x + w as f64 <= exemplar.width as f64
+                && corner.y + h as f64 <= exemplar.height as f64;
+            let is_shown = inside && shown.count(corner.x as usize, corner.y as usize, w, h) == w * h;
+            Self { corner, is_shown }
+        }))
+    }
+}
+
+/// The patch_map of a texture that is a part of the exemplar.
+pub fn copy(corner: DVec2, (width, height): (usize, usize), pitch: DVec2) -> PatchMap {
+    let working = (-corner / pitch).round();
+    PatchMap::single(width, height, Shift { working: [working.x as i32, working.y as i32], exact: -corner })
+}

@@ -1,0 +1,76 @@
+//! Foreshortening: how finely the photo shows each part of the unwarped image.
+
+use crate::geometry::Homography;
+use glam::{DMat2, DVec2};
+
+/// The map from the unwarped image into the photo near a point, to first order.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalMap {
+    /// Photo pixels per unwarped pixel.
+    jacobian: DMat2,
+}
+
+impl LocalMap {
+    /// The map near a point; without a photo the unwarped image is the photo.
+    pub fn new(to_photo: Option<Homography>, at: DVec2) -> Self {
+        let jacobian = to_photo.map_or(DMat2::IDENTITY, |h| {
+            let p = |dx: f64, dy: f64| h.apply(at + DVec2::new(dx, dy));
+            DMat2::from_cols(p(0.5, 0.0) - p(-0.5, 0.0), p(0.0, 0.5) - p(0.0, -0.5))
+        });
+        Self { jacobian }
+    }
+
+    /// Photo pixels per unwarped pixel, in area.
+    pub fn area(&self) -> f64 {
+        self.jacobian.x_axis.perp_dot(self.jacobian.y_axis).abs()
+    }
+
+    /// Unwarped pixels per photo pixel.
+    pub fn inverse(&self) -> DMat2 {
+        self.jacobian.inverse()
+    }
+
+    /// By how many unwarped pixels an edge across x and one across y move if they move by one pixel of the photo.
+    pub fn photo_pixel(&self) -> DVec2 {
+        let inverse = self.jacobian.inverse().transpose();
+        let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());
+        if size.is_finite() { size } else { DVec2::splat(f64::INFINITY) }
+    }
+}
+
+/// The part of an unwarped image that is magnified no more than so many times as its least magnified pixel, in length.
+#[derive(Clone, Copy, Debug)]
+pub struct MagnificationLimit {
+    to_photo: Homography,
+    /// Largest value of the homography's denominator: magnification in length is its power of 3/2, to a factor.
+    max_denominator: f64,
+}
+
+impl MagnificationLimit {
+    /// The limit for an image whose shown pixels are given; `None` where nothing lies beyond it.
+    pub fn new(to_photo: Homography, (shown, width): (&[bool], usize), max_magnification: f64) -> Option<Self> {
+        let denominator = |i: usize| denominator(&to_photo, pixel_centre(i, width));
+        let values = || (0..shown.len()).filter(|&i| shown[i]).map(denominator);
+        let (low, high) = values().fold((f64::INFINITY, 0.0f64), |(low, high), d| (low.min(d), high.max(d)));
+        let max_denominator = low * max_magnification.powf(2.0 / 3.0);
+        (max_denominator < high).then_some(Self { to_photo, max_denominator })
+    }
+
+    /// Takes the pixels beyond the limit out of the shown ones.
+    pub fn restrict(&self, shown: &mut [bool], width: usize) {
+        shown.iter_mut().enumerate().for_each(|(i, shown)| *shown &= self.contains(pixel_centre(i, width)));
+    }
+
+    /// Whether a point of the unwarped image is within the limit.
+    pub fn contains(&self, at: DVec2) -> bool {
+        denominator(&self.to_photo, at) <= self.max_denominator
+    }
+}
+
+fn pixel_centre(i: usize, width: usize) -> DVec2 {
+    DVec2::new((i % width) as f64, (i / width) as f64) + 0.5
+}
+
+fn denominator(to_photo: &Homography, at: DVec2) -> f64 {
+    (to_photo.0 * at.extend(1.0)).z.abs()
+}

@@ -1,0 +1,171 @@
+//! The exemplar: the usable part of the unwarped image, its lamps, and its reduced size for the synthesis.
+
+pub mod area_sums;
+pub mod components;
+pub mod evidence;
+pub mod foreshortening;
+pub mod fragments;
+pub mod roles;
+pub mod working;
+
+use super::agreement::statistics::{Pattern, Statistics};
+use super::params::Input;
+use crate::error::{Error, Result};
+use crate::geometry::Homography;
+use crate::image::{Image, try_collect, try_vec};
+use crate::job::Job;
+use components::{Component, Components};
+use evidence::Evidence;
+use foreshortening::{LocalMap, MagnificationLimit};
+use roles::Role;
+use working::{Sources, Working};
+
+/// Confidence from which a pixel is light. [convention]
+pub const LIT: f32 = 0.5;
+
+/// Pixels of the photo that a lamp covers at least, unless no light covers more: a disc three pixels across. [judged
+/// on 5 photos]
+const MIN_LAMP: f64 = 9.0;
+
+/// What the photo shows of the lit plane.
+pub struct Exemplar {
+    pub width: usize,
+    pub height: usize,
+    /// Which pixels are finite and on the plane.
+    pub shown: Vec<bool>,
+    pub components: Components,
+    /// The role of each component.
+    pub roles: Vec<Role>,
+    /// Pixels of the photo that show each component.
+    pub photo_area: Vec<f64>,
+    /// Share of the shown pixels that is lit.
+    pub lit_share: f64,
+    /// The map from unwarped pixels into the photo, if there is one.
+    pub to_photo: Option<Homography>,
+    pub working: Working,
+}
+
+impl Exemplar {
+    /// Cuts an exemplar out of its input, up to a magnification unless that is 0. Errors: no valid pixel, no light
+    /// (`Degenerate`).
+    pub fn new(input: &Input, working_side: f64, max_magnification: f64, job: Job) -> Result<Self> {
+        let Input { unwarped: image, light, .. } = *input;
+        let (width, height) = (image.width, image.height);
+        let mut shown = shown_pixels(input)?;
+        if let Some((_, to_photo)) = input.photo.filter(|_| max_magnification > 0.0) {
+            let limit = MagnificationLimit::new(to_photo, (&shown, width), max_magnification);
+            limit.inspect(|limit| limit.restrict(&mut shown, width));
+        }
+        let (components, photo_area) = lights(input, &shown)?;
+        let mut roles = roles::classify(&components, &shown, width, height);
+        if let Some((_, to_photo)) = input.photo {
+            fragments::demote(&components, &mut roles, &photo_area, to_photo);
+        }
+
+        let is_usable = |(&s, &l): (&bool, &u32)| s && (l == 0 || roles[l as usize - 1] != Role::Cut);
+        let usable = try_collect(shown.iter().zip(&components.labels).map(is_usable))?;
+        let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
+        let working = Working::new(&sources, working_side, job)?;
+
+        let lit = components.list.iter().map(|c| c.area).sum::<usize>();
+        let lit_share = lit as f64 / shown.iter().filter(|&&s| s).count() as f64;
+        Ok(Self {
+            width,
+            height,
+            shown,
+            components,
+            roles,
+            photo_area,
+            lit_share,
+            to_photo: input.photo.map(|p| p.1),
+            working,
+        })
+    }
+
+    /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
+    pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
+        // Lamps are what the texture may show as such.
+        let Self { width, height, components, .. } = self;
+        let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
+        let colour = |i: usize| self.shown[i].then(|| unwarped.rgb(i % width, i / width));
+        Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
+    }
+
+    /// How much of an unwarped pixel is light, as far as `light`, the confidence, tells: of components, and of what
+    /// fades beside them. Nothing beyond the last pixel is.
+    pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
+        let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
+        match self.shown.get(pixel) {
+            Some(true) if is_light || light.data[pixel] < LIT => light.data[pixel].clamp(0.0, 1.0),
+            _ => 0.0,
+        }
+    }
+
+    /// The whole lamps.
+    pub fn lamps(&self) -> impl Iterator<Item = &Component> {
+        self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
+    }
+
+    /// The lamps of some roles as evidence, those that the photo shows best first.
+    pub fn evidence(&self, has_role: impl Fn(Role) -> bool) -> Vec<Evidence> {
+        let lamps = self.components.list.iter().enumerate().filter(|(k, _)| has_role(self.roles[*k]));
+        let mut all: Vec<Evidence> =
+            lamps.map(|(k, lamp)| Evidence::new(k, lamp, self.photo_area[k], self.to_photo)).collect();
+        all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        all
+    }
+
+    /// The components that move as one piece, and their indices.
+    pub fn pieces(&self) -> impl Iterator<Item = (usize, &Component)> {
+        self.components.list.iter().enumerate().filter(|(k, _)| self.roles[*k].is_piece())
+    }
+
+    /// The part that is magnified up to a factor against the sharpest pixel; `None` where that is all, or there is no
+    /// photo.
+    pub fn magnification_limit(&self, max_magnification: f64) -> Option<MagnificationLimit> {
+        MagnificationLimit::new(self.to_photo?, (&self.shown, self.width), max_magnification)
+    }
+}
+
+/// Which pixels are finite and on the plane. Errors: `Degenerate` without any.
+fn shown_pixels(input: &Input) -> Result<Vec<bool>> {
+    let Input { unwarped: image, light, valid, .. } = *input;
+    let mut shown = try_vec(image.width * image.height, false)?;
+    let pixels = image.data.chunks_exact(image.channels).zip(&light.data).zip(&valid.data);
+    for (out, ((colour, light), &valid)) in shown.iter_mut().zip(pixels) {
+        *out = valid >= 0.5 && light.is_finite() && colour.iter().all(|c| c.is_finite());
+    }
+    if shown.contains(&true) {
+        return Ok(shown);
+    }
+    Err(Error::degenerate(
+        "no pixel of the unwarped image is valid and finite: unwarp a part of the plane that the photo shows",
+    ))
+}
+
+/// The connected lights, and the pixels of the photo that show each. Errors: `Degenerate` without any.
+fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
+    let Input { unwarped: image, light, photo, .. } = *input;
+    let (width, height) = (image.width, image.height);
+    let mut components = components::find(width, height, |i| shown[i] && light.data[i] >= LIT)?;
+    let mut photo_area = photo_areas(&components, photo.map(|p| p.1));
+    if photo.is_some() {
+        // Drop lights that cover less of the photo than a lamp must: crumbs of other lights' edges, or noise.
+        let least = photo_area.iter().copied().fold(0.0, f64::max).min(MIN_LAMP);
+        components = components::find(width, height, |i| {
+            components.labels[i].checked_sub(1).is_some_and(|k| photo_area[k as usize] >= least)
+        })?;
+        photo_area.retain(|&a| a >= least);
+    }
+    if components.list.is_empty() {
+        return Err(Error::degenerate(
+            "no light is marked: no valid pixel of `light` reaches 0.5; paint more of the lamps as light",
+        ));
+    }
+    Ok((components, photo_area))
+}
+
+/// The area of each component in the photo, to first order; without a photo, that in the unwarped image.
+fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64> {
+    components.list.iter().map(|c| c.area as f64 * LocalMap::new(to_photo, c.centre).area()).collect()
+}

@@ -1,0 +1,83 @@
+//! The role of each component: a whole lamp, a part of one, or a light that runs through.
+
+use super::components::{Component, Components};
+
+/// A lamp that the border cuts is like a whole one if it is at most this much longer and wider. [judged on 5 photos]
+const CUT_LAMP_SLACK: f64 = 1.35;
+/// A lamp may touch the border with this share of its width and be whole: masks fray. A border that cuts it off meets
+/// all of its width; one that meets so much of it takes a twentieth of a round lamp. [judged on 5 photos]
+const WHOLE_CONTACT: f64 = 0.6;
+/// A light runs through if it covers this share of the shown pixels on a line through it. [rounding]
+const RUNS_THROUGH: f64 = 0.97;
+
+/// The role of a component of the exemplar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A lamp that ends inside the shown region.
+    Whole,
+    /// The same, though a few of its pixels lie at the border.
+    WholeAtBorder,
+    /// A part of such a lamp that the border cuts off. It is not shown: whole ones take its place.
+    Cut,
+    /// A light that the border cuts and that no whole lamp resembles. It moves as one piece, as far as the photo shows
+    /// it.
+    Partial,
+    /// A light that runs through all that is shown. It follows the patches.
+    Through,
+}
+
+impl Role {
+    /// Whether the component is a lamp that ends inside the shown region.
+    pub fn is_whole(self) -> bool {
+        matches!(self, Self::Whole | Self::WholeAtBorder)
+    }
+
+    /// Whether the component moves as one piece.
+    pub fn is_piece(self) -> bool {
+        self.is_whole() || self == Self::Partial
+    }
+}
+
+/// Finds the role of each component of a `width` × `height` image.
+pub fn classify(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<Role> {
+    let contacts = contacts(components, shown, width, height);
+    let is_whole = |(c, &n): (&Component, &usize)| {
+        let [across, down] = c.size().map(|s| s as f64);
+        n as f64 <= WHOLE_CONTACT * c.area as f64 / across.hypot(down)
+    };
+    let whole: Vec<bool> = components.list.iter().zip(&contacts).map(is_whole).collect();
+    let sizes: Vec<[usize; 2]> =
+        components.list.iter().zip(&whole).filter(|(_, w)| **w).map(|(c, _)| c.size()).collect();
+    let resembles_whole =
+        |c: &Component| sizes.iter().any(|size| (0..2).all(|k| c.size()[k] as f64 <= size[k] as f64 * CUT_LAMP_SLACK));
+    let role = |((c, &whole), &contacts): ((&Component, &bool), &usize)| match () {
+        () if whole && contacts == 0 => Role::Whole,
+        () if whole => Role::WholeAtBorder,
+        () if resembles_whole(c) => Role::Cut,
+        () if runs_through(c, shown, width, height) => Role::Through,
+        () => Role::Partial,
+    };
+    components.list.iter().zip(&whole).zip(&contacts).map(role).collect()
+}
+
+/// How many pixels of each component lie at the border of the image or of the shown region.
+fn contacts(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<usize> {
+    let mut contacts = vec![0usize; components.list.len()];
+    for (i, &label) in components.labels.iter().enumerate().filter(|(_, l)| **l != 0) {
+        let (x, y) = (i % width, i / width);
+        let inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
+        if !(inside && shown[i - 1] && shown[i + 1] && shown[i - width] && shown[i + width]) {
+            contacts[label as usize - 1] += 1;
+        }
+    }
+    contacts
+}
+
+/// Whether a component covers all that is shown of the row or of the column through its centre.
+fn runs_through(c: &Component, shown: &[bool], width: usize, height: usize) -> bool {
+    let (x, y) = ((c.centre.x as usize).min(width - 1), (c.centre.y as usize).min(height - 1));
+    let row = (0..width).filter(|u| shown[y * width + u]).count();
+    let column = (0..height).filter(|v| shown[v * width + x]).count();
+    let [across, down] = c.size().map(|s| s as f64);
+    across >= RUNS_THROUGH * row as f64 || down >= RUNS_THROUGH * column as f64
+}

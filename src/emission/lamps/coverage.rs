@@ -1,0 +1,87 @@
+//! How much of a texel is light.
+
+use crate::emission::exemplar::components::Components;
+use crate::error::Result;
+use crate::image::try_vec;
+
+/// Steps to the texels around one.
+const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
+/// How much of each texel is light: of lamps from 0.5 on, of others less.
+pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
+
+/// Which texels are light, and how much of each.
+pub struct Lights<'a> {
+    width: usize,
+    height: usize,
+    /// 0 or the number of the lamp.
+    labels: &'a [u32],
+    coverage: Coverage<'a>,
+    /// The most of each lamp by its number, which is taken for all of a texel: a confidence need not reach 1.
+    full: Vec<f32>,
+}
+
+impl<'a> Lights<'a> {
+    pub fn new(found: &'a Components, coverage: Coverage<'a>, width: usize, height: usize) -> Result<Self> {
+        let mut full = try_vec(found.list.len() + 1, 0f32)?;
+        for (i, &label) in found.labels.iter().enumerate().filter(|(_, label)| **label != 0) {
+            full[label as usize] = full[label as usize].max(coverage(i));
+        }
+        Ok(Self { width, height, labels: &found.labels, coverage, full })
+    }
+
+    fn index(&self, [x, y]: [isize; 2]) -> Option<usize> {
+        let inside = x >= 0 && y >= 0 && x < self.width as isize && y < self.height as isize;
+        inside.then(|| y as usize * self.width + x as usize)
+    }
+
+    /// The number of a texel's lamp, or 0; nothing beyond the texture.
+    pub fn label(&self, at: [isize; 2]) -> Option<u32> {
+        self.index(at).map(|i| self.labels[i])
+    }
+
+    /// How much of a texel is light; nothing beyond the texture.
+    pub fn coverage(&self, at: [isize; 2]) -> Option<f64> {
+        let i = self.index(at)?;
+        let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));
+        let full = match self.labels[i] {
+            0 => around.map(|label| self.full[label as usize]).fold(0.0, f32::max),
+            label => self.full[label as usize],
+        };
+        let share = f64::from((self.coverage)(i)) / f64::from(if full > 0.0 { full } else { 1.0 });
+        Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
+    }
+
+    /// What a texel of a lamp adds to it, as steps from it and areas: itself, whole if it lies deep in the lamp; and
+    /// at the edge its part of those around it that are less than half light.
+    pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
+        let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
+        let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
+        if !AROUND.iter().any(|&by| is_dark(step(by, at))) {
+            return add([0; 2], 1.0);
+        }
+        add([0; 2], self.sharpened(at));
+        for by in AROUND {
+            let rim = step(by, at);
+            let share = if is_dark(rim) { self.sharpened(rim) } else { 0.0 };
+            if share > 0.0 {
+                let lit = AROUND.iter().filter(|&&by| self.label(step(by, rim)).is_some_and(|l| l != 0)).count();
+                add(by, share / lit as f64);
+            }
+        }
+    }
+
+    /// How much of a texel at the edge is light. Where coverage takes more than two texels from none to all it is
+    /// blurred: there it tells the distance from the edge.
+    fn sharpened(&self, at: [isize; 2]) -> f64 {
+        let coverage = self.coverage(at).unwrap_or(0.0);
+        let is_lit = self.label(at) != Some(0);
+        let beside = [[-1, 0], [1, 0], [0, -1], [0, 1]].map(|[u, v]| [at[0] + u, at[1] + v]);
+        let across = beside.into_iter().filter(|&to| (self.label(to) != Some(0)) != is_lit);
+        let steps = across.filter_map(|to| self.coverage(to)).map(|other| (coverage - other).abs());
+        match steps.fold(0.0, f64::max) {
+            step if step > 0.0 && step < 0.5 => (0.5 + (coverage - 0.5) / step).clamp(0.0, 1.0),
+            _ => coverage,
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Crumbs: pieces of light so small that resampling broke them off a lamp.
+
+use crate::emission::exemplar::components::{Component, Components};
+use crate::image::Image;
+
+/// How long a piece of light may be, in texels, to be a crumb of that area.
+pub fn reach(crumb: f64) -> usize {
+    (2.0 * crumb.sqrt()).ceil() as usize
+}
+
+/// Takes out every connected piece of light smaller than `crumb` texels, and compact: no longer than the [`reach`] of
+/// one. Those that `is_cut` says of by their first and last texel are the rest of something larger.
+pub fn remove(
+    texture: &mut Image,
+    mask: &mut Image,
+    found: &mut Components,
+    crumb: f64,
+    is_cut: impl Fn([usize; 2], [usize; 2]) -> bool,
+) {
+    let reach = reach(crumb);
+    let is_crumb = |piece: &Component| {
+        let is_small = (piece.area as f64) < crumb && piece.size().into_iter().all(|s| s <= reach);
+        is_small && !is_cut(piece.min, piece.max)
+    };
+    let crumbs: Vec<bool> = found.list.iter().map(is_crumb).collect();
+    if crumbs.contains(&true) {
+        take_out(texture, mask, found, |k, _| crumbs[k]);
+        found.remove(|k| crumbs[k]);
+    }
+}
+
+/// Takes out the texels of lamps that `goes` names by lamp and texel, and rims whose lamps all go: texels less than
+/// half of which is light, which the mask leaves out.
+pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
+    let (width, height) = (mask.width, mask.height);
+    let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);
+    for i in 0..width * height {
+        let is_out = match lamp(i) {
+            Some(k) => goes(k, i),
+            None if texture.data[3 * i..3 * i + 3] == [0.0; 3] => false,
+            None => {
+                let (x, y) = (i % width, i / width);
+                let columns = x.saturating_sub(1)..(x + 2).min(width);
+                let rows = y.saturating_sub(1)..(y + 2).min(height);
+                let mut near =
+                    rows.flat_map(|v| columns.clone().map(move |u| v * width + u)).filter_map(|j| Some((lamp(j)?, j)));
+                let first = near.next();
+                first.into_iter().chain(near).all(|(k, j)| goes(k, j)) && first.is_some()
+            }
+        };
+        if is_out {
+            texture.data[3 * i..3 * i + 3].fill(0.0);
+            mask.data[i] = 0.0;
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! From patches to lamps: which lamps of the exemplar the texture shows, each as one piece.
+//!
+//! The texture is black off the lights (Fig. 12c), so all that a patch contributes is its lamps. A seam that must pass
+//! a lamp, because the lamp is wider than the overlap, would leave part of it; instead a lamp is shown whole where
+//! most of it lies in patches of its own shift, and not at all where less does or where another lamp took the place.
+
+use super::instance::Instance;
+use super::sharpest;
+use crate::emission::exemplar::Exemplar;
+use crate::emission::lattice::cells;
+use crate::emission::quilt::patch_map::PatchMap;
+use crate::error::Result;
+use crate::image::try_vec;
+use crate::job::Job;
+use glam::{DMat2, DVec2};
+use std::collections::BTreeMap;
+
+/// Share of a lamp that patches of its shift must show.
+const MIN_SHARE: f64 = 0.3;
+/// Share of a lamp's pixels that others may hold on a lattice, where rounding is all that can make them meet.
+const LATTICE_SLACK: f64 = 0.2;
+
+/// What lamps may do.
+#[derive(Clone, Copy)]
+pub struct Rules {
+    /// They lie on a lattice: rounding alone can make them meet.
+    pub is_lattice: bool,
+    /// What leaves the texture on one side comes in on the other.
+    pub wraps: bool,
+}
+
+/// The lamps shown by a patch map, best supported first, each as the photo shows it or one like it best.
+pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
+    let canvas = Canvas { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
+    let claims = canvas.claims(exemplar.working.height, job)?;
+    let mut instances = canvas.settle(&claims, rules.is_lattice)?;
+    sharpest::show_sharpest(exemplar, &mut instances, seed);
+    Ok(instances)
+}
+
+/// A patch map, and the working pixels of each lamp.
+struct Canvas<'a> {
+    patch_map: &'a PatchMap,
+    footprints: Vec<Vec<[i32; 2]>>,
+    wraps: bool,
+}
+
+impl Canvas<'_> {
+    /// The pixel of the texture at a place, if there is one.
+    fn texel(&self, x: i32, y: i32) -> Option<(usize, usize)> {
+        let side = |at: i32, side: usize| match self.wraps {
+            true => Some(at.rem_euclid(side as i32) as usize),
+            false => usize::try_from(at).ok().filter(|&at| at < side),
+        };
+        side(x, self.patch_map.width).zip(side(y, self.patch_map.height))
+    }
+
+    /// The pixels of the texture that a lamp covers at a shift.
+    fn place(&self, k: u32, label: u32) -> impl Iterator<Item = (usize, usize)> {
+        let [dx, dy] = self.patch_map.shifts[label as usize].working;
+        self.footprints[k as usize].iter().filter_map(move |&[x, y]| self.texel(x + dx, y + dy))
+    }
+
+    /// Which lamps the patches show at which shift, by the share of the lamp that they show, best first: share, lamp
+    /// and label.
+    fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
+        let rows = rows(&self.footprints, exemplar_height);
+        let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+        for y in 0..self.patch_map.height {
+            job.check()?;
+            let mut start = 0;
+            for &(end, label) in self.patch_map.row(y) {
+                let run = std::mem::replace(&mut start, end as i32)..end as i32;
+                let Some([dx, dy]) = self.patch_map.shifts.get(label as usize).map(|s| s.working) else { continue };
+                let Some(row) = usize::try_from(y as i32 - dy).ok().and_then(|v| rows.get(v)) else { continue };
+                let (low, high) = (run.start - dx, run.end - dx);
+                for piece in row[row.partition_point(|p| p.end <= low)..].iter().take_while(|p| p.start < high) {
+                    let pixels = piece.end.min(high) - piece.start.max(low);
+                    *shown.entry((piece.lamp, label)).or_default() += pixels as usize;
+                }
+            }
+        }
+        let share =
+            |(&(k, label), &n): (&(u32, u32), &usize)| (n as f64 / self.place(k, label).count() as f64, k, label);
+        let mut claims: Vec<(f64, u32, u32)> = shown.iter().map(share).collect();
+        claims.retain(|c| c.0 >= MIN_SHARE);
+        claims.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        Ok(claims)
+    }
+
+    /// The lamps that find their place free, best first. Free lamps keep a pixel between them.
+    fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
+        let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
+        let mut taken = Bits::new(width * height)?;
+        let mut instances = Vec::new();
+        let margin = i32::from(!is_lattice);
+        for &(_, k, label) in claims {
+            let near = |x: usize, y: usize| {
+                let around = |at: usize| at as i32 - margin..=at as i32 + margin;
+                around(y).any(|v| around(x).filter_map(|u| self.texel(u, v)).any(|(u, v)| taken.get(v * width + u)))
+            };
+            let clashes = self.place(k, label).filter(|&(x, y)| near(x, y)).count();
+            let allowed = if is_lattice { LATTICE_SLACK * self.place(k, label).count() as f64 } else { 0.0 };
+            if clashes as f64 <= allowed {
+                self.place(k, label).for_each(|(x, y)| taken.set(y * width + x));
+                instances.push(Instance { component: k as usize, shift: shifts[label as usize].exact });
+            }
+        }
+        Ok(instances)
+    }
+}
+
+/// The lamps of an exemplar that repeats as a whole: all of them in each cell of the lattice that the texture shows a
+/// part of; where it repeats itself, in each cell that begins in it.
+pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
+    let inverse = DMat2::from_cols(a, b).inverse();
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let mut instances = Vec::new();
+    for (component, lamp) in exemplar.pieces() {
+        // The shifts that bring some of it into the texture, and the cells around those.
+        let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
+        for [i, j] in cells::between(inverse, low - offset, high - offset) {
+            let shift = offset + a * i as f64 + b * j as f64;
+            // A cell that begins on the far side is the one that begins on this.
+            let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
+            if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
+                instances.push(Instance { component, shift });
+            }
+        }
+    }
+    instances
+}
+
+/// Working pixels of a row from `start` to before `end` that a lamp covers.
+struct Piece {
+    start: i32,
+    end: i32,
+    lamp: u32,
+}
+
+/// The lamps that each working row shows, from left to right. Of lamps that share a pixel, because both are smaller
+/// than it, the last has it.
+fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
+    let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
+    for (k, pixels) in footprints.iter().enumerate() {
+        for &[x, y] in pixels {
+            rows[y as usize].insert(x, k as u32);
+        }
+    }
+    let pieces = |row: BTreeMap<i32, u32>| {
+        let mut pieces: Vec<Piece> = Vec::new();
+        for (x, lamp) in row {
+            match pieces.last_mut().filter(|p| p.end == x && p.lamp == lamp) {
+                Some(piece) => piece.end += 1,
+                None => pieces.push(Piece { start: x, end: x + 1, lamp }),
+            }
+        }
+        pieces
+    };
+    rows.into_iter().map(pieces).collect()
+}
+
+/// A set of pixels, in the space of a bit each.
+struct Bits(Vec<u64>);
+
+impl Bits {
+    fn new(count: usize) -> Result<Self> {
+        Ok(Self(try_vec(count.div_ceil(64), 0)?))
+    }
+
+    fn get(&self, i: usize) -> bool {
+        self.0[i / 64] >> (i % 64) & 1 != 0
+    }
+
+    fn set(&mut self, i: usize) {
+        self.0[i / 64] |= 1 << (i % 64);
+    }
+}
+
+/// The working pixels of each lamp that is a piece: those whose centre it covers, or at least that of its own centre.
+fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
+    let working = &exemplar.working;
+    let mut footprints = vec![Vec::new(); exemplar.components.list.len()];
+    for y in 0..working.height {
+        for x in 0..working.width {
+            let centre = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
+            let label = exemplar.components.labels[centre.y as usize * exemplar.width + centre.x as usize] as usize;
+            if label != 0 && exemplar.roles[label - 1].is_piece() {
+                footprints[label - 1].push([x as i32, y as i32]);
+            }
+        }
+    }
+    for ((pixels, lamp), role) in footprints.iter_mut().zip(&exemplar.components.list).zip(&exemplar.roles) {
+        if role.is_piece() && pixels.is_empty() {
+            let p = lamp.centre / working.pitch;
+            pixels.push([(p.x as i32).min(working.width as i32 - 1), (p.y as i32).min(working.height as i32 - 1)]);
+        }
+    }
+    footprints
+}

@@ -1,0 +1,178 @@
+//! Kinds of lamps: those of about the same size and shape, whatever their colour and however they are turned.
+//!
+//! A lamp is told by its area and the smallest rectangle around its outline, of which a square fills all, a disc π/4,
+//! a triangle half. The lamp with most of its like makes a kind with them; so on with the rest. Of lamps smaller than
+//! about twenty texels the outline does not tell squares from discs as wide.
+
+use super::luminaire::Luminaire;
+use crate::geometry::polygon;
+use glam::{DVec2, Vec2Swizzles};
+use std::collections::BTreeMap;
+
+/// By how much, relatively, lamps of a kind may differ in area and in both sides.
+const LIKE: f64 = 0.25;
+/// By how much they may differ in the share of their rectangle that they fill.
+const FILL: f64 = 0.1;
+/// By how much rounding and its simpler line make an outline differ, in texels, of both sides together.
+const ROUNDING: f64 = 2.0;
+/// Steps within which lamps are looked at as one: so many to a factor of e.
+const STEPS: f64 = 20.0;
+
+/// What is compared of a lamp, in texels.
+#[derive(Clone, Copy)]
+struct Shape {
+    area: f64,
+    /// Sides of the smallest rectangle, the long one first.
+    sides: DVec2,
+}
+
+impl Shape {
+    fn of(lamp: &Luminaire) -> Self {
+        Self { area: lamp.area, sides: smallest_rectangle(&lamp.outline) }
+    }
+
+    fn fill(self) -> f64 {
+        self.area / (self.sides.x * self.sides.y).max(f64::MIN_POSITIVE)
+    }
+
+    fn is_like(self, other: Self) -> bool {
+        let close = |a: f64, b: f64, rounding: f64| (a - b).abs() <= (LIKE * a.max(b)).max(rounding);
+        let (long, short) = (self.sides.x.max(other.sides.x), self.sides.y.min(other.sides.y).max(1.0));
+        close(self.area, other.area, 0.5 * ROUNDING * long)
+            && close(self.sides.x, other.sides.x, ROUNDING)
+            && close(self.sides.y, other.sides.y, ROUNDING)
+            && (self.fill() - other.fill()).abs() <= FILL + ROUNDING / short
+    }
+
+    /// Lamps of the same are looked at as one.
+    fn step(self) -> [i64; 3] {
+        [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * STEPS).round() as i64)
+    }
+}
+
+/// Lamps of nearly the same shape.
+struct Step<'a> {
+    shape: Shape,
+    lamps: Vec<&'a mut Luminaire>,
+    count: usize,
+}
+
+/// Numbers the kinds of lamps from 1, those with most lamps first. Each counts for as many lamps as it says; those
+/// that count for none, as what the border cuts does, have no kind, 0.
+pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
+    let mut steps: BTreeMap<[i64; 3], Step> = BTreeMap::new();
+    for (lamp, count) in lamps {
+        lamp.kind = 0;
+        let shape = Shape::of(lamp);
+        if count > 0 && shape.area > 0.0 {
+            let step = steps.entry(shape.step()).or_insert(Step { shape, lamps: Vec::new(), count: 0 });
+            step.lamps.push(lamp);
+            step.count += count;
+        }
+    }
+    let mut left: Vec<Step> = steps.into_values().collect();
+
+    // The one with most of its like, and these; then the same of the rest.
+    let count = |steps: &[Step]| steps.iter().map(|s| s.count).sum::<usize>();
+    let mut kinds: Vec<Vec<Step>> = Vec::new();
+    loop {
+        let like = |step: &Step| left.iter().filter(|s| s.shape.is_like(step.shape)).map(|s| s.count).sum::<usize>();
+        let Some(shape) = left.iter().rev().max_by_key(|step| like(step)).map(|step| step.shape) else { break };
+        let (of_kind, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|s| s.shape.is_like(shape));
+        kinds.push(of_kind);
+        left = others;
+    }
+    kinds.sort_by_key(|kind| std::cmp::Reverse(count(kind)));
+    for (number, kind) in (1..).zip(kinds) {
+        kind.into_iter().flat_map(|s| s.lamps).for_each(|lamp| lamp.kind = number);
+    }
+}
+
+/// Sides of the smallest rectangle around some corners, the long one first: one of its sides lies along one of their
+/// convex hull's (Freeman and Shapira 1975), so along one between two of them.
+fn smallest_rectangle(corners: &[DVec2]) -> DVec2 {
+    let extent = |axis: DVec2| polygon::extent(corners, axis);
+    let hull = polygon::convex_hull(corners.to_vec());
+    let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());
+    let sides = edges.map(|axis| DVec2::new(extent(axis), extent(axis.perp())));
+    let smallest = sides.min_by(|a, b| (a.x * a.y).total_cmp(&(b.x * b.y))).unwrap_or_default();
+    if smallest.x >= smallest.y { smallest } else { smallest.yx() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::luminaires;
+    use super::*;
+    use crate::image::Image;
+    use crate::job::Monitor;
+    use std::f64::consts::PI;
+
+    fn lamps(width: usize, height: usize, is_lit: impl Fn(DVec2) -> bool) -> Vec<Luminaire> {
+        let on = |x: usize, y: usize| f32::from(is_lit(DVec2::new(x as f64, y as f64) + 0.5));
+        let mask = Image::from_fn(width, height, |x, y| [on(x, y)]).unwrap();
+        let texture = Image::from_fn(width, height, |x, y| [on(x, y); 3]).unwrap();
+        let found = luminaires::components(&mask).unwrap();
+        luminaires::find(&texture, &found, &|i| mask.data[i], Monitor::default().job()).unwrap()
+    }
+
+    #[test]
+    fn rectangles_around_turned_shapes_are_the_smallest() {
+        for angle in [0.0, 0.3, 1.0, 2.0] {
+            let turn = |x: f64, y: f64| DVec2::from_angle(angle).rotate(DVec2::new(x, y)) + DVec2::new(50.0, 70.0);
+            let box_ = [turn(0.0, 0.0), turn(5.0, 0.0), turn(5.0, 2.0), turn(2.5, 1.0), turn(0.0, 2.0)];
+            assert!((smallest_rectangle(&box_) - DVec2::new(5.0, 2.0)).length() < 1e-9);
+            let disc: Vec<DVec2> = (0..64).map(|i| DVec2::from_angle(f64::from(i) * PI / 32.0) * 10.0).collect();
+            assert!((smallest_rectangle(&disc) - 20.0).length() < 0.2);
+        }
+        assert_eq!(smallest_rectangle(&[]), DVec2::ZERO);
+        assert_eq!(smallest_rectangle(&[DVec2::ONE]), DVec2::ZERO);
+        assert_eq!(smallest_rectangle(&[DVec2::ZERO, DVec2::X]), DVec2::X);
+    }
+
+    #[test]
+    fn discs_squares_however_turned_and_bars_are_kinds() {
+        // Squares, every other turned by 45°; discs as wide as those; a bar.
+        let size = DVec2::new(640.0, 200.0);
+        let what = |cell: i64| match cell {
+            0 | 2 | 4 | 6 => 1,
+            1 | 3 | 5 => 2,
+            _ => 3,
+        };
+        let is_lit = |p: DVec2| {
+            let cell = (p.x / 80.0).floor();
+            let d = p - DVec2::new(80.0 * cell + 40.0, 100.0);
+            let turned = if cell as i64 % 4 == 0 { d } else { DVec2::from_angle(PI / 4.0).rotate(d) };
+            match what(cell as i64) {
+                1 => turned.abs().max_element() < 22.0,
+                2 => d.length() < 22.0,
+                _ => d.x.abs() < 8.0 && d.y.abs() < 60.0,
+            }
+        };
+        let mut found = lamps(size.x as usize, size.y as usize, is_lit);
+        number(found.iter_mut().map(|l| (l, 1)));
+        for lamp in &found {
+            assert_eq!(i64::from(lamp.kind), what((lamp.centre.x / 80.0) as i64), "at {}", lamp.centre);
+        }
+        // Those that count for none have none.
+        number(found.iter_mut().map(|l| (usize::from(l.centre.x < 300.0), l)).map(|(count, l)| (l, count)));
+        assert_eq!(found.iter().filter(|l| l.kind == 0).count(), found.len() - 4);
+        assert!(found.iter().filter(|l| l.centre.x < 300.0).all(|l| l.kind > 0));
+    }
+
+    #[test]
+    fn lamps_of_a_few_texels_are_one_kind_where_rounding_alone_tells_them_apart() {
+        // Discs 5 texels across, each with its centre elsewhere within a texel.
+        let is_lit = |p: DVec2| {
+            let cell = (p / 20.0).floor();
+            let aside = DVec2::new((cell.x * 0.37).fract(), (cell.y * 0.61 + cell.x * 0.17).fract());
+            (p - cell * 20.0 - 10.0 - aside).length() < 2.6
+        };
+        let mut found = lamps(200, 200, is_lit);
+        number(found.iter_mut().map(|l| (l, 1)));
+        assert!(
+            found.len() == 100 && found.iter().all(|l| l.kind == 1),
+            "{}",
+            found.iter().map(|l| l.kind).max().unwrap()
+        );
+    }
+}

@@ -1,0 +1,144 @@
+//! The lamps of the texture as a list: what lighting software wants besides pixels.
+
+use super::coverage::{Coverage, Lights};
+use super::kinds;
+use super::luminaire::Luminaire;
+use super::outline::Ring;
+use crate::emission::exemplar::components::{self, Component, Components};
+use crate::error::Result;
+use crate::image::Image;
+use crate::image::colour::luminance;
+use crate::job::Job;
+use glam::{DVec2, DVec3, Vec3};
+
+/// The connected components of a mask, or of what is at least half light.
+pub fn components(mask: &Image) -> Result<Components> {
+    components::find(mask.width, mask.height, |i| mask.data[i] >= 0.5)
+}
+
+/// One luminaire for each connected component of the lights, in the order of their first texel.
+pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
+    let total = texture.data.chunks_exact(3).map(|p| f64::from(luminance(Vec3::from_slice(p)))).sum::<f64>();
+    let lights = Lights::new(found, coverage, texture.width, texture.height)?;
+    let lamps: Result<Vec<Luminaire>> = (1..)
+        .zip(&found.list)
+        .map(|(label, lamp)| {
+            job.check()?;
+            Ok(measure(label, lamp, texture, total, &lights))
+        })
+        .collect();
+    let mut lamps = lamps?;
+    number_kinds(&mut lamps, texture);
+    Ok(lamps)
+}
+
+/// Tells the kinds of the lamps of a texture.
+pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
+    let size = DVec2::new(texture.width as f64, texture.height as f64);
+    kinds::number(lamps.iter_mut().map(|lamp| {
+        let count = usize::from(lamp.is_within(size));
+        (lamp, count)
+    }));
+}
+
+fn measure(label: u32, lamp: &Component, texture: &Image, total: f64, lights: &Lights) -> Luminaire {
+    let [low, high] = [lamp.min, lamp.max].map(|p| p.map(|v| v as isize));
+    let is_in = |at: [isize; 2]| lights.label(at) == Some(label);
+
+    // Area and moments of what is light, its edge included; from its own corner, so that they are the same everywhere.
+    let (mut area, mut sum, mut squares, mut colour) = (0.0, DVec2::ZERO, DVec3::ZERO, DVec3::ZERO);
+    for y in low[1]..=high[1] {
+        for x in (low[0]..=high[0]).filter(|&x| is_in([x, y])) {
+            lights.parts([x, y], |[u, v], part| {
+                let p = DVec2::new((x + u - low[0]) as f64, (y + v - low[1]) as f64) + 0.5;
+                area += part;
+                sum += p * part;
+                squares += DVec3::new(p.x * p.x, p.x * p.y, p.y * p.y) * part;
+            });
+            colour += texture.rgb(x as usize, y as usize).as_dvec3();
+        }
+    }
+    let centre = sum / area;
+    let moments = squares - DVec3::new(centre.x * centre.x, centre.x * centre.y, centre.y * centre.y) * area;
+    let orientation = orientation(moments.to_array());
+    colour /= lamp.area as f64;
+
+    let ring = Ring::walk(lamp, &is_in, &|at| lights.coverage(at));
+    let (outline, size) =
+        ring.outline(DVec2::from_angle(orientation), DVec2::new(texture.width as f64, texture.height as f64));
+    let flux = f64::from(luminance(colour.as_vec3())) * lamp.area as f64;
+    Luminaire {
+        centre: DVec2::new(low[0] as f64, low[1] as f64) + centre,
+        size,
+        orientation,
+        area,
+        colour: colour.as_vec3(),
+        flux_share: if total > 0.0 { flux / total } else { 0.0 },
+        outline,
+        kind: 0,
+    }
+}
+
+/// The direction of largest variance, in (-π/2, π/2], of second moments; a lamp that has none lies along x.
+pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
+    let (difference, cross) = (xx - yy, 2.0 * xy);
+    let anisotropy = difference.hypot(cross);
+    let angle = if anisotropy > 1e-6 * (xx + yy) { 0.5 * cross.atan2(difference) } else { 0.0 };
+    // Rounding may not choose between the two ends.
+    if angle <= -std::f64::consts::FRAC_PI_2 + 1e-12 { angle + std::f64::consts::PI } else { angle }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polygon;
+    use crate::job::Monitor;
+
+    fn lamps(width: usize, height: usize, inside: impl Fn(f64, f64) -> bool) -> Vec<Luminaire> {
+        let on = |x: usize, y: usize| inside(x as f64 + 0.5, y as f64 + 0.5);
+        let mask = Image::from_fn(width, height, |x, y| [f32::from(on(x, y))]).unwrap();
+        let texture = Image::from_fn(width, height, |x, y| [2.0, 1.0, 0.5].map(|v| v * f32::from(on(x, y)))).unwrap();
+        find(&texture, &components(&mask).unwrap(), &|i| mask.data[i], Monitor::default().job()).unwrap()
+    }
+
+    #[test]
+    fn a_rectangle_is_measured_exactly() {
+        let found = lamps(40, 30, |x, y| (5.0..25.0).contains(&x) && (8.0..18.0).contains(&y));
+        assert_eq!(found.len(), 1);
+        let lamp = &found[0];
+        assert_eq!((lamp.centre, lamp.size, lamp.orientation), (DVec2::new(15.0, 13.0), DVec2::new(20.0, 10.0), 0.0));
+        assert_eq!((lamp.area, lamp.colour), (200.0, Vec3::new(2.0, 1.0, 0.5)));
+        assert!((lamp.flux_share - 1.0).abs() < 1e-6);
+        assert_eq!(lamp.outline.len(), 4);
+        assert_eq!(polygon::area(&lamp.outline), 200.0);
+        let upright = lamps(30, 40, |x, y| (5.0..8.0).contains(&x) && (8.0..38.0).contains(&y));
+        assert!((upright[0].orientation - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert!((upright[0].size - DVec2::new(30.0, 3.0)).length() < 1e-9);
+    }
+
+    #[test]
+    fn a_turned_ellipse_keeps_its_angle_axes_and_area() {
+        let (angle, a, b) = (0.5f64, 60.0, 25.0);
+        let found = lamps(160, 160, |x, y| {
+            let d = DVec2::from_angle(-angle).rotate(DVec2::new(x - 80.0, y - 80.0));
+            (d.x / a).powi(2) + (d.y / b).powi(2) <= 1.0
+        });
+        let lamp = &found[0];
+        assert!((lamp.orientation - angle).abs() < 0.01, "{}", lamp.orientation);
+        assert!((lamp.size - DVec2::new(2.0 * a, 2.0 * b)).abs().max_element() < 1.5, "{}", lamp.size);
+        let area = std::f64::consts::PI * a * b;
+        assert!((lamp.area / area - 1.0).abs() < 0.01);
+        assert!((polygon::area(&lamp.outline) / area - 1.0).abs() < 0.02);
+        assert!(lamp.outline.len() < 60);
+    }
+
+    #[test]
+    fn outlines_close_around_single_texels_holes_and_corner_contacts() {
+        let dot = lamps(3, 3, |x, y| x == 1.5 && y == 1.5);
+        assert_eq!(polygon::area(&dot[0].outline), 1.0);
+        let ring = lamps(9, 9, |x, y| (x - 4.5).abs().max((y - 4.5).abs()) > 2.0);
+        assert_eq!((ring.len(), polygon::area(&ring[0].outline)), (1, 81.0));
+        let pair = lamps(4, 4, |x, y| (x < 2.0) == (y < 2.0));
+        assert_eq!((pair.len(), polygon::area(&pair[0].outline)), (1, 8.0));
+    }
+}

@@ -1,0 +1,15 @@
+//! Lamps: which ones a texture shows where, each as one piece; their outlines, kinds and colours.
+
+pub mod coverage;
+pub mod crumbs;
+pub mod design;
+pub mod instance;
+pub mod instances;
+pub mod kinds;
+pub mod lattice_fill;
+pub mod luminaire;
+pub mod luminaires;
+pub mod outline;
+pub mod rim_colour;
+pub mod sharpest;
+pub mod stretched;

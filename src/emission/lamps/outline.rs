@@ -1,0 +1,200 @@
+//! The outline of a lamp, finer than its texels: where half of what a texel covers would be light.
+//!
+//! Marching squares (Lorensen and Cline 1987) between the centres of texels. The outline crosses from a texel that is
+//! light to one beside it that is not; on which way it goes on where texels meet by a corner only, the lamp's
+//! connection decides. Where between two centres it crosses, both coverages tell: a straight edge that no other texel
+//! beside these is partly beyond makes their sum its place, to which a level set of values in between comes within
+//! 0.09 texels only. Corners are sharper than a texel can show: where two sides of a few texels meet, they go on until
+//! they do.
+
+use crate::emission::exemplar::components::Component;
+use crate::geometry::polygon;
+use glam::DVec2;
+
+/// Largest distance in texels between the outline and a crossing.
+const TOLERANCE: f64 = 0.1;
+/// The same of texels' corners where all or nothing of each is light: a staircase becomes a line.
+const STAIRCASE: f64 = 1.0;
+/// A lamp up to this wide, in texels, keeps the corners of its texels too: crossings alone would take half of a single
+/// one.
+const NARROW: f64 = 2.0;
+/// How long a side must be to tell its direction, and what is blunt between two, in texels; how far each goes on at
+/// most; and the cosine of the angle by which they turn at least, 60°, which no disc does that has such sides.
+const SIDE: f64 = 2.0;
+const BLUNT: f64 = 2.0;
+const MAX_EXTENDED: f64 = 1.5;
+const CORNER: f64 = 0.5;
+/// How far from the border of the texture, in texels, a corner on it may be by rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// The outer boundary of a lamp, the lamp on the right, a crossing and the texel corner before it for each texel's
+/// edge. Points are relative to the lamp's first column and row, so that they have the same bits wherever it lies.
+pub struct Ring {
+    crossings: Vec<DVec2>,
+    corners: Vec<DVec2>,
+    is_soft: bool,
+    narrow: f64,
+    origin: DVec2,
+}
+
+impl Ring {
+    /// Walks around a lamp. `is_in` says which texels are its own, by column and row; `coverage` how much of a texel
+    /// is light: of its own from 0.5 on, of others less, and nothing beyond the texture, where the outline ends at the
+    /// border.
+    pub fn walk(
+        lamp: &Component,
+        is_in: &dyn Fn([isize; 2]) -> bool,
+        coverage: &dyn Fn([isize; 2]) -> Option<f64>,
+    ) -> Self {
+        // The first texel in reading order has its upper left corner on the outer boundary.
+        let origin = lamp.min.map(|v| v as isize);
+        let first = (lamp.min[0]..=lamp.max[0]).map(|x| [x as isize, origin[1]]).find(|&at| is_in(at));
+        let start = first.unwrap_or(origin);
+        let local = |at: [isize; 2]| DVec2::new((at[0] - origin[0]) as f64, (at[1] - origin[1]) as f64);
+
+        // Walk eastwards from there with the lamp at the right hand. Only one texel of the lamp meets the first
+        // corner, so the walk is over when it is back. Where texels touch by a corner, turn left: the lamp holds both.
+        let (mut crossings, mut corners, mut is_soft) = (Vec::new(), Vec::new(), false);
+        let (mut at, mut heading) = (start, [1isize, 0isize]);
+        loop {
+            let [inside, outside] = [1, -1].map(|side| beside(at, heading, side));
+            let [light, beyond] = [coverage(inside).unwrap_or(1.0), coverage(outside).unwrap_or(f64::NAN)];
+            is_soft |= light < 1.0 || beyond > 0.0;
+            crossings.push(local(inside) + 0.5 + (local(outside) - local(inside)) * crossing(light, beyond));
+            corners.push(local(at));
+            at = [at[0] + heading[0], at[1] + heading[1]];
+            if at == start {
+                break;
+            }
+            heading = match [-1, 1].map(|side| is_in(beside(at, heading, side))) {
+                [true, _] => [heading[1], -heading[0]],
+                [false, true] => heading,
+                [false, false] => [-heading[1], heading[0]],
+            };
+        }
+        let narrow = lamp.size()[0].min(lamp.size()[1]) as f64;
+        Self { crossings, corners, is_soft, narrow, origin: DVec2::new(origin[0] as f64, origin[1] as f64) }
+    }
+
+    /// The corners of the outline within a texture of a size, and how far it reaches along and across a direction.
+    pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
+        let Self { mut crossings, corners, is_soft, narrow, origin } = self;
+        let mut outline = if is_soft && narrow > NARROW {
+            // From the point farthest from the middle on, however the lamp lies.
+            let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
+            let first = farthest(&crossings, middle);
+            crossings.rotate_left(first);
+            let outline = with_corners(&simplified(crossings.clone(), TOLERANCE), [-origin, texture - origin]);
+            crossings.extend(&outline);
+            outline
+        } else {
+            simplified(corners, staircase(narrow))
+        };
+        let size = DVec2::new(polygon::extent(&crossings, axis), polygon::extent(&crossings, axis.perp()));
+        outline.iter_mut().for_each(|p| *p += origin);
+        (outline, size)
+    }
+}
+
+/// By how much the outline of a lamp so narrow may differ from the corners of its texels.
+pub fn staircase(narrow: f64) -> f64 {
+    STAIRCASE.min(0.3 * narrow)
+}
+
+/// The texel on one side ahead of a corner, the right for 1, the left for -1.
+fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
+    [
+        at[0] + (heading[0] - 1 - side * heading[1]).div_euclid(2),
+        at[1] + (heading[1] - 1 + side * heading[0]).div_euclid(2),
+    ]
+}
+
+/// Where on the way from the centre of a texel to that of one beside it, of which less than half is light, half of a
+/// texel is. Beyond the border nothing is known: the outline is there.
+fn crossing(light: f64, beyond: f64) -> f64 {
+    let step = light - beyond;
+    match () {
+        () if beyond.is_nan() => 0.5,
+        // Both are linear in the place of a straight edge: each itself while it spreads over more texels than these,
+        // their sum where it does not. At a half both say the same.
+        () if step > 0.5 => light + beyond - 0.5,
+        () => ((light - 0.5) / step.max(f64::MIN_POSITIVE)).min(1.0),
+    }
+}
+
+/// The index of the point farthest from another.
+fn farthest(points: &[DVec2], from: DVec2) -> usize {
+    let distance = |i: &usize| points[*i].distance_squared(from);
+    (0..points.len()).max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+}
+
+/// A ring of points without those that lie near the line between others (Douglas and Peucker 1973).
+pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
+    // Split the ring at the point farthest from the first, then simplify both halves.
+    let far = points.first().map_or(0, |first| farthest(&points, *first));
+    let mut kept = vec![false; points.len() + 1];
+    (kept[0], kept[far]) = (true, true);
+    points.push(points[0]);
+    simplify(&points, 0, far, tolerance, &mut kept);
+    simplify(&points, far, points.len() - 1, tolerance, &mut kept);
+    points.iter().zip(&kept).take(points.len() - 1).filter(|(_, k)| **k).map(|(c, _)| *c).collect()
+}
+
+/// Marks the points between two kept ones that lie too far from the line between them.
+fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &mut [bool]) {
+    let mut open = vec![(first, last)];
+    while let Some((a, b)) = open.pop() {
+        let along = (points[b] - points[a]).normalize_or_zero();
+        let distance = |i: usize| {
+            let d = points[i] - points[a];
+            (d - along * d.dot(along)).length()
+        };
+        let worst = (a + 1..b).map(|i| (i, distance(i))).max_by(|p, q| p.1.total_cmp(&q.1));
+        if let Some((i, _)) = worst.filter(|w| w.1 > tolerance) {
+            kept[i] = true;
+            open.extend([(a, i), (i, b)]);
+        }
+    }
+}
+
+/// The same ring with the corners that lie beyond its blunt ones, but those that a texture, from its first to its last
+/// corner, cuts.
+fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
+    let n = ring.len();
+    let point = |i: usize| ring[i % n];
+    let is_side = |i: usize| point(i).distance(point(i + 1)) >= SIDE;
+    let Some(begin) = (0..n).find(|&i| is_side(i)) else { return ring.to_vec() };
+    let is_within = |corner: &DVec2| corner.distance(corner.clamp(first, last)) < ROUNDING;
+
+    // From the end of each side to the beginning of the next, once around.
+    let mut out = Vec::new();
+    let mut side = begin;
+    while side < begin + n {
+        let (end, mut next) = (side + 1, side + 1);
+        while !is_side(next) {
+            next += 1;
+        }
+        let between: Vec<DVec2> = (end..=next).map(point).collect();
+        let corner = corner([point(side), point(end)], [point(next), point(next + 1)], &between);
+        match corner.filter(is_within) {
+            Some(corner) => out.push(corner.clamp(first, last)),
+            None => out.extend(between),
+        }
+        side = next;
+    }
+    out
+}
+
+/// Where two sides would meet if what is between them is no more than a texel's width blunts.
+fn corner([a, end]: [DVec2; 2], [start, b]: [DVec2; 2], between: &[DVec2]) -> Option<DVec2> {
+    let length: f64 = between.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let (u, v) = ((end - a).normalize(), (b - start).normalize());
+    if length == 0.0 || length > BLUNT || u.dot(v) > CORNER {
+        return None;
+    }
+    // end + s u = start - t v.
+    let (gap, cross) = (start - end, u.perp_dot(v));
+    let (s, t) = (gap.perp_dot(v) / cross, u.perp_dot(gap) / cross);
+    let is_near = |d: f64| (0.0..=MAX_EXTENDED).contains(&d);
+    (is_near(s) && is_near(t)).then(|| end + u * s)
+}

@@ -1,0 +1,149 @@
+//! Light that the photo shows clipped.
+//!
+//! A lamp is brighter than a photo's white, so its core is white in the photo whatever its colour. At its rim, where
+//! the lens blurs it into the dark, all channels are below white: the rim tells the lamp's colour. A core is then
+//! given that colour, as dark as its clipped channels allow; how bright it is beyond that no photo tells, and
+//! relighting solves for it.
+//!
+//! Not modelled: colour that changes within a lamp's core.
+
+use crate::emission::exemplar::components::Components;
+use crate::image::Image;
+use glam::{DVec3, Vec3};
+
+/// A photo whose values go beyond this is taken for one that is not clipped.
+const MAX_CLIPPED: f32 = 1.05;
+/// Share of the level from which a pixel is the lamp's light rather than that of what is around it.
+const BRIGHT: f32 = 0.5;
+/// Pixels around a lamp that may belong to its rim.
+const REACH: usize = 2;
+/// Pixels of a rim from which it tells a colour.
+const MIN_RIM: f64 = 8.0;
+/// No channel is taken to be weaker than this against the strongest.
+const MIN_CHANNEL: f64 = 1.0 / 16.0;
+
+/// The colours of lamps, for pixels that show them clipped.
+pub struct RimColours {
+    level: f32,
+    /// Of each component, its strongest channel 1; nothing where no rim tells it.
+    colours: Vec<Option<Vec3>>,
+}
+
+impl RimColours {
+    /// Reads the rims of the lamps of an image in which channels from `level` on are clipped; 0 takes none for
+    /// clipped.
+    pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
+        let colour = |i: usize| image.rgb(i % image.width, i / image.width);
+        let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);
+        let most = lit().map(|(i, _)| colour(i).max_element()).fold(0.0, f32::max);
+        if level <= 0.0 || most < level || most > MAX_CLIPPED {
+            return None;
+        }
+
+        // The light of each rim, and of all of them for lamps that have none.
+        let mut sums = vec![(DVec3::ZERO, 0.0); components.list.len() + 1];
+        for (i, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
+            let value = colour(i);
+            let is_rim = value.max_element() < level && value.max_element() >= BRIGHT * level;
+            if let Some(label) = is_rim.then(|| label_near(components, i, image.width, image.height)).flatten() {
+                for sum in [label as usize, 0] {
+                    sums[sum].0 += value.max(Vec3::ZERO).as_dvec3();
+                    sums[sum].1 += 1.0;
+                }
+            }
+        }
+        let of = |(sum, count): (DVec3, f64)| {
+            let strongest = sum.max_element();
+            (count >= MIN_RIM && strongest > 0.0).then(|| (sum / strongest).max(DVec3::splat(MIN_CHANNEL)).as_vec3())
+        };
+        let all = of(sums[0]);
+        Some(Self { level, colours: sums[1..].iter().map(|&sum| of(sum).or(all)).collect() })
+    }
+
+    /// The light of a component where the photo shows `value`.
+    pub fn undo(&self, component: usize, value: Vec3) -> Vec3 {
+        let clipped = value.cmpge(Vec3::splat(self.level));
+        match self.colours.get(component).copied().flatten() {
+            Some(colour) if clipped.any() => {
+                // What channels that are not clipped say of its strength, and the least that those that are allow.
+                let strength = value / colour;
+                let least = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
+                let open = Vec3::select(clipped, Vec3::ZERO, strength).max_element();
+                Vec3::select(clipped, (colour * least.max(open)).max(value), value)
+            }
+            _ => value,
+        }
+    }
+}
+
+/// The label of a pixel, or of one near it.
+fn label_near(components: &Components, i: usize, width: usize, height: usize) -> Option<u32> {
+    let (x, y) = (i % width, i / width);
+    let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);
+    let columns = x.saturating_sub(REACH)..(x + REACH + 1).min(width);
+    let own = components.labels[i];
+    (own != 0).then_some(own).or_else(|| {
+        rows.flat_map(|y| columns.clone().map(move |x| y * width + x))
+            .map(|i| components.labels[i])
+            .find(|&label| label != 0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emission::exemplar::components;
+
+    /// Round lamps far brighter than white, blurred by a lens, in a photo that clips.
+    fn photo(lamps: &[(f32, f32, Vec3)]) -> Image {
+        Image::from_fn(160, 60, |x, y| {
+            let light: Vec3 = lamps
+                .iter()
+                .map(|&(u, v, colour)| {
+                    let distance = (x as f32 + 0.5 - u).hypot(y as f32 + 0.5 - v);
+                    colour / (1.0 + ((distance - 12.0) / 1.5).exp())
+                })
+                .sum();
+            (light + 0.05).min(Vec3::ONE).to_array()
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn clipped_lamps_get_the_colour_of_their_rim() {
+        let (warm, cool) = (Vec3::new(4.0, 2.8, 1.6), Vec3::new(2.0, 2.6, 3.6));
+        let image = photo(&[(40.0, 30.0, warm), (110.0, 30.0, cool)]);
+        let found = components::find(160, 60, |i| image.rgb(i % 160, i / 160).max_element() > 0.6).unwrap();
+        let rim_colours = RimColours::find(&image, &[true; 160 * 60], &found, 0.95).unwrap();
+        for (component, truth, x) in [(0, warm, 40), (1, cool, 110)] {
+            assert_eq!(image.rgb(x, 30), Vec3::ONE);
+            let light = rim_colours.undo(component, Vec3::ONE);
+            // The ratio of any two channels, which the photo shows as 1: the dark around adds up to a tenth to the
+            // rim.
+            for (a, b) in [(0, 1), (1, 2), (0, 2)] {
+                let (stated, true_ratio) = (light[a] / light[b], truth[a] / truth[b]);
+                assert!((stated / true_ratio - 1.0).abs() < 0.12, "{light} for {truth}");
+            }
+            assert!(light.min_element() >= 0.95, "{light}: darker than the photo");
+            // What the photo shows whole is left alone.
+            assert_eq!(rim_colours.undo(component, Vec3::splat(0.5)), Vec3::splat(0.5));
+            assert_eq!(rim_colours.undo(component, Vec3::new(1.0, 0.5, 0.4)).yz(), glam::Vec2::new(0.5, 0.4));
+        }
+    }
+
+    use glam::Vec3Swizzles;
+
+    #[test]
+    fn what_is_not_clipped_and_what_has_no_rim_stays() {
+        let dim = photo(&[(40.0, 30.0, Vec3::splat(0.8))]);
+        let found = components::find(160, 60, |i| dim.data[3 * i] > 0.4).unwrap();
+        assert!(RimColours::find(&dim, &[true; 160 * 60], &found, 0.95).is_none());
+        let hdr = Image::from_fn(20, 20, |x, _| [0.9 + x as f32 / 4.0; 3]).unwrap();
+        let found = components::find(20, 20, |_| true).unwrap();
+        assert!(RimColours::find(&hdr, &[true; 400], &found, 0.95).is_none());
+        let hard = Image::from_fn(20, 20, |x, _| [f32::from(x > 9); 3]).unwrap();
+        let found = components::find(20, 20, |i| hard.data[3 * i] > 0.5).unwrap();
+        let rim_colours = RimColours::find(&hard, &[true; 400], &found, 0.95).unwrap();
+        assert_eq!(rim_colours.undo(0, Vec3::ONE), Vec3::ONE);
+    }
+}

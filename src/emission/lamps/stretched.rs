@@ -1,0 +1,84 @@
+//! A stretched lattice, cell by cell.
+//!
+//! Patches show lamps as far apart as the exemplar has them. Where a lattice is stretched, so that the texture can be
+//! repeated, lamps would keep that distance within a patch and jump from one to the next. So each cell of the
+//! stretched lattice shows, in its own place, the lamps of that cell of the exemplar which the patch at its middle
+//! shows.
+
+use super::instance::Instance;
+use super::sharpest;
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::roles::Role;
+use crate::emission::lattice::cells::{self, Cell};
+use crate::emission::quilt::patch_map::PatchMap;
+use crate::rng::Rng;
+use glam::{DMat2, DVec2};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The lamps of a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's `own`, which
+/// begins at
+/// `offset`. `None` where the exemplar shows no lamp, or no cell of it as a whole.
+pub fn place(
+    exemplar: &Exemplar,
+    patch_map: &PatchMap,
+    [own, stretched]: [[DVec2; 2]; 2],
+    offset: DVec2,
+    size: DVec2,
+    seed: u64,
+) -> Option<Vec<Instance>> {
+    let [own, stretched] = [own, stretched].map(|[a, b]| DMat2::from_cols(a, b));
+    let (to_own, to_stretched) = (own.inverse(), stretched.inverse());
+
+    // Cells lie around the lamp nearest to the middle of the exemplar, and others like it.
+    let middle = DVec2::new(exemplar.width as f64, exemplar.height as f64) / 2.0;
+    let first = exemplar
+        .pieces()
+        .min_by(|p, q| p.1.centre.distance_squared(middle).total_cmp(&q.1.centre.distance_squared(middle)))?
+        .1;
+    let half = DVec2::new(first.size()[0] as f64, first.size()[1] as f64) / 2.0;
+    let cell_of = |at: DVec2| (to_own * (at - first.centre)).round().to_array().map(|c| c as i64);
+    let step = |[i, j]: Cell| DVec2::new(i as f64, j as f64);
+
+    // The lamps of each, and those that are shown where that lamp is, or would be.
+    let mut lamps: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
+    exemplar.pieces().for_each(|(k, lamp)| lamps.entry(cell_of(lamp.centre)).or_default().push(k));
+    let components = exemplar.components.list.iter().zip(&exemplar.roles);
+    let spoilt: BTreeSet<Cell> =
+        components.filter(|(_, role)| **role == Role::Cut).map(|(lamp, _)| cell_of(lamp.centre)).collect();
+    let is_shown = |at: DVec2| {
+        let inside = at.cmpge(DVec2::ZERO).all() && at.x < exemplar.width as f64 && at.y < exemplar.height as f64;
+        inside && exemplar.shown[at.y as usize * exemplar.width + at.x as usize]
+    };
+    let whole: Vec<Cell> = cells::between(to_own, DVec2::ZERO - first.centre, middle * 2.0 - first.centre)
+        .filter(|cell| {
+            let at = first.centre + own * step(*cell);
+            let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half * (1.0 - 1e-9)];
+            !spoilt.contains(cell) && corners.into_iter().all(|corner| is_shown(at + corner))
+        })
+        .collect();
+    if whole.is_empty() {
+        return None;
+    }
+    let known: BTreeSet<Cell> = whole.iter().copied().collect();
+
+    // Cells whose middle is in the texture: what lies beyond comes in again on the other side.
+    let start = first.centre + offset;
+    let mut instances = Vec::new();
+    for cell in cells::between(to_stretched, DVec2::ZERO - start, size - start) {
+        let at = start + stretched * step(cell);
+        if !(at.cmpge(DVec2::splat(-1e-6)).all() && at.cmplt(size - 1e-6).all()) {
+            continue;
+        }
+        let pixel = at.max(DVec2::ZERO) / exemplar.working.pitch;
+        let (u, v) = ((pixel.x as usize).min(patch_map.width - 1), (pixel.y as usize).min(patch_map.height - 1));
+        let shown = patch_map.shift(u, v).map(|shift| cell_of(at - shift.exact)).filter(|cell| known.contains(cell));
+        let source = shown.unwrap_or_else(|| {
+            let mut rng = Rng::new(seed, &[0x6365, cell[0] as u64, cell[1] as u64]);
+            whole[rng.below(whole.len())]
+        });
+        let shift = at - first.centre - own * step(source);
+        instances.extend(lamps.get(&source).into_iter().flatten().map(|&component| Instance { component, shift }));
+    }
+    sharpest::show_sharpest(exemplar, &mut instances, seed);
+    Some(instances)
+}

@@ -1,0 +1,64 @@
+//! The vectors of a lattice, fitted to the centres of its lamps.
+
+use super::continuation::MAX_SLANT;
+use crate::emission::exemplar::Exemplar;
+use glam::{DMat2, DVec2};
+
+/// Lamps that vote. [bench emission:seconds]
+const MAX_LAMPS: usize = 400;
+/// Distance from a lattice site, in periods, within which a pair of lamps votes. [bench emission:patterns]
+const MAX_OFF_SITE: f64 = 0.12;
+
+/// A period that all but follows an axis follows it: a row of few lamps cannot tell a slant of a few % from their own
+/// disorder, but carried on for long it would leave the plane's axes, along which the photo was unwarped.
+pub fn straight(period: DVec2) -> DVec2 {
+    match () {
+        _ if period.x.abs() < MAX_SLANT * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
+        _ if period.y.abs() < MAX_SLANT * period.x.abs() => DVec2::new(period.length().copysign(period.x), 0.0),
+        _ => period,
+    }
+}
+
+/// Fits the first `count` basis vectors to the centres of like lamps: every pair whose difference is near `i a + j b`
+/// votes for both vectors by least squares, near pairs first, so that the long ones are counted by an exact ruler. Its
+/// vote weighs as much as the smaller of both is large: crumbs are alike everywhere.
+pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
+    let all: Vec<_> = exemplar.lamps().collect();
+    let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();
+    let mut basis = basis;
+    for reach in [1.5, 3.5, f64::INFINITY] {
+        let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
+        if !inverse.is_finite() {
+            break;
+        }
+        // Normal equations of difference = [a b] (i, j).
+        let (mut gram, mut sums) = (DMat2::ZERO, DMat2::ZERO);
+        let mut votes = 0;
+        for (n, p) in lamps.iter().enumerate() {
+            for q in &lamps[n + 1..] {
+                let alike = (0..2).all(|k| p.size()[k].abs_diff(q.size()[k]) <= 2 + p.size()[k] / 8);
+                let difference = q.centre - p.centre;
+                let cell = inverse * difference;
+                let step = DVec2::new(cell.x.round(), if count == 2 { cell.y.round() } else { 0.0 });
+                let off = (difference - basis[0] * step.x - basis[1] * step.y).length();
+                let near = step.x.abs().max(step.y.abs()) <= reach;
+                if alike && near && step != DVec2::ZERO && off < MAX_OFF_SITE * basis[0].length() {
+                    let weight = p.area.min(q.area) as f64;
+                    gram += DMat2::from_cols(step * step.x, step * step.y) * weight;
+                    sums += DMat2::from_cols(difference * step.x, difference * step.y) * weight;
+                    votes += 1;
+                }
+            }
+        }
+        if votes == 0 {
+            continue;
+        }
+        if count == 1 {
+            basis[0] = sums.x_axis / gram.x_axis.x;
+        } else if gram.determinant() > 1e-6 * gram.x_axis.x * gram.y_axis.y {
+            let fitted = sums * gram.inverse();
+            basis = [fitted.x_axis, fitted.y_axis];
+        }
+    }
+    basis
+}

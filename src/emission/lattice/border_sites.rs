@@ -1,0 +1,82 @@
+//! Places of a lattice that the border of the exemplar cuts.
+//!
+//! A lamp there is left out, since only a part of it is seen. So must be the dark of such a place without a lamp: if
+//! patches could show it, but not its like with a lamp, the texture would miss lamps more often than the exemplar
+//! does.
+
+use super::cells;
+use crate::emission::exemplar::components::Component;
+use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
+use crate::error::Result;
+use glam::{DMat2, DVec2};
+
+/// Lamps are at the same place of a cell if they are no farther apart than this, in periods.
+const SAME: f64 = 0.2;
+/// Share of the places wholly in sight that have a lamp, from which a place is made for one.
+const MADE_FOR: f64 = 0.5;
+
+/// Takes dark places that the border cuts out of what patches may show.
+pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
+    let (width, height) = (exemplar.width, exemplar.height);
+    let inverse = DMat2::from_cols(a, b).inverse();
+    let shown = AreaSums::new(|i| exemplar.shown[i], width, height)?;
+    let lit = AreaSums::new(|i| exemplar.components.labels[i] != 0, width, height)?;
+
+    // One lamp of each place in a cell.
+    let mut first: Vec<&Component> = Vec::new();
+    for lamp in exemplar.lamps() {
+        let is_there = |other: &&Component| {
+            let steps = inverse * (lamp.centre - other.centre);
+            (steps - steps.round()).length() < SAME
+        };
+        if !first.iter().any(|other| is_there(other)) {
+            first.push(lamp);
+        }
+    }
+
+    let size = DVec2::new(width as f64, height as f64);
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let mut dark: Vec<[usize; 4]> = Vec::new();
+    for lamp in first {
+        let (low, high) = (point(lamp.min), point(lamp.max) + 1.0);
+        let (mut whole, mut filled) = (0u32, 0u32);
+        let mut cut = Vec::new();
+        for [i, j] in cells::between(inverse, -high, size - low) {
+            let shift = (a * i as f64 + b * j as f64).round();
+            let (from, to) = ((low + shift).max(DVec2::ZERO), (high + shift).min(size));
+            if from.cmpge(to).any() {
+                continue;
+            }
+            let [x0, y0, x1, y1] = [from.x, from.y, to.x, to.y].map(|c| c as usize);
+            let is_lit = lit.count(x0, y0, x1 - x0, y1 - y0) > 0;
+            match shown.count(x0, y0, x1 - x0, y1 - y0) {
+                0 => {}
+                seen if seen == lamp.size()[0] * lamp.size()[1] => {
+                    whole += 1;
+                    filled += u32::from(is_lit);
+                }
+                _ if is_lit => {}
+                _ => cut.push([x0, y0, x1, y1]),
+            }
+        }
+        if f64::from(filled) >= MADE_FOR * f64::from(whole) {
+            dark.extend(cut);
+        }
+    }
+
+    // Of these nothing is shown, as long as anything is left.
+    let working = &exemplar.working;
+    let mut usable = working.usable.clone();
+    let range = |low: usize, high: usize, pitch: f64, side: usize| {
+        (low as f64 / pitch) as usize..((high as f64 / pitch).ceil() as usize).min(side)
+    };
+    for [x0, y0, x1, y1] in dark {
+        for y in range(y0, y1, working.pitch.y, working.height) {
+            usable[y * working.width..][range(x0, x1, working.pitch.x, working.width)].fill(false);
+        }
+    }
+    if usable.contains(&true) {
+        exemplar.working.usable = usable;
+    }
+    Ok(())
+}

@@ -1,0 +1,15 @@
+//! The cells of a lattice.
+
+use glam::{DMat2, DVec2};
+
+/// The cells whose place, from that of the first, is between two corners; and some around them.
+pub fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item = Cell> {
+    let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| to_cells * c);
+    let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).floor();
+    let last = corners.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).ceil();
+    let columns = first.x as i64..=last.x as i64;
+    (first.y as i64..=last.y as i64).flat_map(move |j| columns.clone().map(move |i| [i, j]))
+}
+
+/// Cells by their steps along both periods.
+pub type Cell = [i64; 2];

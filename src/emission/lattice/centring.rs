@@ -1,0 +1,106 @@
+//! Whole lamps, laid out evenly between the sides of the texture.
+
+use super::continuation::Continuation;
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::components::Component;
+use glam::{DMat2, DVec2};
+
+/// Most cells of a lattice that are looked at for lamps that its border cuts.
+const MAX_CELLS: f64 = 1e6;
+
+/// A box around lights.
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: DVec2,
+    high: DVec2,
+}
+
+impl Bounds {
+    fn of(lamp: &Component) -> Self {
+        let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+        Self { low: point(lamp.min), high: point(lamp.max) + 1.0 }
+    }
+
+    fn centre(self) -> DVec2 {
+        (self.low + self.high) / 2.0
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+}
+
+/// The shift of a lattice that puts a lamp, or the middle between two, into the middle of a texture of `size` unwarped
+/// pixels: of these that by which the border cuts fewest lamps, and then leaves most room to them. `None` without a
+/// lattice.
+pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Option<DVec2> {
+    let [a, b] = continuation.lattice()?;
+    let motif = motif(exemplar, continuation);
+    let anchor = motif.first()?.centre();
+    let middles = [DVec2::ZERO, a / 2.0, b / 2.0, (a + b) / 2.0];
+    let shifts = middles.map(|from_lamp| size / 2.0 + from_lamp - anchor);
+    let inverse = DMat2::from_cols(a, b).inverse();
+    if size.element_product() * inverse.determinant().abs() > MAX_CELLS {
+        return Some(shifts[0]);
+    }
+    let worth = shifts.map(|shift| border(&motif, [a, b], shift, size));
+    let best = (1..4).fold(0, |best, i| {
+        let ((cut, room), (least, most)) = (worth[i], worth[best]);
+        if cut < least || (cut == least && room > most + 1e-6) { i } else { best }
+    });
+    Some(shifts[best])
+}
+
+/// What a lattice repeats: the lamps of a cell, that nearest to the middle of the exemplar first. Where the exemplar's
+/// extent serves as a period, all lamps along it are one.
+fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
+    let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
+    if lamps.is_empty() {
+        lamps = exemplar.components.list.iter().map(Bounds::of).collect();
+    }
+    let middle = DVec2::new(exemplar.width as f64, exemplar.height as f64) / 2.0;
+    lamps.sort_by(|p, q| p.centre().distance_squared(middle).total_cmp(&q.centre().distance_squared(middle)));
+    let Some(&first) = lamps.first() else { return lamps };
+    let all = lamps.iter().fold(first, |all, lamp| all.with(*lamp));
+    match continuation {
+        Continuation::Lattice([a, b]) => {
+            let inverse = DMat2::from_cols(a, b).inverse();
+            lamps.retain(|lamp| (inverse * (lamp.centre() - first.centre())).round() == DVec2::ZERO);
+            lamps
+        }
+        Continuation::Row([_, across]) if across.x == 0.0 => {
+            vec![Bounds { low: DVec2::new(first.low.x, all.low.y), high: DVec2::new(first.high.x, all.high.y) }]
+        }
+        Continuation::Row(_) => {
+            vec![Bounds { low: DVec2::new(all.low.x, first.low.y), high: DVec2::new(all.high.x, first.high.y) }]
+        }
+        _ => vec![all],
+    }
+}
+
+/// How many lamps the border of the texture cuts, and how near to it the others come.
+fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (usize, f64) {
+    let inverse = DMat2::from_cols(a, b).inverse();
+    let (mut cut, mut room) = (0, f64::INFINITY);
+    for lamp in motif {
+        let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
+        // The cells that bring the lamp near the texture.
+        let half = (lamp.high - lamp.low) / 2.0;
+        let corners = [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];
+        let cells = corners.map(|c| inverse * (c - lamp.centre()));
+        let first = cells.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).ceil();
+        let last = cells.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).floor();
+        let along = |first: f64, last: f64| (0..=(last - first).max(-1.0) as i64).map(move |i| first + i as f64);
+        for j in along(first.y, last.y) {
+            for i in along(first.x, last.x) {
+                let (low, high) = (lamp.low + a * i + b * j, lamp.high + a * i + b * j);
+                if !(high.cmpgt(DVec2::ZERO).all() && low.cmplt(size).all()) {
+                    continue;
+                }
+                let inside = low.min(size - high).min_element();
+                if inside < -1e-6 { cut += 1 } else { room = room.min(inside) }
+            }
+        }
+    }
+    (cut, room)
+}

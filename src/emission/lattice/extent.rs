@@ -1,0 +1,110 @@
+//! The extent of the exemplar as a period: of lights that show no other law.
+
+use super::continuation::Continuation;
+use crate::emission::agreement::statistics;
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::roles::Role;
+use glam::DVec2;
+
+/// Unwarped pixels between the lamps of one cell and the lamps of the next, where cells are as small as possible.
+/// [convention]
+const CELL_GAP: f64 = 4.0;
+
+/// Fewer lamps than this show no law of their own: the exemplar repeats as a whole. [judged on 5 photos]
+const FEW_LAMPS: usize = 6;
+
+/// Room around lamps from which they are a group by themselves, both sides together, in the longest distance from one
+/// of them to the nearest other. [judged on 5 photos]
+const GROUP_MARGIN: f64 = 2.5;
+
+/// Width and height of the usable part of the exemplar, in unwarped pixels.
+pub fn of(exemplar: &Exemplar) -> DVec2 {
+    let [x0, y0, x1, y1] = exemplar.working.usable_box();
+    DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
+}
+
+/// The law by which the exemplar repeats as a whole.
+pub fn as_period(exemplar: &Exemplar) -> Continuation {
+    let cell = whole_exemplar(exemplar, of(exemplar));
+    Continuation::Tile([DVec2::X * cell, DVec2::Y * cell])
+}
+
+/// Whether there are too few lamps for a law of their own, or one group of them.
+pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
+    exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
+}
+
+/// The sides at which an exemplar repeats as a whole, so that light covers the share of the plane that it covers of
+/// what is shown: less than its extent where that has dark corners that the photo does not show, or lamps cut off that
+/// are left out.
+fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
+    let lamps = &exemplar.components.list;
+    let lit: usize =
+        lamps.iter().zip(&exemplar.roles).filter(|(_, role)| **role != Role::Cut).map(|(lamp, _)| lamp.area).sum();
+    let share = (lit as f64 / exemplar.lit_share / extent.element_product()).min(1.0);
+    if share > 1.0 - 1e-6 {
+        return extent;
+    }
+    // Lamps of one cell keep clear of those of the next.
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let (low, high) = exemplar.pieces().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, lamp)| {
+        (low.min(point(lamp.min)), high.max(point(lamp.max) + 1.0))
+    });
+    let least = if low.x <= high.x { (high - low + CELL_GAP) / extent } else { DVec2::ZERO };
+    let x = (share / least.y.max(share.sqrt())).max(least.x).min(1.0);
+    extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
+}
+
+/// Whether the lamps keep together, far from the sides of what is shown along both axes: they are one thing, as a
+/// chandelier is.
+fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
+    let lamps = &exemplar.components.list;
+    let centres: Vec<DVec2> = lamps.iter().map(|lamp| lamp.centre).collect();
+    let farthest = statistics::nearest_distances(&centres).into_iter().fold(0.0, f64::max);
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let low = lamps.iter().map(|lamp| point(lamp.min)).fold(DVec2::INFINITY, DVec2::min);
+    let high = lamps.iter().map(|lamp| point(lamp.max) + 1.0).fold(DVec2::NEG_INFINITY, DVec2::max);
+    farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
+}
+
+/// The period at which a row that ends is repeated along itself: as many of its own as the exemplar shows, with the
+/// room at both ends. `None` where it may go on beyond the exemplar: another lamp would find no room at one of the
+/// ends.
+pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
+    let axis = period.normalize();
+    let working = &exemplar.working;
+    let bounds = working.usable_box();
+    let along = |x: usize, y: usize| axis.dot(DVec2::new(x as f64, y as f64));
+    let span = |[x0, y0, x1, y1]: [usize; 4]| {
+        let corners = [along(x0, y0), along(x1, y0), along(x0, y1), along(x1, y1)];
+        (
+            corners.iter().copied().fold(f64::INFINITY, f64::min),
+            corners.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        )
+    };
+    let lamps = exemplar.components.list.iter().map(|l| span([l.min[0], l.min[1], l.max[0] + 1, l.max[1] + 1]));
+    let (low, high) = lamps.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |s, l| (s.0.min(l.0), s.1.max(l.1)));
+    let longest = lamps.map(|(low, high)| high - low).fold(0.0, f64::max);
+    let pixels = |n: usize, pitch: f64| (n as f64 * pitch).round() as usize;
+    let [x0, y0, x1, y1] = bounds;
+    let (pitch_x, pitch_y) = (working.pitch.x, working.pitch.y);
+    let (start, end) = span([pixels(x0, pitch_x), pixels(y0, pitch_y), pixels(x1, pitch_x), pixels(y1, pitch_y)]);
+    let gap = period.length() - longest;
+    let times = ((end - start) / period.length()).round();
+    let ends = low - start > gap && end - high > gap && ends_in_view(exemplar, period);
+    (ends && times >= 1.0).then(|| period * times)
+}
+
+/// Whether a photo shows the places beyond the first and the last lamp of a row: its plane is no rectangle. Without a photo
+/// all is in view.
+fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
+    let is_shown = |p: DVec2| {
+        let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;
+        inside && exemplar.shown[p.y as usize * exemplar.width + p.x as usize]
+    };
+    let along = |p: &DVec2| period.dot(*p);
+    let first = exemplar.lamps().map(|l| l.centre).min_by(|a, b| along(a).total_cmp(&along(b)));
+    let last = exemplar.lamps().map(|l| l.centre).max_by(|a, b| along(a).total_cmp(&along(b)));
+    let both = first.zip(last).is_some_and(|(first, last)| is_shown(first - period) && is_shown(last + period));
+    exemplar.to_photo.is_none() || both
+}

@@ -1,0 +1,139 @@
+//! Regularity: the lattice the lamps lie on, from the autocorrelation of their mask.
+//!
+//! Where a shift of the mask onto itself is nearly perfect, lamps repeat by it. The two shortest such shifts are the
+//! lattice (rectangular, hexagonal or skewed; missing lamps lower the correlation by their share only), and every
+//! patch is held to its phase. One repeat alone, or a handful of lamps, is continued by taking the exemplar as the
+//! other period: nothing in it says how a design goes on beside itself. Many lamps without any repeat are left free.
+
+pub mod basis;
+pub mod border_sites;
+pub mod cells;
+pub mod centring;
+pub mod continuation;
+pub mod correlation;
+pub mod extent;
+pub mod kind_check;
+pub mod repeats;
+
+use super::exemplar::Exemplar;
+use crate::error::Result;
+use crate::image::{Image, pyramid};
+use crate::job::Job;
+use continuation::Continuation;
+use correlation::Autocorrelation;
+use glam::DVec2;
+
+/// How far below the best a period's correlation may lie: lower ones match lamps of unequal kind. [bench
+/// emission:patterns]
+const RELATIVE_CORRELATION: f32 = 0.9;
+/// Share of the valid pixels that must overlap for a correlation to count. [bench emission:patterns]
+const MIN_OVERLAP: f32 = 0.2;
+/// Longest side of the image that is correlated. [bench emission:seconds]
+const SIDE: usize = 160;
+/// Sine of the angle between two shifts below which they are parallel: about 17°. [bench emission:patterns]
+const PARALLEL: f64 = 0.3;
+
+/// How the lights of the exemplar repeat by their correlation, and how well: the lower correlation of its periods, 0
+/// if there are none. From the correlation `least_regularity` on a shift may be a period; at 1 nothing repeats.
+pub fn law(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> (Continuation, f64) {
+    if least_regularity >= 1.0 {
+        return (Continuation::Free, 0.0);
+    }
+    let periods = periods(exemplar, correlated, least_regularity);
+    let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
+    let extent = extent::of(exemplar);
+    match periods[..] {
+        [(a, _), (b, _)] => (Continuation::Lattice(basis::refine(exemplar, [a, b], 2)), goodness),
+        [(a, _)] => (row(exemplar, a, extent), goodness),
+        _ => (lawless(exemplar, extent), 0.0),
+    }
+}
+
+/// A row of a period; the extent of the exemplar serves as the other.
+pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Continuation {
+    let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
+    let [period, _] = basis::refine(exemplar, [period, across], 1);
+    Continuation::Row([basis::straight(period), across])
+}
+
+/// How lights without a period go on: few repeat as a whole, many are free.
+pub fn lawless(exemplar: &Exemplar, extent: DVec2) -> Continuation {
+    if !extent::has_few_lamps(exemplar, extent) {
+        return Continuation::Free;
+    }
+    extent::as_period(exemplar)
+}
+
+/// The autocorrelation of the lights at a reduced size.
+pub struct Correlated {
+    correlation: Autocorrelation,
+    width: usize,
+    height: usize,
+    /// Number of valid pixels.
+    valid: usize,
+    /// Unwarped pixels per pixel.
+    to_unwarped: DVec2,
+}
+
+impl Correlated {
+    /// Correlates the lights of the working pixels that `is_within` names.
+    pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
+        let working = &exemplar.working;
+        let longest = working.width.max(working.height);
+        let reduce = |n: usize| (n * SIDE.min(longest)).div_ceil(longest).max(1);
+        let (width, height) = (reduce(working.width), reduce(working.height));
+        let mut mask = Image::new(working.width, working.height, 2)?;
+        for (i, pixel) in mask.data.chunks_exact_mut(2).enumerate().filter(|(i, _)| working.shown[*i] && is_within(*i))
+        {
+            pixel.copy_from_slice(&[f32::from(working.shown_coverage[i] >= 0.5), 1.0]);
+        }
+        let mask = pyramid::resize(&mask, width, height, job.part(0.0, 0.2))?;
+        let valid: Vec<bool> = mask.data.chunks_exact(2).map(|p| p[1] > 0.5).collect();
+        let values: Vec<f32> = mask.data.chunks_exact(2).map(|p| if p[1] > 0.5 { p[0] / p[1] } else { 0.0 }).collect();
+        let correlation = Autocorrelation::new(&values, &valid, width, height, job.part(0.2, 1.0))?;
+        let to_unwarped = DVec2::new(exemplar.width as f64 / width as f64, exemplar.height as f64 / height as f64);
+        Ok(Self { correlation, width, height, valid: valid.iter().filter(|&&v| v).count(), to_unwarped })
+    }
+}
+
+/// At most two shifts at which the lights fall onto themselves, shortest first, and their correlations.
+fn periods(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> Vec<(DVec2, f64)> {
+    let mut periods: Vec<(DVec2, f64)> = Vec::new();
+    for (shift, value) in shifts(exemplar, correlated, least_regularity, RELATIVE_CORRELATION, usize::MAX) {
+        if periods.len() < 2 && !periods.iter().any(|p| is_parallel(p.0, shift)) {
+            periods.push((shift, value));
+        }
+    }
+    periods
+}
+
+/// Whether two shifts are nearly parallel.
+pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
+    a.normalize().perp_dot(b.normalize()).abs() < PARALLEL
+}
+
+/// The shortest shifts at which the lights fall onto themselves, and their correlations: axes along which nothing
+/// changes, then shifts with a correlation of at least `least`, and `relative` to the best, that lead from lamps to
+/// lamps of their kind.
+pub fn shifts(
+    exemplar: &Exemplar,
+    correlated: &Correlated,
+    least: f32,
+    relative: f32,
+    max_count: usize,
+) -> Vec<(DVec2, f64)> {
+    let &Correlated { ref correlation, width, height, valid, to_unwarped } = correlated;
+    let overlap = MIN_OVERLAP * valid as f32;
+    let unchanging: Vec<DVec2> =
+        [DVec2::X, DVec2::Y].into_iter().filter(|&axis| repeats::is_unchanging(correlation, axis, overlap)).collect();
+    let mut found = repeats::peaks(correlation, (width, height), (overlap, least), unchanging.first().copied());
+    repeats::sharpen(&mut found);
+    found.iter_mut().for_each(|r| r.shift *= to_unwarped);
+    let lights = exemplar.components.list.len() as f32 / valid as f32;
+    let best = found.iter().map(|r| r.lower_bound(lights * r.overlap)).fold(0.0, f32::max);
+    found.retain(|r| r.value >= least.max(relative * best));
+    found.sort_by(|a, b| a.shift.length_squared().total_cmp(&b.shift.length_squared()));
+    let repeats = found.into_iter().filter(|r| kind_check::keeps_kinds(exemplar, r.shift));
+    let repeats = repeats.map(|r| (r.shift, f64::from(r.value)));
+    unchanging.into_iter().map(|axis| (axis, 1.0)).chain(repeats).take(max_count).collect()
+}

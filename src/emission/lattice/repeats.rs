@@ -1,0 +1,107 @@
+//! Repeats: the shifts at which the lights fall onto lights, as peaks of the autocorrelation.
+
+use super::correlation::Autocorrelation;
+use glam::DVec2;
+
+/// Standard errors by which the best may be the best by chance, as one of the many shifts that compare few lamps.
+const CHANCE: f32 = 2.0;
+
+/// Correlation at all shifts along an axis from which the pattern does not change along it.
+const UNCHANGING: f32 = 0.95;
+
+/// Shifts beside a period, in pixels of that image, over which its correlation must fall by so much: where it does
+/// not, nothing that repeats is in sight, only what goes on along the shift.
+const FLAT: (isize, f32) = (8, 0.02);
+
+/// A shift at which lights fall onto lights.
+pub struct Repeat {
+    pub shift: DVec2,
+    /// The correlation there, and the number of pixels that are compared.
+    pub value: f32,
+    pub overlap: f32,
+}
+
+impl Repeat {
+    /// The correlation less what chance may have added to it, where so many lights are compared.
+    pub fn lower_bound(&self, lights: f32) -> f32 {
+        self.value - CHANCE * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
+    }
+}
+
+/// Whether the lights stay the same under any shift along an axis, up to half of the image.
+pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
+    let (dx, dy) = (axis.x as isize, axis.y as isize);
+    let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
+    !values.is_empty() && values.iter().all(|&v| v >= UNCHANGING)
+}
+
+/// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel. Along a direction in which
+/// nothing changes they are ridges: there only the shifts across it are looked at.
+pub fn peaks(
+    correlation: &Autocorrelation,
+    (width, height): (usize, usize),
+    (least, least_value): (f32, f32),
+    unchanging: Option<DVec2>,
+) -> Vec<Repeat> {
+    let (w, h) = (width as isize, height as isize);
+    let mut found = Vec::new();
+    for y in 0..h {
+        for x in (1 - w)..w {
+            let off_axis = unchanging.is_some_and(|u| u.dot(DVec2::new(x as f64, y as f64)) != 0.0);
+            if (y == 0 && x <= 0) || off_axis {
+                continue;
+            }
+            let Some(value) = correlation.at(x, y, least).filter(|&v| v >= least_value) else { continue };
+            let at = |dx: isize, dy: isize| match unchanging {
+                Some(u) if u.dot(DVec2::new(dx as f64, dy as f64)) != 0.0 => -1.0,
+                _ => correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0),
+            };
+            let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+            // Of equal neighbours the first in reading order is the peak.
+            let is_peak = ring.iter().enumerate().all(|(i, &(dx, dy))| {
+                let other = at(dx, dy);
+                if i < 4 { value > other } else { value >= other }
+            });
+            let (ux, uy) = if x.abs() > y { (1, 0) } else { (0, 1) };
+            let is_flat = [-1, 1].into_iter().any(|side| {
+                (1..=FLAT.0).all(|k| {
+                    correlation.at(x + side * k * ux, y + side * k * uy, 1.0).is_some_and(|v| v > value - FLAT.1)
+                })
+            });
+            if is_peak && !is_flat {
+                // The vertex of the parabola through three values: where it is, and how far it rises above the middle
+                // one.
+                let vertex = |low: f32, high: f32| {
+                    let (slope, curvature) = (high - low, low + high - 2.0 * value);
+                    if curvature > -1e-6 {
+                        return (0.0, 0.0);
+                    }
+                    (-0.5 * slope / curvature, -0.125 * slope * slope / curvature)
+                };
+                let (right, rise_x) = vertex(at(-1, 0), at(1, 0));
+                let (down, rise_y) = vertex(at(0, -1), at(0, 1));
+                let shift = DVec2::new(x as f64 + f64::from(right), y as f64 + f64::from(down));
+                let value = (value + rise_x + rise_y).min(1.0);
+                found.push(Repeat { shift, value, overlap: correlation.overlap(x, y) });
+            }
+        }
+    }
+    found
+}
+
+/// Measures every shift again by the farthest peak that is a multiple of it: an error there counts by its fraction
+/// only.
+pub fn sharpen(peaks: &mut [Repeat]) {
+    let all: Vec<DVec2> = peaks.iter().map(|p| p.shift).collect();
+    for Repeat { shift, .. } in peaks {
+        for times in 2.. {
+            let expected = *shift * f64::from(times);
+            let nearest =
+                all.iter().min_by(|p, q| p.distance_squared(expected).total_cmp(&q.distance_squared(expected)));
+            match nearest.filter(|p| p.distance(expected) < 1.0) {
+                Some(peak) => *shift = *peak / f64::from(times),
+                None => break,
+            }
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! How much light a texture has, against what it should have.
+//!
+//! Parts of the exemplar that fit more often than others would decide how much light there is, and where lamps are
+//! missing how many. So what a block has too much or too little of it passes on to those beside and below that come
+//! after it, as in error diffusion (Floyd and Steinberg 1976): not only the whole has its share of light, but any part
+//! of it.
+
+use crate::error::Result;
+use crate::image::try_vec;
+
+/// What a lamp too many or too few counts for, in differences of its pixels: on a lattice as many as one in the wrong
+/// place makes in colour, confidence and distances. Elsewhere light is not all there is to keep: from a third of a
+/// pixel's difference on patches that bring it would be chosen which do not keep the distances between lamps.
+const ON_LATTICE: f64 = 3.0;
+const ANYWHERE: f64 = 0.3;
+
+/// The light of the blocks of a texture, in pixels, as they follow one another row by row.
+pub struct Balance {
+    /// By how much those before have too much, for each block of this row and of the next to make up for.
+    row: Vec<f64>,
+    below: Vec<f64>,
+    /// The block at work.
+    column: usize,
+    /// Mean area of a lamp, and what one counts for.
+    lamp: f64,
+    weight: f64,
+}
+
+impl Balance {
+    pub fn new(columns: usize, lamp: f64, is_lattice: bool) -> Result<Self> {
+        let weight = if is_lattice { ON_LATTICE } else { ANYWHERE };
+        Ok(Self { row: try_vec(columns, 0.0)?, below: try_vec(columns, 0.0)?, column: 0, lamp, weight })
+    }
+
+    /// Goes on with the first block of the next row.
+    pub fn begin_row(&mut self) {
+        std::mem::swap(&mut self.row, &mut self.below);
+        self.below.fill(0.0);
+        self.column = 0;
+    }
+
+    /// Notes that the block at work has so much more light than its share.
+    pub fn add(&mut self, excess: f64) {
+        self.row[self.column] += excess;
+    }
+
+    /// What so much more light would count for, in squared differences of pixels.
+    pub fn penalty(&self, excess: f64) -> f64 {
+        self.weight * (self.row[self.column] + excess).powi(2) / self.lamp
+    }
+
+    /// Passes on what the block at work has too much, and goes on with the next. Nothing is lost at the sides.
+    pub fn pass_on(&mut self) {
+        let (column, excess) = (self.column, self.row[self.column] / 16.0);
+        let (has_left, has_right) = (column > 0, column + 1 < self.row.len());
+        let mut straight = 5.0;
+        if has_left {
+            self.below[column - 1] += 3.0 * excess;
+        } else {
+            straight += 3.0;
+        }
+        if has_right {
+            self.row[column + 1] += 7.0 * excess;
+            self.below[column + 1] += excess;
+        } else {
+            straight += 8.0;
+        }
+        self.below[column] += straight * excess;
+        self.column = column + 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn what_is_too_much_is_passed_on_and_nothing_of_it_lost() {
+        for columns in [1, 2, 5] {
+            let mut balance = Balance::new(columns, 1.0, true).unwrap();
+            let (mut rng, mut all) = (Rng::new(4, &[]), 0.0);
+            for _ in 0..7 {
+                balance.begin_row();
+                for _ in 0..columns {
+                    let excess = rng.next_f64() - 0.3;
+                    balance.add(excess);
+                    all += excess;
+                    balance.pass_on();
+                }
+                assert!((balance.below.iter().sum::<f64>() - all).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn choosing_the_least_penalty_keeps_every_part_at_its_share() {
+        // Each block has a lamp or none, of ten pixels; three of four should.
+        let (columns, rows, lamp) = (24, 20, 10.0);
+        let mut balance = Balance::new(columns, lamp, true).unwrap();
+        let mut lamps = vec![0.0; columns * rows];
+        for row in lamps.chunks_exact_mut(columns) {
+            balance.begin_row();
+            for has_lamp in row {
+                let [none, one] = [-0.75 * lamp, 0.25 * lamp];
+                *has_lamp = f64::from(u8::from(balance.penalty(one) < balance.penalty(none)));
+                balance.add(if *has_lamp > 0.0 { one } else { none });
+                balance.pass_on();
+            }
+        }
+        for (x, y) in [(0, 0), (5, 3), (12, 8), (16, 12)] {
+            let part: f64 = (y..y + 8).map(|v| lamps[v * columns + x..][..8].iter().sum::<f64>()).sum();
+            assert!((part / 64.0 - 0.75).abs() < 0.07, "{x} {y}: {part}");
+        }
+    }
+}

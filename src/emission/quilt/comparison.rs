@@ -1,0 +1,235 @@
+//! How well a shift of the exemplar fills a block: coverage, agreement with the known pixels, and balance of light.
+
+use super::balance::Balance;
+use super::block::{Block, Rect, Run, count};
+use super::guide::{Feature, Guide, squares};
+use super::patch_map::Shift;
+use crate::emission::exemplar::area_sums::AreaSums;
+use crate::error::Result;
+use crate::exec;
+use crate::job::Job;
+use glam::Vec4;
+
+/// Patches within this factor of the best (0.1 in the original), or this close to it, are equally good.
+const TOLERANCE: (f32, f32) = (1.1, 1e-6);
+
+/// Parts of a pixel in which its light is counted.
+const LIGHT_STEPS: f32 = 255.0;
+
+/// Patches that cover at least this share of what the best would cover compete by their error.
+const ENOUGH_COVERAGE: f64 = 0.95;
+
+/// Of more patches than this, only those that agree best in one of so many rows are compared in all.
+const FINALISTS: usize = 16;
+
+const ROW_STEP: usize = 4;
+
+/// Pixels compared by one thread before another is worth waking.
+const TASK: usize = 1 << 16;
+
+/// A shift, how many empty pixels of a block it fills, by how many pixels of light more than their share, and its mean
+/// squared difference from the known ones, with what that light counts for.
+#[derive(Clone, Copy)]
+pub struct Scored {
+    pub shift: Shift,
+    pub fills: usize,
+    pub excess: f64,
+    pub error: f32,
+}
+
+/// What shifts are compared by.
+pub struct Comparison<'a> {
+    pub guide: &'a Guide<'a>,
+    pub features: Vec<Feature>,
+    pub turns: Vec4,
+    /// Sums of the usable pixels, and of their light.
+    pub usable: AreaSums,
+    light: AreaSums,
+    /// Share of what the exemplar shows that is light.
+    lit_share: f64,
+    is_lattice: bool,
+    /// Difference in error that says nothing.
+    slack: f32,
+}
+
+impl<'a> Comparison<'a> {
+    pub fn new(guide: &'a Guide<'a>, usable: AreaSums, is_lattice: bool) -> Result<Self> {
+        let working = guide.working;
+        let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
+        let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
+        // Lattice shifts are rounded to whole pixels, which alone makes both distances differ by the root of a sixth
+        // of one.
+        let slack = match is_lattice {
+            true => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
+            false => 0.0,
+        };
+        Ok(Self {
+            guide,
+            features: guide.features(),
+            turns: guide.turns(),
+            usable,
+            light: AreaSums::of(|i| (working.coverage[i] * LIGHT_STEPS).round() as u32, working.width, working.height)?,
+            lit_share: lit / all.max(1) as f64,
+            is_lattice,
+            slack: slack.max(TOLERANCE.1),
+        })
+    }
+
+    /// The part of a run that a shift takes from within the exemplar: how many of its pixels come before, how many
+    /// there are, and the place of the first in the exemplar.
+    pub fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
+        let working = self.guide.working;
+        let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
+        let skipped = (-x).max(0);
+        let length = (run.length as i64).min(working.width as i64 - x) - skipped;
+        let inside = length > 0 && y >= 0 && y < working.height as i64;
+        inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
+    }
+
+    /// How many empty pixels of a block each shift fills, or 0 if far less than the best; and whether it shows
+    /// something usable in all of the block.
+    pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
+        let Rect { x, y, w, h } = block.rect;
+        let empty = count(&block.empty);
+        let usable_of = |runs: &[Run], shift: &Shift| -> usize {
+            runs.iter()
+                .filter_map(|run| self.shown(run, shift))
+                .map(|(_, length, [x, y])| self.usable.count(x, y, length, 1))
+                .sum()
+        };
+        // All of the block at once: the most that a shift can fill.
+        let most_of = |shift: &Shift| {
+            let working = self.guide.working;
+            let side = |at: usize, by: i32, length: usize, side: usize| {
+                let start = at as i64 - i64::from(by);
+                let (low, high) = (start.max(0), (start + length as i64).min(side as i64));
+                (low as usize, (high - low).max(0) as usize)
+            };
+            let (u, columns) = side(x, shift.working[0], w, working.width);
+            let (v, rows) = side(y, shift.working[1], h, working.height);
+            if columns * rows == 0 { 0 } else { self.usable.count(u, v, columns, rows) }
+        };
+        let bounds: Vec<usize> = shifts.iter().map(most_of).collect();
+        let mut most = if bounds.contains(&(w * h)) { empty } else { 0 };
+        let exact = |(shift, bound): (&Shift, usize)| {
+            if bound == w * h {
+                return (empty, true);
+            }
+            if (bound as f64) < ENOUGH_COVERAGE * most as f64 {
+                return (0, false);
+            }
+            let fills = usable_of(&block.empty, shift);
+            most = most.max(fills);
+            (fills, false)
+        };
+        shifts.iter().zip(bounds).map(exact).collect()
+    }
+
+    /// The shifts that fill `least` or more of the empty pixels, or without it nearly as many as the best does, and
+    /// how well they agree with the known ones. The error of those that are no match for the best, or for one of error
+    /// `limit`, is infinite.
+    pub fn score(
+        &self,
+        block: &Block,
+        shifts: &[Shift],
+        least: Option<usize>,
+        limit: f32,
+        balance: &Balance,
+        job: Job,
+    ) -> Result<Vec<Scored>> {
+        let fills = self.fills(block, shifts);
+        let most = fills.iter().map(|f| f.0).max().unwrap_or(0);
+        let least = least.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
+        let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= least).collect();
+        let filled = count(&block.filled);
+        let mut excess = vec![0.0; shifts.len()];
+        let of_covering = self.excess(block, covering.iter().map(|&n| shifts[n]));
+        covering.iter().zip(of_covering).for_each(|(&n, e)| excess[n] = e);
+        let penalty = |n: usize| (balance.penalty(excess[n]) / filled.max(1) as f64) as f32;
+        if covering.len() > FINALISTS && block.rect.h >= 4 * ROW_STEP {
+            let is_sampled = |run: &&Run| (run.y - block.rect.y) % ROW_STEP == ROW_STEP / 2;
+            let rows: Vec<Run> = block.filled.iter().filter(is_sampled).copied().collect();
+            let compared = count(&rows);
+            let error =
+                |&n: &usize| (penalty(n) + self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
+            let mut ranked: Vec<(f32, usize)> = covering.iter().map(error).collect();
+            ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            // What nothing known tells apart all stays.
+            ranked.truncate(if compared > 0 { FINALISTS } else { usize::MAX });
+            covering = ranked.into_iter().map(|r| r.1).collect();
+        }
+        let some = (TASK / filled.max(1)).max(1);
+        let scored = exec::map(covering.len().div_ceil(some), job, |task| {
+            let mut limit = limit;
+            let shifts = covering[task * some..].iter().take(some).map(|&n| {
+                let left = self.equally_good(limit) - penalty(n);
+                let error = match left >= 0.0 {
+                    true => penalty(n) + self.error(&block.filled, (&shifts[n], fills[n].1), filled, left),
+                    false => f32::INFINITY,
+                };
+                limit = limit.min(error);
+                Scored { shift: shifts[n], fills: fills[n].0, excess: excess[n], error }
+            });
+            shifts.collect::<Vec<_>>()
+        })?;
+        Ok(scored.into_iter().flatten().collect())
+    }
+
+    /// Mean squared difference of a shift, which may show something usable everywhere, from known pixels, of which
+    /// there are `filled`; infinite as soon as it exceeds `limit`.
+    pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
+        let working = self.guide.working;
+        let most = f64::from(limit) * filled as f64;
+        let (mut sum, mut compared) = (0f64, 0usize);
+        for run in known {
+            let Some((skipped, length, [x, y])) = self.shown(run, shift) else { continue };
+            let (old, new) = (run.source + skipped, y * working.width + x);
+            let mut add = |from: usize, to: usize| {
+                let (a, b) = (&self.features[old + from..old + to], &self.features[new + from..new + to]);
+                sum += f64::from(squares(a, b, self.turns));
+                compared += to - from;
+            };
+            if is_whole || self.usable.count(x, y, length, 1) == length {
+                add(0, length);
+            } else {
+                let mut at = 0;
+                for part in working.usable[new..new + length].chunk_by(|a, b| a == b) {
+                    if part[0] {
+                        add(at, at + part.len());
+                    }
+                    at += part.len();
+                }
+            }
+            // No mean over fewer pixels is less.
+            if sum > most {
+                return f32::INFINITY;
+            }
+        }
+        if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
+    }
+
+    /// By how many pixels of light more than their share each of some shifts fills the empty pixels of a block. On a
+    /// lattice their share is what all of them show on average, since its lamps are always at the same places of a
+    /// block; elsewhere that of the exemplar.
+    pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
+        let light_of = |shift: Shift| {
+            let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));
+            parts.fold([0, 0], |[light, all], (_, length, [x, y])| {
+                [light + self.light.count(x, y, length, 1), all + self.usable.count(x, y, length, 1)]
+            })
+        };
+        let lights: Vec<[f64; 2]> =
+            shifts.map(light_of).map(|[light, all]| [light as f64 / f64::from(LIGHT_STEPS), all as f64]).collect();
+        let sum = |k: usize| lights.iter().map(|l| l[k]).sum::<f64>();
+        let share = match self.is_lattice {
+            true => sum(0) / sum(1).max(1.0),
+            false => self.lit_share,
+        };
+        lights.into_iter().map(|[light, all]| light - share * all).collect()
+    }
+
+    /// The largest error that is as good as another.
+    pub fn equally_good(&self, error: f32) -> f32 {
+        error * TOLERANCE.0 + self.slack
+    }
+}

@@ -1,0 +1,167 @@
+//! Which part of the exemplar each part of the texture shows, in the space that its patches need.
+
+use crate::emission::exemplar::working::Working;
+use glam::DVec2;
+use std::collections::BTreeMap;
+
+/// Parts of an unwarped pixel by which shifts are told apart.
+const SUBPIXELS: f64 = 1e6;
+
+/// The label of a pixel that no patch shows.
+pub const NONE: u32 = u32::MAX;
+
+/// A shift of the exemplar: where it is shown, less where it is taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shift {
+    /// In working pixels.
+    pub working: [i32; 2],
+    /// The same before rounding, in unwarped pixels.
+    pub exact: DVec2,
+}
+
+/// Which shift of the exemplar each working pixel of the result shows. Patches are wide, so a row is kept as its runs
+/// of one label: positions only, however large the texture is.
+#[derive(Clone, Debug, Default)]
+pub struct PatchMap {
+    pub width: usize,
+    pub height: usize,
+    pub shifts: Vec<Shift>,
+    /// End (exclusive) and label of each run, row after row.
+    runs: Vec<(u32, u32)>,
+    /// Where the runs of each row end.
+    ends: Vec<usize>,
+}
+
+/// Shifts, and the label of each.
+#[derive(Default)]
+pub struct Shifts {
+    pub list: Vec<Shift>,
+    labels: BTreeMap<[i64; 2], u32>,
+}
+
+impl Shifts {
+    /// The label of a shift in unwarped pixels, of which a working pixel has `pitch`.
+    pub fn label(&mut self, exact: DVec2, pitch: DVec2) -> u32 {
+        let key = (exact * SUBPIXELS).round().to_array().map(|c| c as i64);
+        *self.labels.entry(key).or_insert_with(|| {
+            let working = (exact / pitch).round();
+            self.list.push(Shift { working: [working.x as i32, working.y as i32], exact });
+            self.list.len() as u32 - 1
+        })
+    }
+}
+
+impl PatchMap {
+    pub fn new(width: usize, height: usize) -> Self {
+        Self { width, height, shifts: Vec::new(), runs: Vec::new(), ends: Vec::new() }
+    }
+
+    /// All of it shows one shift.
+    pub fn single(width: usize, height: usize, shift: Shift) -> Self {
+        let runs = vec![(width as u32, 0); height];
+        Self { width, height, shifts: vec![shift], runs, ends: (1..=height).collect() }
+    }
+
+    /// Appends a row of labels: indices into `shifts`, or [`NONE`].
+    pub fn push(&mut self, labels: &[u32]) {
+        for (x, &label) in labels.iter().enumerate() {
+            if labels.get(x + 1) != Some(&label) {
+                self.runs.push((x as u32 + 1, label));
+            }
+        }
+        self.ends.push(self.runs.len());
+    }
+
+    /// The same again and again over `width` × `height` pixels: every `across`, along one axis, in unwarped pixels. A
+    /// shift that comes from two sides keeps one label.
+    pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
+        let mut out = Self::new(width, height);
+        let mut shifts = Shifts::default();
+        let mut relabel = |label: u32, times: usize| match self.shifts.get(label as usize) {
+            Some(shift) => shifts.label(shift.exact + across * times as f64, pitch),
+            None => NONE,
+        };
+        let period = across.abs() / pitch;
+        // Which repetition a pixel is in, and the pixel there.
+        let place = |at: usize, period: f64, side: usize| {
+            let times = if period > 0.0 { (at as f64 / period + 1e-9) as usize } else { 0 };
+            (times, (at - (times as f64 * period).round().min(at as f64) as usize).min(side - 1))
+        };
+        let mut row = vec![NONE; width];
+        for y in 0..height {
+            let (down, v) = place(y, period.y, self.height);
+            let source: Vec<u32> = self.labels(v).collect();
+            let mut last = (usize::MAX, NONE, NONE);
+            for (x, out_label) in row.iter_mut().enumerate() {
+                let (right, u) = place(x, period.x, self.width);
+                if (right, source[u]) != (last.0, last.1) {
+                    last = (right, source[u], relabel(source[u], down + right));
+                }
+                *out_label = last.2;
+            }
+            out.push(&row);
+        }
+        out.shifts = shifts.list;
+        out
+    }
+
+    /// The runs of a row, from left to right: end (exclusive) and label.
+    pub fn row(&self, y: usize) -> &[(u32, u32)] {
+        let start = y.checked_sub(1).map_or(0, |above| self.ends[above]);
+        &self.runs[start..self.ends[y]]
+    }
+
+    /// The label of every pixel of a row.
+    pub fn labels(&self, y: usize) -> impl Iterator<Item = u32> {
+        let mut start = 0;
+        self.row(y).iter().flat_map(move |&(end, label)| {
+            let length = end - std::mem::replace(&mut start, end);
+            std::iter::repeat_n(label, length as usize)
+        })
+    }
+
+    /// The shift that a pixel shows.
+    pub fn shift(&self, x: usize, y: usize) -> Option<&Shift> {
+        let row = self.row(y);
+        let run = row.partition_point(|&(end, _)| end as usize <= x);
+        self.shifts.get(row.get(run)?.1 as usize)
+    }
+
+    /// The exemplar's working pixel that a label shows at a pixel of the result, if any.
+    pub fn source(&self, x: usize, y: usize, label: u32, working: &Working) -> Option<usize> {
+        let [dx, dy] = self.shifts.get(label as usize)?.working;
+        working.index(x as i32 - dx, y as i32 - dy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn runs_tell_every_pixel() {
+        let (width, height) = (37, 12);
+        let mut rng = Rng::new(4, &[]);
+        let rows: Vec<Vec<u32>> = (0..height)
+            .map(|_| (0..width).map(|_| if rng.next_f64() < 0.3 { NONE } else { rng.below(3) as u32 }).collect())
+            .collect();
+        let mut patch_map = PatchMap::new(width, height);
+        patch_map.shifts = (0..3).map(|i| Shift { working: [i, 0], exact: DVec2::X * 2.0 * f64::from(i) }).collect();
+        rows.iter().for_each(|row| patch_map.push(row));
+        for (y, row) in rows.iter().enumerate() {
+            assert_eq!(&patch_map.labels(y).collect::<Vec<_>>(), row);
+            for (x, &label) in row.iter().enumerate() {
+                assert_eq!(patch_map.shift(x, y), patch_map.shifts.get(label as usize));
+            }
+        }
+        // Every 7 pixels to the right, each of two unwarped ones: the shift grows by as much.
+        let part = PatchMap { width: 7, ..patch_map.clone() };
+        let again = part.repeated((30, height), DVec2::X * 14.0, DVec2::splat(2.0));
+        for (x, y) in [(0, 0), (6, 3), (7, 3), (29, 11)] {
+            let once = patch_map.shift(x % 7, y).map(|s| [s.working[0] + 7 * (x / 7) as i32, s.working[1]]);
+            assert_eq!(again.shift(x, y).map(|s| s.working), once, "{x} {y}");
+        }
+        assert_eq!(PatchMap::single(5, 2, patch_map.shifts[1]).shift(4, 1), Some(&patch_map.shifts[1]));
+    }
+}

@@ -1,0 +1,264 @@
+//! How the exemplar is read: its region, and the law by which its lamps go on.
+//!
+//! One reading is brittle: far lamps, magnified with their blur, spoil the correlation of near ones. So laws are
+//! proposed from the whole exemplar and from its sharper parts, by strict and by free thresholds; each is scored by
+//! how well it predicts the lamps of the whole photo ([`sites`]), and the best is kept. The reading that the settings
+//! ask for stays unless another one scores clearly higher.
+
+pub mod sites;
+
+use super::exemplar::Exemplar;
+use super::exemplar::evidence::Evidence;
+use super::exemplar::roles::Role;
+use super::lattice::continuation::Continuation;
+use super::lattice::{self, Correlated, basis, extent};
+use super::params::{Input, Law, Params, working_side};
+use crate::error::{Error, Result};
+use crate::job::Job;
+use glam::DVec2;
+use sites::Sites;
+
+/// Magnifications up to which parts of the exemplar are read, against its sharpest pixel. [judged on 20 photos]
+const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
+/// Correlation from which a shift is proposed as a period, alone and against the best; and how many shifts. [judged on
+/// 20 photos]
+const PROPOSED: f32 = 0.35;
+const PROPOSED_RELATIVE: f32 = 0.6;
+const MAX_SHIFTS: usize = 6;
+/// Score of lights without a law: a lattice must predict more than this. [judged on 20 photos]
+const LAWLESS: f64 = 0.35;
+/// Score below which a lattice that the settings ask for is given up for none. [judged on 20 photos]
+const HOPELESS: f64 = 0.15;
+/// By how much a score must exceed the score of the reading that the settings ask for. [judged on 20 photos]
+const CLEARLY: f64 = 0.1;
+/// Share of the lamps in the light, by photo pixels, from which they judge: other lights run through the photo.
+/// [judged on 20 photos]
+const MIN_LAMPS: f64 = 0.5;
+/// Relative difference of periods up to which two laws are one. [judged on 20 photos]
+const SAME_LAW: f64 = 0.08;
+
+/// What a reading is chosen by, and against which rival.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN where too few lights are lamps to say.
+    pub score: f64,
+    /// The best other law, and its score; 0 without one.
+    pub runner_up: Continuation,
+    pub runner_up_score: f64,
+}
+
+impl Choice {
+    /// By how much the score exceeds the runner-up's.
+    pub fn margin(&self) -> f64 {
+        self.score - self.runner_up_score
+    }
+
+    /// The choice of a reading that has no rival.
+    pub fn only(continuation: Continuation) -> Self {
+        Self { score: f64::NAN, runner_up: continuation, runner_up_score: 0.0 }
+    }
+}
+
+/// An exemplar that has been read: its lamps, and how they go on.
+pub struct Reading {
+    pub exemplar: Exemplar,
+    pub continuation: Continuation,
+    pub regularity: f64,
+    pub choice: Choice,
+    /// The settings it was read with.
+    working_side: f64,
+    least_regularity: f32,
+    law: Law,
+    max_magnification: f64,
+}
+
+/// A law that was proposed.
+#[derive(Clone, Copy)]
+struct Proposal {
+    continuation: Continuation,
+    regularity: f64,
+    score: f64,
+}
+
+impl Proposal {
+    /// A law that predicts no lamp from another.
+    fn lawless(continuation: Continuation) -> Self {
+        Self { continuation, regularity: 0.0, score: LAWLESS }
+    }
+}
+
+impl Reading {
+    /// Reads an exemplar. Errors: no valid pixel, no light (`Degenerate`).
+    pub fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let exemplar = Exemplar::new(input, working_side(input, params), params.max_magnification, job.part(0.0, 0.4))?;
+        Self::of(exemplar, input, params, job)
+    }
+
+    /// Reads an exemplar that has been cut out of its input.
+    pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let working_side = working_side(input, params);
+        let least_regularity = params.least_regularity;
+        let whole = Correlated::new(&exemplar, |_| true, job.part(0.4, 0.6))?;
+        let (continuation, regularity) = lattice::law(&exemplar, &whole, least_regularity);
+        let mut reading = Self {
+            choice: Choice::only(continuation),
+            exemplar,
+            continuation,
+            regularity,
+            working_side,
+            least_regularity,
+            law: params.law,
+            max_magnification: params.max_magnification,
+        };
+        match params.law {
+            Law::Correlation => {}
+            Law::Best if least_regularity >= 1.0 => {}
+            Law::Best => reading.compare(&whole, job.part(0.6, 1.0))?,
+            Law::Whole => reading.set(Proposal::lawless(extent::as_period(&reading.exemplar))),
+            Law::Free => reading.set(Proposal::lawless(Continuation::Free)),
+            Law::Lattice | Law::Row => reading.fix(params.law, &whole, job.part(0.6, 1.0))?,
+        }
+        Ok(reading)
+    }
+
+    /// Whether a texture of such settings would read the exemplar in the same way.
+    pub fn serves(&self, input: &Input, params: &Params) -> bool {
+        let Exemplar { width, height, .. } = self.exemplar;
+        [width, height] == [input.unwarped.width, input.unwarped.height]
+            && self.working_side == working_side(input, params)
+            && self.least_regularity == params.least_regularity
+            && self.law == params.law
+            && self.max_magnification == params.max_magnification
+    }
+
+    /// Compares the law that the settings ask for with others, and keeps the best.
+    fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
+        let exemplar = &self.exemplar;
+        let evidence = exemplar.evidence(Role::is_whole);
+        let parts = exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
+        let seen: f64 = evidence.iter().map(|l| l.weight).sum();
+        let through = exemplar.roles.iter().zip(&exemplar.photo_area).filter(|(role, _)| **role == Role::Through);
+        let endless: f64 = through.map(|(_, area)| area).sum();
+        if evidence.len() == 1 && parts.is_empty() && endless == 0.0 {
+            // One lamp repeats nothing, whatever its few pixels correlate with.
+            self.set(Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar))));
+            return Ok(());
+        }
+        if evidence.len() < 2 || seen < MIN_LAMPS * (seen + endless) {
+            return Ok(());
+        }
+        let score = |law: Continuation| score(exemplar, (&evidence, &parts), law);
+        let own =
+            Proposal { continuation: self.continuation, regularity: self.regularity, score: score(self.continuation) };
+        if own.score.is_nan() {
+            return Ok(());
+        }
+        let mut proposals = self.propose(whole, job)?;
+        proposals.iter_mut().for_each(|p| p.score = score(p.continuation));
+        proposals.retain(|p| p.score.is_finite());
+        let lawless = Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar)));
+
+        // The best, or of equals the first; it must be clearly better than what the settings ask for.
+        let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
+        let chosen = match () {
+            () if best.score > own.score + CLEARLY && best.score > LAWLESS => best,
+            () if own.score < HOPELESS => lawless,
+            () => own,
+        };
+        proposals.extend([own, lawless]);
+        let others = proposals.iter().filter(|p| !is_same(p.continuation, chosen.continuation));
+        let runner_up = others.max_by(|a, b| a.score.total_cmp(&b.score));
+        (self.continuation, self.regularity) = (chosen.continuation, chosen.regularity);
+        self.choice = Choice {
+            score: chosen.score,
+            runner_up: runner_up.map_or(chosen.continuation, |p| p.continuation),
+            runner_up_score: runner_up.map_or(0.0, |p| p.score),
+        };
+        Ok(())
+    }
+
+    /// Laws of the whole exemplar and of its sharper parts, by strict and by free thresholds; and of each lattice its
+    /// rows.
+    fn propose(&self, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
+        let exemplar = &self.exemplar;
+        let mut parts = Vec::new();
+        for limit in MAGNIFICATIONS {
+            let Some(limit) = exemplar.magnification_limit(limit) else { continue };
+            let pitch = exemplar.working.pitch;
+            let width = exemplar.working.width;
+            let centre = |i: usize| (DVec2::new((i % width) as f64, (i / width) as f64) + 0.5) * pitch;
+            parts.extend(Correlated::new(exemplar, |i| limit.contains(centre(i)), job.part(0.0, 0.0)).ok());
+        }
+        let mut proposals = Vec::new();
+        let extent = extent::of(exemplar);
+        for correlated in std::iter::once(whole).chain(&parts) {
+            let (continuation, regularity) = lattice::law(exemplar, correlated, self.least_regularity);
+            proposals.push(Proposal { continuation, regularity, score: 0.0 });
+            let shifts = lattice::shifts(exemplar, correlated, PROPOSED, PROPOSED_RELATIVE, MAX_SHIFTS);
+            for (n, &(a, goodness)) in shifts.iter().enumerate() {
+                let row = lattice::row(exemplar, a, extent);
+                proposals.push(Proposal { continuation: row, regularity: goodness, score: 0.0 });
+                for &(b, other) in shifts[n + 1..].iter().filter(|(b, _)| !lattice::is_parallel(a, *b)) {
+                    let continuation = Continuation::Lattice(basis::refine(exemplar, [a, b], 2));
+                    proposals.push(Proposal { continuation, regularity: goodness.min(other), score: 0.0 });
+                }
+            }
+            job.check()?;
+        }
+        Ok(proposals)
+    }
+
+    /// Keeps the best law of the kind that the settings ask for. Errors: there is none (`Degenerate`).
+    fn fix(&mut self, law: Law, whole: &Correlated, job: Job) -> Result<()> {
+        let is_asked = |c: &Continuation| match law {
+            Law::Row => matches!(c, Continuation::Row(_)),
+            _ => matches!(c, Continuation::Lattice(_)),
+        };
+        if is_asked(&self.continuation) {
+            return Ok(());
+        }
+        let evidence = self.exemplar.evidence(Role::is_whole);
+        let parts = self.exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
+        let mut proposals = self.propose(whole, job)?;
+        proposals.retain(|p| is_asked(&p.continuation));
+        proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&evidence, &parts), p.continuation));
+        let best = proposals.into_iter().filter(|p| p.score.is_finite()).max_by(|a, b| a.score.total_cmp(&b.score));
+        let best = best.ok_or_else(|| {
+            Error::degenerate("emission.law asks for a period that the lights do not show: set it to the best law")
+        })?;
+        self.set(best);
+        Ok(())
+    }
+
+    fn set(&mut self, chosen: Proposal) {
+        (self.continuation, self.regularity) = (chosen.continuation, chosen.regularity);
+        self.choice = Choice { score: chosen.score, ..Choice::only(chosen.continuation) };
+    }
+}
+
+/// How well a law predicts the lamps, whole ones and parts; NaN where nothing changes along a period: the correlation
+/// judges that.
+fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
+    match Sites::new(exemplar, lamps, law) {
+        Some(sites) => sites.score(parts),
+        None => match law {
+            Continuation::Free | Continuation::Tile(_) => LAWLESS,
+            _ => f64::NAN,
+        },
+    }
+}
+
+/// Whether two laws are one but for a small difference of their periods.
+fn is_same(a: Continuation, b: Continuation) -> bool {
+    let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
+        let close = |p: DVec2, q: DVec2| (p - q).length().min((p + q).length()) < SAME_LAW * p.length().max(q.length());
+        (close(a, c) && close(b, d)) || (close(a, d) && close(b, c))
+    };
+    match (a, b) {
+        (Continuation::Lattice(a), Continuation::Lattice(b)) | (Continuation::Row(a), Continuation::Row(b)) => {
+            near(a, b)
+        }
+        (Continuation::Tile(_) | Continuation::Free, Continuation::Tile(_) | Continuation::Free) => true,
+        (a, b) => a == b,
+    }
+}

@@ -1,0 +1,180 @@
+//! The sites of a lattice: at which places of a cell lamps lie, and how well they predict each other.
+//!
+//! A law of the pattern is worth as much as it predicts. Each lamp that another lamp of its site leads to, by steps of
+//! the lattice and to a lamp of its size, is predicted; each site in full view without such a lamp is a false
+//! prediction. Both are weighed by the photo pixels of the lamp, so that the blurred far part of a photo counts by
+//! what it shows. A pattern that predicts no lamp from another, as an empty one or one that repeats the photo as a
+//! whole, scores nothing.
+
+use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::evidence::Evidence;
+use crate::emission::exemplar::foreshortening::LocalMap;
+use crate::emission::lattice::cells;
+use crate::emission::lattice::continuation::Continuation;
+use glam::{DMat2, DVec2};
+
+/// Lamps of a site are no farther from each other than this share of the shorter period. [judged on 20 photos]
+const OFF_SITE: f64 = 0.12;
+/// Contrast against the surroundings, in that of the site's lamps, from which a place shines though no light is
+/// marked; and the lamps that are compared. [judged on 20 photos]
+const SHINES: f64 = 0.2;
+const MAX_COMPARED: usize = 5;
+/// Sites in view that are looked at. [bench emission:seconds]
+const MAX_SITES: usize = 20_000;
+/// Largest length of the period that is taken for none: nothing changes along it, in unwarped pixels. [rounding]
+const UNCHANGING: f64 = 1.5;
+
+/// A place of the cell at which lamps lie.
+#[derive(Clone, Debug)]
+pub struct Site {
+    /// Where it lies in the cell of its first lamp, in unwarped pixels.
+    pub at: DVec2,
+    /// Its lamps, those that the photo shows best first.
+    pub lamps: Vec<Evidence>,
+    /// Photo pixels of the lamps.
+    pub shown: f64,
+    /// Photo pixels of lamps at sites in full view that are marked as none: that shine, and that do not.
+    pub unmarked: f64,
+    pub missing: f64,
+}
+
+impl Site {
+    /// Share of the sites in view that have a lamp, weighed by photo pixels.
+    pub fn occupancy(&self) -> f64 {
+        let seen = self.shown + self.unmarked;
+        seen / (seen + self.missing).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// The sites of a lattice.
+pub struct Sites {
+    pub list: Vec<Site>,
+    /// Cells per unwarped pixel; a row has cells along its period only.
+    pub to_cells: DMat2,
+    pub basis: [DVec2; 2],
+    is_row: bool,
+}
+
+impl Sites {
+    /// The sites of a lattice or a row; `None` of other laws, and where nothing changes along a period.
+    pub fn new(exemplar: &Exemplar, evidence: &[Evidence], law: Continuation) -> Option<Self> {
+        let (basis, is_row) = match law {
+            Continuation::Lattice(basis) => (basis, false),
+            Continuation::Row(basis) => (basis, true),
+            _ => return None,
+        };
+        let to_cells = DMat2::from_cols(basis[0], basis[1]).inverse();
+        let shortest = if is_row { basis[0].length() } else { basis[0].length().min(basis[1].length()) };
+        if !to_cells.is_finite() || shortest <= UNCHANGING {
+            return None;
+        }
+        let mut sites = Self { list: Vec::new(), to_cells, basis, is_row };
+        for lamp in evidence {
+            let is_here = |site: &Site| {
+                let first = &site.lamps[0];
+                let slack = OFF_SITE * shortest + (lamp.blur + first.blur);
+                let off = sites.residual(lamp.centre - first.centre);
+                lamp.may_be_like(first) && off.abs().cmple(slack).all()
+            };
+            match sites.list.iter().position(is_here) {
+                Some(k) => sites.list[k].lamps.push(*lamp),
+                None => {
+                    sites.list.push(Site {
+                        at: lamp.centre,
+                        lamps: vec![*lamp],
+                        shown: 0.0,
+                        unmarked: 0.0,
+                        missing: 0.0,
+                    });
+                }
+            }
+        }
+        for k in 0..sites.list.len() {
+            sites.weigh(k, exemplar);
+        }
+        Some(sites)
+    }
+
+    /// What is left of a step from lamp to lamp after whole steps of the lattice.
+    pub fn residual(&self, step: DVec2) -> DVec2 {
+        step - self.whole_steps(step)
+    }
+
+    /// The vector of the lattice nearest to a step.
+    pub fn whole_steps(&self, step: DVec2) -> DVec2 {
+        let cells = (self.to_cells * step).round();
+        self.basis[0] * cells.x + if self.is_row { DVec2::ZERO } else { self.basis[1] * cells.y }
+    }
+
+    /// Places a site at the mean of its lamps, weighed by their photo pixels, and finds where it is in view without
+    /// one.
+    fn weigh(&mut self, k: usize, exemplar: &Exemplar) {
+        let Site { lamps, .. } = &self.list[k];
+        let first = lamps[0];
+        let shown: f64 = lamps.iter().map(|l| l.weight).sum();
+        let off: DVec2 = lamps.iter().map(|l| self.residual(l.centre - first.centre) * l.weight).sum();
+        let at = first.centre + off / shown.max(f64::MIN_POSITIVE);
+        let (unmarked, missing) = self.missing(at, lamps, exemplar);
+        let site = &mut self.list[k];
+        (site.at, site.shown, site.unmarked, site.missing) = (at, shown, unmarked, missing);
+    }
+
+    /// Photo pixels of the lamps that are not marked in full view: where the photo shines as lamps of the site do, and
+    /// where it does not.
+    fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64) {
+        let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
+        let half = lamps[0].size / 2.0;
+        let is_shown = |p: DVec2| {
+            let inside = p.cmpge(DVec2::ZERO).all() && p.cmplt(size).all();
+            inside && exemplar.shown[p.y as usize * exemplar.width + p.x as usize]
+        };
+        let corners = [DVec2::ZERO, half, -half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y)];
+        let is_lit = |p: DVec2| exemplar.components.labels[p.y as usize * exemplar.width + p.x as usize] != 0;
+        let is_taken = |p: DVec2| {
+            is_lit(p)
+                || lamps.iter().any(|l| {
+                    let off = self.residual(l.centre - at);
+                    (l.centre - off - p).abs().max_element() < 1.0 + OFF_SITE * half.max_element()
+                })
+        };
+        let steps = cells::between(self.to_cells, DVec2::ZERO - at, size - at);
+        let along = steps.filter(|[_, j]| !self.is_row || *j == 0).take(MAX_SITES);
+        let empty = along
+            .map(|[i, j]| at + self.basis[0] * i as f64 + self.basis[1] * j as f64)
+            .filter(|&p| corners.iter().all(|c| is_shown(p + *c)) && !is_taken(p));
+        let contrast = |p: DVec2| exemplar.working.contrast(p, half);
+        let of_lamps = lamps.iter().take(MAX_COMPARED).filter_map(|l| contrast(l.centre));
+        let brightest = of_lamps.fold(0.0, f64::max);
+        let (mut unmarked, mut missing) = (0.0, 0.0);
+        for p in empty {
+            let pixels = 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area();
+            let shines = brightest > 0.0 && contrast(p).is_some_and(|c| c >= SHINES * brightest);
+            if shines { unmarked += pixels } else { missing += pixels }
+        }
+        (unmarked, missing)
+    }
+
+    /// How well the lattice predicts the lamps, in [0, 1]: the share of the photo pixels of seen and predicted lamps
+    /// that are both, times the share of the lamps that need no site of their own.
+    /// Lights that the border cuts, `parts`, are predicted where a site has them.
+    pub fn score(&self, parts: &[Evidence]) -> f64 {
+        let lamps: usize = self.list.iter().map(|s| s.lamps.len()).sum();
+        let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
+            true => (predicted + site.shown, all + site.shown + site.missing),
+            false => (predicted, all + site.shown),
+        });
+        let is_predicted = |part: &&Evidence| {
+            self.list.iter().any(|site| {
+                let half = site.lamps[0].size / 2.0 + part.blur;
+                self.residual(part.centre - site.at).abs().cmple(half).all()
+            })
+        };
+        let cut: f64 = parts.iter().map(|p| p.weight).sum();
+        let (predicted, all) =
+            (predicted + parts.iter().filter(is_predicted).map(|p| p.weight).sum::<f64>(), all + cut);
+        if lamps == 0 || all <= 0.0 {
+            return 0.0;
+        }
+        predicted / all * (1.0 - self.list.len() as f64 / lamps as f64)
+    }
+}

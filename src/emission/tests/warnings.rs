@@ -1,0 +1,59 @@
+//! Each warning about a texture that deserves it, and no warning about a good one.
+
+use super::*;
+use crate::emission::{given, statistics::Statistics};
+use crate::image::Image;
+use crate::job::Monitor;
+use glam::DVec2;
+
+/// A texture of four lamps, as if it had been made from a photo.
+fn made() -> Emission {
+    let lamps = Image::from_fn(32, 32, |x, y| [f32::from(x % 16 < 6 && y % 16 < 6); 3]).unwrap();
+    let own = given(&lamps, Monitor::default().job()).unwrap();
+    assert_eq!(own.warnings(), [], "a texture of the caller's");
+    Emission {
+        exemplar_metadata: Image::new(4, 4, 3).unwrap(),
+        continuation: Continuation::Lattice([DVec2::new(16.0, 0.0), DVec2::new(0.0, 16.0)]),
+        regularity: 0.9,
+        statistics: [Statistics::default(); 2],
+        error: 0.02,
+        exemplar_lamps: 4,
+        ..own
+    }
+}
+
+fn codes(emission: &Emission) -> Vec<Code> {
+    emission.warnings().iter().map(|warning| warning.code).collect()
+}
+
+#[test]
+fn a_good_texture_raises_nothing() {
+    assert_eq!(codes(&made()), []);
+}
+
+#[test]
+fn a_large_error_raises_a_warning() {
+    let far = Emission { error: 0.64, ..made() };
+    assert_eq!(codes(&far), [Code::PatternUncertain]);
+    assert!(far.warnings()[0].message.contains("64 %"));
+    // That a few lamps leave it to chance makes it no better.
+    assert_eq!(codes(&Emission { sampling_error: 0.6, ..far }), [Code::PatternUncertain]);
+    assert_eq!(codes(&Emission { error: f64::NAN, ..made() }), [Code::PatternUncertain]);
+}
+
+#[test]
+fn a_single_lamp_is_no_pattern_but_may_be_copied() {
+    let single = Emission { exemplar_lamps: 1, ..made() };
+    assert_eq!(codes(&single), [Code::FewLamps]);
+    assert_eq!((single.warnings()[0].severity, single.warnings()[0].limit), (1.0, 2.0));
+    assert_eq!(codes(&Emission { continuation: Continuation::Copy, ..single }), []);
+}
+
+#[test]
+fn free_patches_raise_a_warning_where_they_differ() {
+    let free = |error| Emission { continuation: Continuation::Free, regularity: 0.0, error, ..made() };
+    assert_eq!(codes(&free(0.05)), []);
+    assert_eq!(codes(&free(0.2)), [Code::NoLattice]);
+    assert_eq!(codes(&free(2.1)), [Code::PatternUncertain, Code::NoLattice]);
+    assert_eq!(codes(&Emission { error: 0.2, ..made() }), []);
+}

@@ -1,0 +1,64 @@
+//! Reasons to doubt an emissive texture.
+
+use super::{Continuation, Emission};
+use crate::warning::{Code, Warning, percent};
+
+/// Largest relative difference between the statistics of texture and photo. [judged on 38 photos]
+const MAX_ERROR: f64 = 0.25;
+/// The same where no lattice holds the lamps. [judged on 38 photos]
+const MAX_FREE_ERROR: f64 = 0.15;
+/// Whole lamps that show a size and a spacing. [convention]
+const MIN_LAMPS: usize = 2;
+
+impl Emission {
+    /// Reasons to doubt the texture. A texture of the caller's own is believed.
+    pub fn warnings(&self) -> Vec<Warning> {
+        if self.is_given() {
+            return Vec::new();
+        }
+        [self.uncertain(), self.few_lamps(), self.no_lattice()].into_iter().flatten().collect()
+    }
+
+    /// Whether the caller has made the texture.
+    fn is_given(&self) -> bool {
+        self.exemplar_metadata.data.is_empty()
+    }
+
+    fn uncertain(&self) -> Option<Warning> {
+        Warning::above(
+            Code::PatternUncertain,
+            self.error,
+            MAX_ERROR,
+            || {
+                let parts = "the lit share, the size or the spacing of its lamps";
+                format!("the texture differs from the photo by {} in {parts}", percent(self.error))
+            },
+            "compare the texture with the unwarped photo; correct the mask of the lights, or lower max_magnification of \
+             the rectification",
+        )
+    }
+
+    fn few_lamps(&self) -> Option<Warning> {
+        let is_copy = self.continuation == Continuation::Copy;
+        let message = || {
+            format!("the number of lamps that the plane shows whole is {}, too few for a pattern", self.exemplar_lamps)
+        };
+        let advice = "use a photo with more lamps in full view, or check that the mask of the lights keeps them apart; \
+                      lamps that run through the photo, as lines of light, may be right as they are";
+        let lamps = self.exemplar_lamps as f64;
+        let raised = (!is_copy).then(|| Warning::below(Code::FewLamps, lamps, MIN_LAMPS as f64, message, advice));
+        raised.flatten()
+    }
+
+    fn no_lattice(&self) -> Option<Warning> {
+        let is_free = self.continuation == Continuation::Free;
+        let message =
+            || format!("the lamps form no lattice, and the texture differs from the photo by {}", percent(self.error));
+        let advice = "lower least_regularity of the emission if the lamps are regular";
+        is_free.then(|| Warning::above(Code::NoLattice, self.error, MAX_FREE_ERROR, message, advice)).flatten()
+    }
+}
+
+#[cfg(test)]
+#[path = "tests/warnings.rs"]
+mod tests;

@@ -1,0 +1,351 @@
+//! Warnings
+//!
+//! Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the place in the
+//! photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all its stages. A list is a
+//! copy, which stays as it is when the stage is started again. An empty list does not prove a result right.
+
+use super::context::Context;
+use super::emission::luxfer_emission;
+use super::features::luxfer_features;
+use super::guard::enter;
+use super::handle::{self, Handle, Owned, tag};
+use super::params::{Report, Versioned};
+use super::pointer::{Out, copy_text};
+use super::rectify::luxfer_rectify;
+use super::relight::luxfer_relight;
+use super::scene::missing;
+use super::segment::luxfer_segment;
+use super::status::luxfer_status;
+use super::transfer::{luxfer_stage, luxfer_transfer};
+use crate::error::Result;
+use crate::segment;
+use crate::transfer::Stage;
+use crate::warning::Warning;
+use std::ffi::c_char;
+use std::sync::Arc;
+
+/// A list of warnings. See luxfer_transfer_get_warnings.
+pub struct luxfer_warnings {
+    _opaque: [u8; 0],
+}
+
+/// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
+pub type luxfer_warning_code = i32;
+/// The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard deviation.
+pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
+/// The directions of the room axes are uncertain; the severity is the largest standard deviation in radians.
+pub const LUXFER_WARNING_VIEW_UNCERTAIN: luxfer_warning_code = 2;
+/// The lens bends straight lines; the severity is the distortion of luxfer_rectify_report without its sign.
+pub const LUXFER_WARNING_LENS_DISTORTION: luxfer_warning_code = 3;
+/// The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in radians.
+pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
+/// The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust, below the
+/// limit.
+pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
+/// Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the severity is
+/// their share of the mask and these regions. The place is the pixel where one more stroke helps most.
+pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
+/// Strokes of both classes cover the same pixels; the severity is their number per sample.
+pub const LUXFER_WARNING_CONTRADICTORY_STROKES: luxfer_warning_code = 7;
+/// Strokes lie outside the photo; the severity is the number of these pixels per sample.
+pub const LUXFER_WARNING_OFF_IMAGE_STROKES: luxfer_warning_code = 8;
+/// A mask is uncertain; the severity is the expected share of wrong pixels.
+pub const LUXFER_WARNING_UNCERTAIN_MASK: luxfer_warning_code = 9;
+/// A mask has no pixel; the severity is 0, below the limit.
+pub const LUXFER_WARNING_EMPTY_MASK: luxfer_warning_code = 10;
+/// A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one of them.
+pub const LUXFER_WARNING_MISSED_STROKES: luxfer_warning_code = 11;
+/// Lights cover much of their plane; the severity is its share.
+pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
+/// Much of the unwarped plane is magnified; the severity is its share. The place is the one that is magnified most.
+pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
+/// The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the limit. The
+/// place is the flattest.
+pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
+/// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
+pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
+/// The photo shows too few whole lamps for a pattern; the severity is their number, below the limit.
+pub const LUXFER_WARNING_FEW_LAMPS: luxfer_warning_code = 16;
+/// The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report.
+pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
+/// Colour channels do not meet their target; the severity is their number.
+pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
+/// The photo clips the target, which is a lower bound; the severity is the number of these channels.
+pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
+
+/// A reason to doubt a result. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_warning {
+    /// sizeof(luxfer_warning), set by the caller.
+    pub struct_size: u32,
+    /// LUXFER_WARNING_ value.
+    pub code: luxfer_warning_code,
+    /// The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look within,
+    /// PLANE without.
+    pub stage: luxfer_stage,
+    /// 1 if the warning has a place in the photo, else 0.
+    pub has_place: u32,
+    /// The figure that raised it; each code has its own.
+    pub severity: f64,
+    /// The limit that the figure has passed.
+    pub limit: f64,
+    /// The place in the photo, x and y in pixels; 0 without one.
+    pub place: [f64; 2],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_warning {
+    const NAME: &'static str = "luxfer_warning";
+    const SIZES: &'static [usize] = &[48];
+    fn defaults() -> Self {
+        Self { struct_size: 48, code: 0, stage: 0, has_place: 0, severity: 0.0, limit: 0.0, place: [0.0; 2] }
+    }
+}
+
+/// The warnings behind a handle, each with its stage.
+pub(super) struct Warnings {
+    context: Arc<Context>,
+    list: Vec<(Stage, Warning)>,
+}
+
+impl Owned for Warnings {
+    fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl Handle for luxfer_warnings {
+    type Object = Warnings;
+    const TAG: u64 = tag(b"lux.warn");
+    const NAME: &'static str = "luxfer_warnings";
+}
+
+impl Warnings {
+    fn get(&self, index: u32) -> Result<&(Stage, Warning)> {
+        self.list.get(index as usize).ok_or_else(|| missing("warning", index, self.list.len()))
+    }
+}
+
+/// A new list for the host.
+fn give(context: &Arc<Context>, list: impl Iterator<Item = (Stage, Warning)>) -> *mut luxfer_warnings {
+    handle::give(Arc::new(Warnings { context: context.clone(), list: list.collect() }))
+}
+
+/// Lists the warnings of a stage.
+fn of(stage: Stage, list: Vec<Warning>) -> impl Iterator<Item = (Stage, Warning)> {
+    list.into_iter().map(move |warning| (stage, warning))
+}
+
+/// Gets the warnings of all stages that have a result, in their order. The caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before the first stage has ended.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_get_warnings(
+    transfer: *mut luxfer_transfer,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let out = Out::new(warnings, "warnings")?;
+        let list = stage.output()?.warnings(stage.inputs().strokes());
+        out.set(give(stage.context(), list.into_iter()));
+        Ok(())
+    })
+}
+
+/// Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_get_warnings(
+    rectify: *mut luxfer_rectify,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let out = Out::new(warnings, "warnings")?;
+        let output = stage.output()?;
+        let unwarped = output.unwarped.as_ref().map_or(Vec::new(), |unwarped| unwarped.warnings());
+        let list = of(Stage::View, output.view.warnings()).chain(of(Stage::Unwarp, unwarped));
+        out.set(give(stage.context(), list));
+        Ok(())
+    })
+}
+
+/// Gets the warnings about the features. The caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_get_warnings(
+    features: *mut luxfer_features,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let out = Out::new(warnings, "warnings")?;
+        out.set(give(stage.context(), of(Stage::Features, stage.output()?.features.warnings())));
+        Ok(())
+    })
+}
+
+/// Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are now. The
+/// caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_get_warnings(
+    segment: *mut luxfer_segment,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let out = Out::new(warnings, "warnings")?;
+        let (made, inputs) = (stage.output()?, stage.inputs());
+        let lit = inputs.within.as_ref().and_then(|within| segment::almost_all_lit(&made.mask, within.image()));
+        let list = made.warnings().into_iter().chain(made.missed(inputs.strokes.iter())).chain(lit).collect();
+        let phase = if inputs.within.is_some() { Stage::Lights } else { Stage::Plane };
+        out.set(give(stage.context(), of(phase, list)));
+        Ok(())
+    })
+}
+
+/// Gets the warnings about the texture; a plan has none. The caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_get_warnings(
+    emission: *mut luxfer_emission,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let out = Out::new(warnings, "warnings")?;
+        let list = stage.output()?.texture.as_ref().map_or(Vec::new(), |texture| texture.warnings());
+        out.set(give(stage.context(), of(Stage::Emission, list)));
+        Ok(())
+    })
+}
+
+/// Gets the warnings about the solution. The caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_get_warnings(
+    relight: *mut luxfer_relight,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    enter(relight, |stage| {
+        let out = Out::new(warnings, "warnings")?;
+        out.set(give(stage.context(), of(Stage::Relight, stage.output()?.warnings())));
+        Ok(())
+    })
+}
+
+/// Counts the warnings of a list. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_warnings_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
+    enter(warnings, |object| {
+        Out::new(count, "count")?.set(object.list.len() as u32);
+        Ok(())
+    })
+}
+
+/// Gets the code, the stage, the figures and the place of a warning. Any thread.
+/// LUXFER_NOT_FOUND if there is no such warning.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_warnings_get(
+    warnings: *mut luxfer_warnings,
+    index: u32,
+    warning: *mut luxfer_warning,
+) -> luxfer_status {
+    enter(warnings, |object| {
+        let out = Report::new(warning)?;
+        let (stage, found) = object.get(index)?;
+        out.set(luxfer_warning {
+            code: found.code as luxfer_warning_code,
+            stage: *stage as luxfer_stage,
+            has_place: u32::from(found.place.is_some()),
+            severity: found.severity,
+            limit: found.limit,
+            place: found.place.unwrap_or_default().to_array(),
+            ..luxfer_warning::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be; *needed
+/// receives the capacity for all of it, unless NULL. Any thread.
+/// LUXFER_NOT_FOUND if there is no such warning.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_warnings_get_message(
+    warnings: *mut luxfer_warnings,
+    index: u32,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(warnings, |object| copy_text(&object.get(index)?.1.message, buffer, capacity, needed))
+}
+
+/// Copies the remedy, as luxfer_warnings_get_message does the defect. Any thread.
+/// LUXFER_NOT_FOUND if there is no such warning.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_warnings_get_advice(
+    warnings: *mut luxfer_warnings,
+    index: u32,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(warnings, |object| copy_text(&object.get(index)?.1.advice, buffer, capacity, needed))
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_warnings_retain(warnings: *mut luxfer_warnings) -> luxfer_status {
+    handle::retain(warnings)
+}
+
+/// Gives a reference back. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_warnings_release(warnings: *mut luxfer_warnings) -> luxfer_status {
+    handle::release(warnings)
+}
+
+/// The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The string
+/// is static: never free it. Any thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn luxfer_warning_name(code: luxfer_warning_code) -> *const c_char {
+    let name = match code {
+        LUXFER_WARNING_FOCAL_ASSUMED => c"LUXFER_WARNING_FOCAL_ASSUMED",
+        LUXFER_WARNING_VIEW_UNCERTAIN => c"LUXFER_WARNING_VIEW_UNCERTAIN",
+        LUXFER_WARNING_LENS_DISTORTION => c"LUXFER_WARNING_LENS_DISTORTION",
+        LUXFER_WARNING_NOT_SQUARE => c"LUXFER_WARNING_NOT_SQUARE",
+        LUXFER_WARNING_LAYOUT_UNCERTAIN => c"LUXFER_WARNING_LAYOUT_UNCERTAIN",
+        LUXFER_WARNING_UNSEEN => c"LUXFER_WARNING_UNSEEN",
+        LUXFER_WARNING_CONTRADICTORY_STROKES => c"LUXFER_WARNING_CONTRADICTORY_STROKES",
+        LUXFER_WARNING_OFF_IMAGE_STROKES => c"LUXFER_WARNING_OFF_IMAGE_STROKES",
+        LUXFER_WARNING_UNCERTAIN_MASK => c"LUXFER_WARNING_UNCERTAIN_MASK",
+        LUXFER_WARNING_EMPTY_MASK => c"LUXFER_WARNING_EMPTY_MASK",
+        LUXFER_WARNING_MISSED_STROKES => c"LUXFER_WARNING_MISSED_STROKES",
+        LUXFER_WARNING_ALMOST_ALL_LIT => c"LUXFER_WARNING_ALMOST_ALL_LIT",
+        LUXFER_WARNING_MAGNIFIED => c"LUXFER_WARNING_MAGNIFIED",
+        LUXFER_WARNING_PLANE_NEAR_HORIZON => c"LUXFER_WARNING_PLANE_NEAR_HORIZON",
+        LUXFER_WARNING_PATTERN_UNCERTAIN => c"LUXFER_WARNING_PATTERN_UNCERTAIN",
+        LUXFER_WARNING_FEW_LAMPS => c"LUXFER_WARNING_FEW_LAMPS",
+        LUXFER_WARNING_NO_LATTICE => c"LUXFER_WARNING_NO_LATTICE",
+        LUXFER_WARNING_UNREACHABLE => c"LUXFER_WARNING_UNREACHABLE",
+        LUXFER_WARNING_TARGET_CLIPPED => c"LUXFER_WARNING_TARGET_CLIPPED",
+        _ => c"LUXFER_WARNING_UNKNOWN",
+    };
+    name.as_ptr()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::warning::Code;
+    use std::ffi::CStr;
+
+    #[test]
+    fn every_code_has_its_constant_and_name() {
+        for code in Code::ALL {
+            // SAFETY: a static string.
+            let name = unsafe { CStr::from_ptr(luxfer_warning_name(code as i32)) }.to_str().unwrap();
+            let expected = format!("LUXFER_WARNING_{code:?}").replace('_', "").to_uppercase();
+            assert_eq!(name.replace('_', ""), expected);
+        }
+        assert_eq!(luxfer_warning_name(0), luxfer_warning_name(Code::ALL.len() as i32 + 1));
+    }
+}

@@ -1,0 +1,162 @@
+//! Reasons to doubt a camera and an unwarped plane.
+
+use super::camera::{USUAL_SPREAD, focal_spread};
+use super::{Unwarped, View};
+use crate::geometry::FocalSource;
+use crate::warning::{Code, Warning, percent};
+use glam::{DMat2, DVec2};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// Relative standard deviation of a focal length about which the lines say as much as photos in general do: where
+/// they say less, it counts as assumed. [convention]
+const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
+/// Standard deviation of a room axis in radians. [judged on 38 photos]
+const MAX_DIRECTION_ERROR: f64 = 0.035;
+/// Share of their distance from the centre by which the lens moves the corners of the photo. [judged on 38 photos]
+const MAX_DISTORTION: f64 = 0.02;
+/// Radians by which room axes are off a right angle. [judged on 38 photos]
+const MAX_SKEW: f64 = 0.035;
+/// Standard deviations from which on a measured figure is no chance. [convention]
+const SIGNIFICANT: f64 = 3.0;
+
+/// Magnification of the photo beyond which the edge of a lamp is a guess. [judged on 38 photos]
+const SHARP_MAGNIFICATION: f64 = 4.0;
+/// Share of the plane that may be magnified beyond it. [judged on 38 photos]
+const MAX_MAGNIFIED: f64 = 0.8;
+/// Sine of the angle between the plane and the rays that see it, for half of the plane. [judged on 38 photos]
+const MIN_INCIDENCE: f64 = 0.1;
+/// Pixels of the unwarped plane that are looked at, along each side.
+const GRID: usize = 96;
+
+impl View {
+    /// Reasons to doubt the camera.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let all = [self.focal_assumed(), self.uncertain(), self.distorted(), self.not_square()];
+        all.into_iter().flatten().collect()
+    }
+
+    fn focal_assumed(&self) -> Option<Warning> {
+        let camera = &self.perspective;
+        (camera.focal_source == FocalSource::Assumed).then(|| {
+            let spread = focal_spread(camera, &self.vanishing_points);
+            let message = format!(
+                "the lines do not determine the focal length; {:.0} pixels are assumed, within {}",
+                camera.focal,
+                percent(spread)
+            );
+            let advice = "set the focal length of the rectification if it is known, or check that lamps are as long as \
+                          they should be";
+            Warning::new(Code::FocalAssumed, spread.max(MAX_FOCAL_SPREAD), MAX_FOCAL_SPREAD, message, advice)
+        })
+    }
+
+    fn uncertain(&self) -> Option<Warning> {
+        let error = self.vanishing_points.iter().map(|v| v.error).fold(0.0, f64::max);
+        Warning::above(
+            Code::ViewUncertain,
+            error,
+            MAX_DIRECTION_ERROR,
+            || format!("a room axis is known within {:.1} degrees only", error.to_degrees()),
+            "use a photo with more straight edges along the room, or set the camera by a rectification of your own",
+        )
+    }
+
+    fn distorted(&self) -> Option<Warning> {
+        let found = self.distortion.filter(|d| d.corner.abs() > SIGNIFICANT * d.error)?;
+        let kind = if found.corner < 0.0 { "barrel" } else { "pincushion" };
+        Warning::above(
+            Code::LensDistortion,
+            found.corner.abs(),
+            MAX_DISTORTION,
+            || format!("the lens bends straight lines: {} of {kind} distortion", percent(found.corner.abs())),
+            "undo the distortion of the lens in a photo editor first",
+        )
+    }
+
+    fn not_square(&self) -> Option<Warning> {
+        let significant = self.squareness.iter().flatten().filter(|s| s.angle.abs() > SIGNIFICANT * s.error);
+        let skew = significant.map(|s| s.angle.abs()).fold(0.0, f64::max);
+        Warning::above(
+            Code::NotSquare,
+            skew,
+            MAX_SKEW,
+            || format!("the lines of the room are {:.1} degrees off right angles", skew.to_degrees()),
+            "set the principal point if the photo is cropped or the lens was shifted; a room with oblique walls needs a \
+             rectification of your own",
+        )
+    }
+}
+
+/// How the photo sees a place of the plane.
+struct Footprint {
+    /// In the photo.
+    place: DVec2,
+    /// Unwarped pixels per photo pixel, the root of their ratio in area.
+    magnification: f64,
+    /// Sine of the angle between the plane and the ray, as the shape of the pixel shows it.
+    incidence: f64,
+}
+
+impl Unwarped {
+    /// Reasons to doubt the unwarped plane.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let footprints = self.footprints();
+        [magnified(&footprints), near_horizon(&footprints)].into_iter().flatten().collect()
+    }
+
+    /// Footprints of valid pixels, evenly over the plane.
+    fn footprints(&self) -> Vec<Footprint> {
+        let (width, height) = (self.valid.width, self.valid.height);
+        let steps = |size: usize| (0..size).step_by(size.div_ceil(GRID).max(1));
+        let valid = |&(x, y): &(usize, usize)| self.valid.data[y * width + x] > 0.5;
+        let pixels = steps(height).flat_map(|y| steps(width).map(move |x| (x, y))).filter(valid);
+        pixels.map(|(x, y)| self.footprint(DVec2::new(x as f64 + 0.5, y as f64 + 0.5))).collect()
+    }
+
+    fn footprint(&self, pixel: DVec2) -> Footprint {
+        let [right, down] = [0, 1].map(|k| self.to_photo.0.col(k));
+        let seen = self.to_photo.apply_homogeneous(pixel);
+        let place = seen.truncate() / seen.z;
+        // The Jacobian of the map, and the axes of the ellipse that it makes of a pixel.
+        let jacobian = DMat2::from_cols(
+            (right.truncate() - place * right.z) / seen.z,
+            (down.truncate() - place * down.z) / seen.z,
+        );
+        let area = jacobian.determinant().abs();
+        let trace = jacobian.x_axis.length_squared() + jacobian.y_axis.length_squared();
+        let longest = 0.5 * (trace + (trace * trace - 4.0 * area * area).max(0.0).sqrt());
+        Footprint { place, magnification: area.sqrt().recip(), incidence: area / longest }
+    }
+}
+
+fn magnified(footprints: &[Footprint]) -> Option<Warning> {
+    let worst = footprints.iter().max_by(|a, b| a.magnification.total_cmp(&b.magnification))?;
+    let count = footprints.iter().filter(|f| f.magnification > SHARP_MAGNIFICATION).count();
+    let share = count as f64 / footprints.len() as f64;
+    Warning::above(
+        Code::Magnified,
+        share,
+        MAX_MAGNIFIED,
+        || format!("the photo shows {} of the plane {SHARP_MAGNIFICATION} or more times too small", percent(share)),
+        "lower max_magnification of the rectification, which cuts the far part off, or use a photo of more pixels",
+    )
+    .map(|warning| warning.at(Some(worst.place)))
+}
+
+fn near_horizon(footprints: &[Footprint]) -> Option<Warning> {
+    let mut by_incidence: Vec<&Footprint> = footprints.iter().collect();
+    by_incidence.sort_by(|a, b| a.incidence.total_cmp(&b.incidence));
+    let median = by_incidence.get(by_incidence.len() / 2)?.incidence;
+    Warning::below(
+        Code::PlaneNearHorizon,
+        median,
+        MIN_INCIDENCE,
+        || format!("the camera sees half of the plane at less than {:.1} degrees", median.asin().to_degrees()),
+        "use a photo that looks more towards the plane, or check that its mask and axes are right",
+    )
+    .map(|warning| warning.at(by_incidence.first().map(|f| f.place)))
+}
+
+#[cfg(test)]
+#[path = "tests/warnings.rs"]
+mod tests;

@@ -1,0 +1,203 @@
+//! Reasons to doubt a mask, and the place where one more stroke helps most.
+
+use super::{Segmentation, Stroke};
+use crate::image::Image;
+use crate::warning::{Code, Warning, percent};
+use glam::DVec2;
+
+/// Share of the mask that may be unlike every stroke. [judged on 38 photos]
+const MAX_UNSEEN: f64 = 0.2;
+/// Value of `unseen` from which on a pixel counts as unlike every stroke. [convention]
+const UNSEEN: f32 = 0.5;
+/// Pixels that strokes of both classes cover, per sample. [judged on 38 photos]
+const MAX_CONTRADICTORY: f64 = 0.05;
+/// Pixels of strokes outside the photo, per sample. [judged on 38 photos]
+const MAX_OFF_IMAGE: f64 = 0.05;
+/// Stated error of the mask. [judged on 38 photos]
+const MAX_ERROR: f64 = 0.1;
+/// Share of the painted pixels that the mask may contradict. [judged on 38 photos]
+const MAX_MISSED: f64 = 0.1;
+/// Share of the plane that lamps may cover. [judged on 38 photos]
+const MAX_LIT: f64 = 0.4;
+
+/// Cells along the longer side of the photo among which the place of the next stroke is chosen.
+const CELLS: usize = 64;
+
+impl Segmentation {
+    /// Reasons to doubt the mask. A mask of the caller's own is believed, unless it is empty.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let all = [
+            self.is_empty(),
+            self.is_unseen(),
+            self.contradictory_strokes(),
+            self.off_image_strokes(),
+            self.uncertain(),
+        ];
+        all.into_iter().flatten().collect()
+    }
+
+    /// Whether strokes have made it.
+    fn is_learnt(&self) -> bool {
+        self.samples != [0, 0]
+    }
+
+    /// Whether it consists of lamps, whose `unseen` regions lie outside the mask.
+    fn is_of_lamps(&self) -> bool {
+        self.is_learnt() && self.model.is_none()
+    }
+
+    /// How unlike every stroke a pixel is that belongs to the mask, or may belong to it.
+    fn doubt(&self, pixel: usize) -> f32 {
+        if self.is_of_lamps() || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
+    }
+
+    fn is_empty(&self) -> Option<Warning> {
+        let count = self.mask.data.iter().filter(|m| **m > 0.5).count();
+        Warning::below(
+            Code::EmptyMask,
+            count as f64,
+            1.0,
+            || "the mask has no pixel".into(),
+            "paint more positive strokes, and fewer or other negative ones",
+        )
+    }
+
+    fn is_unseen(&self) -> Option<Warning> {
+        let pixels = || 0..self.mask.data.len();
+        let doubtful = pixels().filter(|&p| self.doubt(p) > UNSEEN).count();
+        let all = pixels().filter(|&p| self.mask.data[p] > 0.5 || self.doubt(p) > UNSEEN).count();
+        let share = doubtful as f64 / all.max(1) as f64;
+        let message = || match self.is_of_lamps() {
+            true => {
+                format!("{} of what may be lamps is left out: it resembles the painted lamps in part", percent(share))
+            }
+            false => format!("{} of the mask is unlike every stroke", percent(share)),
+        };
+        let advice = "paint one more stroke at this place, of the class that it belongs to";
+        Warning::above(Code::Unseen, share, MAX_UNSEEN, message, advice).map(|warning| warning.at(self.next_stroke()))
+    }
+
+    fn contradictory_strokes(&self) -> Option<Warning> {
+        let share = self.per_sample(self.contradictory);
+        Warning::above(
+            Code::ContradictoryStrokes,
+            share,
+            MAX_CONTRADICTORY,
+            || {
+                format!(
+                    "strokes of both classes cover the same {} pixels, where the later ones count",
+                    self.contradictory
+                )
+            },
+            "erase the wrong strokes and paint them again",
+        )
+    }
+
+    fn off_image_strokes(&self) -> Option<Warning> {
+        let share = self.per_sample(self.off_image);
+        Warning::above(
+            Code::OffImageStrokes,
+            share,
+            MAX_OFF_IMAGE,
+            || format!("{} pixels of the strokes lie outside the photo and are ignored", self.off_image),
+            "check that the strokes were painted on this photo and at its size",
+        )
+    }
+
+    fn uncertain(&self) -> Option<Warning> {
+        Warning::above(
+            Code::UncertainMask,
+            self.error,
+            MAX_ERROR,
+            || format!("{} of the pixels of the mask are expected to be wrong", percent(self.error)),
+            "look at the mask, and paint a stroke on each surface that it takes for another",
+        )
+    }
+
+    /// Pixels of strokes relative to the samples that were drawn from them.
+    fn per_sample(&self, pixels: usize) -> f64 {
+        pixels as f64 / (self.samples[0] + self.samples[1]).max(1) as f64
+    }
+
+    /// Whether the mask contradicts the strokes that it was made from.
+    pub fn missed<'a>(&self, strokes: impl Iterator<Item = &'a Stroke>) -> Option<Warning> {
+        let is_missed = |stroke: &Stroke, p: u32| {
+            self.mask.data.get(p as usize).is_some_and(|mask| (*mask > 0.5) != stroke.positive)
+        };
+        let (mut painted, mut missed) = (0, 0);
+        let mut largest: (usize, Option<u32>) = (0, None);
+        for stroke in strokes {
+            let wrong = || stroke.pixels.iter().copied().filter(|&p| is_missed(stroke, p));
+            let count = wrong().count();
+            painted += stroke.pixels.len();
+            missed += count;
+            // Show the middle of the stroke that is missed most.
+            if count > largest.0 {
+                largest = (count, wrong().nth(count / 2));
+            }
+        }
+        let share = missed as f64 / painted.max(1) as f64;
+        let message = || format!("the mask contradicts {} of the painted pixels", percent(share));
+        let advice = "run the segmentation again if strokes have changed since; otherwise the classes look alike: paint \
+                      more strokes on both, or give a mask of your own";
+        let place = largest.1.map(|p| self.centre_of(p as usize));
+        let raised = self.is_learnt().then(|| Warning::above(Code::MissedStrokes, share, MAX_MISSED, message, advice));
+        raised.flatten().map(|warning| warning.at(place))
+    }
+
+    /// The pixel where one more stroke helps most: the most doubtful one of the most doubtful neighbourhood.
+    fn next_stroke(&self) -> Option<DVec2> {
+        let (width, height) = (self.mask.width, self.mask.height);
+        let side = width.max(height).div_ceil(CELLS).max(1);
+        let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
+        // Sum over cells, then over the neighbours of each.
+        let mut cells = vec![0.0f64; columns * rows];
+        for y in 0..height {
+            for x in 0..width {
+                cells[y / side * columns + x / side] += f64::from(self.doubt(y * width + x));
+            }
+        }
+        let around = |cell: usize| {
+            let (x, y) = (cell % columns, cell / columns);
+            let near = |v: usize, size: usize| v.saturating_sub(1)..(v + 2).min(size);
+            near(y, rows)
+                .flat_map(|v| near(x, columns).map(move |u| (u, v)))
+                .map(|(u, v)| cells[v * columns + u])
+                .sum::<f64>()
+        };
+        let strange = (0..cells.len()).filter(|&c| cells[c] > 0.0);
+        let cell = strange.max_by(|&a, &b| around(a).total_cmp(&around(b)))?;
+
+        let (left, top) = (cell % columns * side, cell / columns * side);
+        let pixels =
+            (top..(top + side).min(height)).flat_map(|y| (left..(left + side).min(width)).map(move |x| y * width + x));
+        let strangest = pixels.max_by(|&p, &q| self.doubt(p).total_cmp(&self.doubt(q)))?;
+        Some(self.centre_of(strangest))
+    }
+
+    fn centre_of(&self, pixel: usize) -> DVec2 {
+        let width = self.mask.width.max(1);
+        DVec2::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5)
+    }
+}
+
+/// Whether lights cover more of their plane than lamps do. Masks of different size are not compared.
+pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
+    let shape = |mask: &Image| [mask.width, mask.height, mask.channels];
+    if shape(lights) != shape(plane) {
+        return None;
+    }
+    let on_plane = || plane.data.iter().zip(&lights.data).filter(|(plane, _)| **plane > 0.5);
+    let share = on_plane().filter(|(_, light)| **light > 0.5).count() as f64 / on_plane().count().max(1) as f64;
+    Warning::above(
+        Code::AlmostAllLit,
+        share,
+        MAX_LIT,
+        || format!("lights cover {} of the plane", percent(share)),
+        "unless the whole plane shines: paint strokes on the plane beside the lamps, where the mask takes it for light",
+    )
+}
+
+#[cfg(test)]
+#[path = "tests/warnings.rs"]
+mod tests;

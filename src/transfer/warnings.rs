@@ -1,0 +1,67 @@
+//! All reasons to doubt a transfer: the lists of its stages one after the other, each with its stage.
+
+use super::{Results, Stage};
+use crate::segment::{self, StrokeSet};
+use crate::warning::Warning;
+
+impl Results {
+    /// Reasons to doubt the results that there are, in the order of the stages. `strokes` are those that made the masks.
+    pub fn warnings(&self, strokes: &StrokeSet) -> Vec<(Stage, Warning)> {
+        let mut all = Vec::new();
+        let mut add = |stage, list: Vec<Warning>| all.extend(list.into_iter().map(|warning| (stage, warning)));
+        if let Some(view) = &self.view {
+            add(Stage::View, view.warnings());
+        }
+        if let Some(features) = &self.features {
+            add(Stage::Features, features.warnings());
+        }
+        if let Some(plane) = &self.plane {
+            add(Stage::Plane, plane.warnings());
+            add(Stage::Plane, plane.missed(strokes.plane_strokes()).into_iter().collect());
+        }
+        if let Some(lights) = &self.lights {
+            add(Stage::Lights, lights.warnings());
+            add(Stage::Lights, lights.missed(strokes.lights.iter()).into_iter().collect());
+        }
+        if let (Some(plane), Some(lights)) = (&self.plane, &self.lights) {
+            add(Stage::Lights, segment::almost_all_lit(&lights.mask, &plane.mask).into_iter().collect());
+        }
+        if let Some(unwarped) = &self.unwarped {
+            add(Stage::Unwarp, unwarped.warnings());
+        }
+        if let Some(emission) = &self.emission {
+            add(Stage::Emission, emission.warnings());
+        }
+        if let Some(solution) = &self.solution {
+            add(Stage::Relight, solution.warnings());
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+    use crate::segment::Segmentation;
+    use crate::warning::Code;
+    use std::sync::Arc;
+
+    /// The codes of a plane and its lights, columns `0..plane` and `0..lights` of ten.
+    fn codes(plane: usize, lights: usize) -> Vec<(Stage, Code)> {
+        let mask = |columns: usize| {
+            let mask = Image::from_fn(10, 4, |x, _| [f32::from(x < columns)]).unwrap();
+            Some(Arc::new(Segmentation::from_confidence(&mask).unwrap()))
+        };
+        let results = Results { plane: mask(plane), lights: mask(lights), ..Results::default() };
+        results.warnings(&StrokeSet::default()).into_iter().map(|(stage, warning)| (stage, warning.code)).collect()
+    }
+
+    #[test]
+    fn each_warning_has_its_stage_in_the_order_of_the_stages() {
+        assert_eq!(Results::default().warnings(&StrokeSet::default()), []);
+        assert_eq!(codes(8, 2), []);
+        assert_eq!(codes(8, 7), [(Stage::Lights, Code::AlmostAllLit)]);
+        assert_eq!(codes(0, 0), [(Stage::Plane, Code::EmptyMask), (Stage::Lights, Code::EmptyMask)]);
+    }
+}

@@ -1,0 +1,167 @@
+//! The one warning type: the reason to doubt a result that is no error, and the remedy.
+//!
+//! A warning compares a figure of a result with a limit, so each stage computes its list from its result alone
+//! (`warnings.rs` in the folder of the stage, with the limits). Nothing is stored.
+
+use glam::DVec2;
+use std::fmt;
+
+/// The reason to doubt a result, with the values of `luxfer_warning_code`: append only.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Code {
+    /// View: the vanishing points do not determine the focal length, which was assumed.
+    FocalAssumed = 1,
+    /// View: the directions of the room axes have a large stated error.
+    ViewUncertain = 2,
+    /// View: the lens bends straight lines.
+    LensDistortion = 3,
+    /// View: the walls do not meet at right angles, or the pixels are not square.
+    NotSquare = 4,
+    /// Features: the room was laid out from its lines with little confidence, and there is no depth map.
+    LayoutUncertain = 5,
+    /// Mask: a large share of it is unlike every stroke.
+    Unseen = 6,
+    /// Mask: strokes of both classes cover the same pixels.
+    ContradictoryStrokes = 7,
+    /// Mask: strokes lie outside the photo.
+    OffImageStrokes = 8,
+    /// Mask: its stated error is large.
+    UncertainMask = 9,
+    /// Mask: it has no pixel.
+    EmptyMask = 10,
+    /// Mask: it contradicts the strokes it was made from.
+    MissedStrokes = 11,
+    /// Mask of the lights: it covers a large share of the plane.
+    AlmostAllLit = 12,
+    /// Unwarping: much of the plane is magnified beyond the resolution of the photo.
+    Magnified = 13,
+    /// Unwarping: the camera sees the plane nearly edge-on.
+    PlaneNearHorizon = 14,
+    /// Emission: the statistics of the texture differ from those of the photo.
+    PatternUncertain = 15,
+    /// Emission: the photo shows fewer whole lamps than tell a pattern.
+    FewLamps = 16,
+    /// Emission: many lamps without a lattice, which patches continue imperfectly.
+    NoLattice = 17,
+    /// Relighting: a colour channel does not meet its target.
+    Unreachable = 18,
+    /// Relighting: the photo clips the target, which is a lower bound.
+    TargetClipped = 19,
+}
+
+impl Code {
+    pub const ALL: [Self; 19] = [
+        Self::FocalAssumed,
+        Self::ViewUncertain,
+        Self::LensDistortion,
+        Self::NotSquare,
+        Self::LayoutUncertain,
+        Self::Unseen,
+        Self::ContradictoryStrokes,
+        Self::OffImageStrokes,
+        Self::UncertainMask,
+        Self::EmptyMask,
+        Self::MissedStrokes,
+        Self::AlmostAllLit,
+        Self::Magnified,
+        Self::PlaneNearHorizon,
+        Self::PatternUncertain,
+        Self::FewLamps,
+        Self::NoLattice,
+        Self::Unreachable,
+        Self::TargetClipped,
+    ];
+}
+
+/// A reason to doubt a result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    pub code: Code,
+    /// The figure that raised it.
+    pub severity: f64,
+    /// The limit that the figure has passed.
+    pub limit: f64,
+    /// The defect, with the figure.
+    pub message: String,
+    /// The remedy.
+    pub advice: String,
+    /// Where in the photo, in pixels.
+    pub place: Option<DVec2>,
+}
+
+impl Warning {
+    /// A warning if a figure lies above its limit, or is not a number.
+    pub fn above(
+        code: Code,
+        severity: f64,
+        limit: f64,
+        message: impl FnOnce() -> String,
+        advice: &str,
+    ) -> Option<Self> {
+        let is_good = severity <= limit;
+        (!is_good).then(|| Self::new(code, severity, limit, message(), advice))
+    }
+
+    /// A warning if a figure lies below its limit, or is not a number.
+    pub fn below(
+        code: Code,
+        severity: f64,
+        limit: f64,
+        message: impl FnOnce() -> String,
+        advice: &str,
+    ) -> Option<Self> {
+        let is_good = severity >= limit;
+        (!is_good).then(|| Self::new(code, severity, limit, message(), advice))
+    }
+
+    pub fn new(code: Code, severity: f64, limit: f64, message: String, advice: &str) -> Self {
+        Self { code, severity, limit, message, advice: advice.into(), place: None }
+    }
+
+    /// The same warning with a place in the photo; one that is not finite is none.
+    pub fn at(self, place: Option<DVec2>) -> Self {
+        Self { place: place.filter(|p| p.is_finite()), ..self }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.message, self.advice)?;
+        self.place.map_or(Ok(()), |place| write!(f, " (at {:.0}, {:.0})", place.x, place.y))
+    }
+}
+
+/// A share in the words of a message.
+pub fn percent(share: f64) -> String {
+    if share.abs() < 0.0995 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_numbered_from_one_without_gaps() {
+        let values: Vec<i32> = Code::ALL.iter().map(|code| *code as i32).collect();
+        assert_eq!(values, (1..=Code::ALL.len() as i32).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_figure_raises_a_warning_beyond_its_limit_and_where_it_is_no_number() {
+        let above = |figure| Warning::above(Code::Unseen, figure, 0.5, String::new, "").is_some();
+        let below = |figure| Warning::below(Code::Unseen, figure, 0.5, String::new, "").is_some();
+        assert_eq!([0.4, 0.5, 0.6, f64::INFINITY, f64::NAN].map(above), [false, false, true, true, true]);
+        assert_eq!([0.6, 0.5, 0.4, f64::NEG_INFINITY, f64::NAN].map(below), [false, false, true, true, true]);
+    }
+
+    #[test]
+    fn a_warning_shows_its_place_if_it_has_one() {
+        let warning = Warning::new(Code::Unseen, 1.0, 0.0, "a third of the mask is new".into(), "paint there");
+        assert_eq!(warning.to_string(), "a third of the mask is new: paint there");
+        let placed = warning.clone().at(Some(DVec2::new(12.2, 7.0)));
+        assert_eq!(placed.to_string(), "a third of the mask is new: paint there (at 12, 7)");
+        assert_eq!(warning.clone().at(Some(DVec2::NAN)), warning);
+        assert_eq!([0.0123, 0.2549].map(percent), ["1.2 %", "25 %"]);
+    }
+}

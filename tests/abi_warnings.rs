@@ -1,0 +1,175 @@
+//! The contract of warnings at the C boundary: a list that stays, texts in the caller's memory, and errors for wrong arguments.
+
+mod host;
+
+use host::{context, made, message, view};
+use luxfer::ffi::*;
+use std::ffi::{CStr, c_char};
+use std::ptr::null_mut;
+
+/// A mask that looks everywhere alike and was painted as two classes: a segmentation that must be doubted.
+fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
+    let (width, height) = (64u32, 48u32);
+    let mut pixels: Vec<f32> = (0..width * height * 3).map(|i| ((i * 7919) % 101) as f32).collect();
+    let features = view(width, height, &mut pixels);
+    let features = made(|out| unsafe { luxfer_image_create(context, &features, out) });
+    let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
+    unsafe {
+        assert_eq!(luxfer_segment_set_features(segment, features), LUXFER_OK);
+        for (y, positive) in [(8.0f32, 1), (16.0, 0), (32.0, 1), (40.0, 0)] {
+            let points = [4.0f32, y, 60.0, y];
+            assert_eq!(luxfer_segment_add_stroke(segment, points.as_ptr(), 2, 2.0, positive), LUXFER_OK);
+        }
+        assert_eq!(luxfer_image_release(features), LUXFER_OK);
+    }
+    segment
+}
+
+fn run(segment: *mut luxfer_segment) {
+    let job = made(|out| unsafe { luxfer_segment_start(segment, std::ptr::null(), out) });
+    unsafe {
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+    }
+}
+
+fn empty() -> luxfer_warning {
+    let mut warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
+    warning.struct_size = size_of::<luxfer_warning>() as u32;
+    warning
+}
+
+fn list(warnings: *mut luxfer_warnings) -> Vec<luxfer_warning> {
+    let mut count = u32::MAX;
+    assert_eq!(unsafe { luxfer_warnings_count(warnings, &mut count) }, LUXFER_OK);
+    let read = |index| {
+        let mut warning = empty();
+        assert_eq!(unsafe { luxfer_warnings_get(warnings, index, &mut warning) }, LUXFER_OK);
+        warning
+    };
+    (0..count).map(read).collect()
+}
+
+type Text = unsafe extern "C" fn(*mut luxfer_warnings, u32, *mut c_char, usize, *mut usize) -> luxfer_status;
+
+/// A text, asked for its length first.
+fn text(read: Text, warnings: *mut luxfer_warnings, index: u32) -> String {
+    let mut needed = 0;
+    unsafe {
+        assert_eq!(read(warnings, index, null_mut(), 0, &mut needed), LUXFER_OK);
+        let mut buffer = vec![0 as c_char; needed];
+        assert_eq!(read(warnings, index, buffer.as_mut_ptr(), needed, null_mut()), LUXFER_OK);
+        CStr::from_ptr(buffer.as_ptr()).to_str().unwrap().to_string()
+    }
+}
+
+#[test]
+fn a_doubtful_mask_says_so_with_figure_limit_place_and_advice() {
+    let context = context(1);
+    let segment = doubtful(context);
+    let mut none: *mut luxfer_warnings = null_mut();
+    assert_eq!(unsafe { luxfer_segment_get_warnings(segment, &mut none) }, LUXFER_NOT_READY);
+    assert!(none.is_null());
+    run(segment);
+    let warnings = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
+    let found = list(warnings);
+    assert!(
+        found.iter().any(|w| w.code == LUXFER_WARNING_UNCERTAIN_MASK),
+        "{:?}",
+        found.iter().map(|w| w.code).collect::<Vec<_>>()
+    );
+    for (index, warning) in found.iter().enumerate() {
+        assert_eq!(warning.stage, LUXFER_STAGE_PLANE);
+        assert_eq!(warning.severity > warning.limit, warning.code != LUXFER_WARNING_EMPTY_MASK);
+        assert_eq!(warning.has_place == 0, warning.place == [0.0; 2]);
+        let index = index as u32;
+        let (what, advice) =
+            (text(luxfer_warnings_get_message, warnings, index), text(luxfer_warnings_get_advice, warnings, index));
+        assert!(what.len() > 10 && advice.len() > 10 && what != advice, "{what}; {advice}");
+    }
+
+    // Missed strokes have a place in the photo.
+    let missed = found.iter().find(|w| w.code == LUXFER_WARNING_MISSED_STROKES).expect("the strokes are missed");
+    assert_eq!(missed.has_place, 1);
+    assert!(missed.place[0] > 0.0 && missed.place[0] < 64.0 && missed.place[1] > 0.0 && missed.place[1] < 48.0);
+
+    // Within a mask it is taken for one of lights.
+    let mut ones = vec![1.0f32; 64 * 48];
+    let within = luxfer_image_view { channels: 1, byte_size: 64 * 48 * 4, ..view(64, 48, &mut ones) };
+    let within = made(|out| unsafe { luxfer_image_create(context, &within, out) });
+    assert_eq!(unsafe { luxfer_segment_set_within(segment, within) }, LUXFER_OK);
+    run(segment);
+    let lights = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
+    assert!(list(lights).iter().all(|w| w.stage == LUXFER_STAGE_LIGHTS));
+
+    // The first list stays as it was, also when everything else goes.
+    unsafe {
+        assert_eq!(luxfer_warnings_release(lights), LUXFER_OK);
+        assert_eq!(luxfer_image_release(within), LUXFER_OK);
+        assert_eq!(luxfer_segment_release(segment), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+    let again = list(warnings);
+    assert_eq!(again.iter().map(|w| w.code).collect::<Vec<_>>(), found.iter().map(|w| w.code).collect::<Vec<_>>());
+    unsafe {
+        assert_eq!(luxfer_warnings_retain(warnings), LUXFER_OK);
+        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
+        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
+        assert_eq!(luxfer_warnings_release(null_mut()), LUXFER_OK);
+    }
+}
+
+#[test]
+fn wrong_arguments_are_errors_and_texts_are_cut() {
+    let context = context(1);
+    let segment = doubtful(context);
+    run(segment);
+    let warnings = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
+    let count = list(warnings).len() as u32;
+    let mut warning = empty();
+    unsafe {
+        assert_eq!(luxfer_warnings_get(warnings, count, &mut warning), LUXFER_NOT_FOUND);
+        assert!(message(context).contains("warning"), "{}", message(context));
+        assert_eq!(luxfer_warnings_get_message(warnings, count, null_mut(), 0, null_mut()), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_warnings_get_advice(warnings, u32::MAX, null_mut(), 0, null_mut()), LUXFER_NOT_FOUND);
+        warning.struct_size = 20;
+        assert_eq!(luxfer_warnings_get(warnings, 0, &mut warning), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get(warnings, 0, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_count(warnings, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_count(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_segment_get_warnings(segment, null_mut()), LUXFER_INVALID_ARGUMENT);
+
+        let whole = text(luxfer_warnings_get_message, warnings, 0);
+        let mut buffer = [1 as c_char; 8];
+        assert_eq!(luxfer_warnings_get_message(warnings, 0, buffer.as_mut_ptr(), 8, null_mut()), LUXFER_OK);
+        assert_eq!(CStr::from_ptr(buffer.as_ptr()).to_str().unwrap(), &whole[..7]);
+        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
+        assert_eq!(luxfer_segment_release(segment), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn stages_without_a_result_have_no_list() {
+    let context = context(1);
+    let mut list: *mut luxfer_warnings = null_mut();
+    unsafe {
+        let transfer = made(|out| luxfer_transfer_create(context, out));
+        let rectify = made(|out| luxfer_rectify_create(context, out));
+        let features = made(|out| luxfer_features_create(context, out));
+        let emission = made(|out| luxfer_emission_create(context, out));
+        let relight = made(|out| luxfer_relight_create(context, out));
+        assert_eq!(luxfer_transfer_get_warnings(transfer, &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_rectify_get_warnings(rectify, &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_features_get_warnings(features, &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_emission_get_warnings(emission, &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_relight_get_warnings(relight, &mut list), LUXFER_NOT_READY);
+        assert!(list.is_null());
+        assert_eq!(luxfer_relight_release(relight), LUXFER_OK);
+        assert_eq!(luxfer_emission_release(emission), LUXFER_OK);
+        assert_eq!(luxfer_features_release(features), LUXFER_OK);
+        assert_eq!(luxfer_rectify_release(rectify), LUXFER_OK);
+        assert_eq!(luxfer_transfer_release(transfer), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
