@@ -90,10 +90,25 @@ fn truth(name: &str, record: &Value, [width, height]: [usize; 2]) -> Truth {
     let measured = items(&record["luminaires_from_ceiling"]);
     measured.iter().filter_map(|item| polygon(&item["px_polygon"])).for_each(|polygon| lights.fill(&polygon));
 
+    let unlisted = unlisted(name, [width, height]);
     let to_photo = matrix(&record["H_image_from_ceiling"]);
     let size = DVec2::new(width as f64, height as f64);
     let layout = to_photo.and_then(|map| layout(record, &listed, &measured, &lamps, &map, size));
-    Truth { lights, plane: None, either: None, lamps, layout, to_photo, is_trap: TRAPS.contains(&name) }
+    Truth { lights, unlisted, plane: None, either: None, lamps, layout, to_photo, is_trap: TRAPS.contains(&name) }
+}
+
+/// Lamps that the lists leave out.
+fn unlisted(name: &str, [width, height]: [usize; 2]) -> Option<Mask> {
+    let mut mask = Mask::new(width, height);
+    for line in include_str!("unlisted.txt").lines() {
+        let mut words = line.split_whitespace();
+        let is_wanted = words.next() == Some(name);
+        let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+        if let (true, &[x0, y0, x1, y1]) = (is_wanted, &numbers[..]) {
+            mask.fill(&[DVec2::new(x0, y0), DVec2::new(x1, y0), DVec2::new(x1, y1), DVec2::new(x0, y1)]);
+        }
+    }
+    (mask.count() > 0).then_some(mask)
 }
 
 /// The lamps in their plane: as measured there, else as the photo shows the whole ones.

@@ -7,16 +7,23 @@ use luxfer::exec;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::render::{self, Aov, Film, Outputs, World, denoise};
+use luxfer::scene::TextureRef;
 use std::sync::Arc;
 
-/// Paths per pixel of each of the two pictures that the noise filter works from.
-const PATHS: u32 = 2;
+/// Paths per pixel of each of the two pictures that the noise filter works from; a pixel of theirs is REDUCED photo pixels wide.
+const PATHS: u32 = 3;
+const REDUCED: usize = 2;
+/// Weight of light that another surface gets, beside that of the pixel's own: for pixels whose surface the small pictures lack.
+const STRANGE: f32 = 1e-3;
+/// Least albedo that light is divided by, as the noise filter has it.
+const MIN_ALBEDO: f32 = 0.02;
 /// Share of the light after which paths end: rooms come out a little darker than they would be.
 const MAX_LOST: f32 = 0.15;
 /// How strongly noise is smoothed.
 const SMOOTHING: f32 = 1.5;
-/// Rays across and down a pixel that shows more than one thing. [convention]
+/// Rays across and down a pixel that shows more than one thing, and one that shows a pattern. [convention]
 const FINE: usize = 5;
+const PATTERNED: usize = 2;
 
 /// No lamp.
 pub const NO_LAMP: u16 = u16::MAX;
@@ -31,64 +38,99 @@ pub struct Exposure {
 
 impl Exposure {
     pub fn of(room: &Room, surfaces: &Surfaces, shot: &Shot, seed: u64) -> Self {
-        let mut light = scattered(room, shot, seed);
         let whole = shown(room, surfaces, shot);
-        for (pixel, shown) in light.data.chunks_exact_mut(3).zip(&whole) {
-            (Vec3::from_slice(pixel) + shown.emission).write_to_slice(pixel);
-        }
+        let scattered = Scattered::of(room, shot, seed);
+        let light = Image::from_fn(shot.width, shot.height, |x, y| {
+            let shown = &whole[y * shot.width + x];
+            (scattered.at(x, y, shown) * shown.albedo + shown.emission).to_array()
+        });
         let classes = whole.iter().map(|shown| shown.class).collect();
-        Self { light, classes, lamps: whole.iter().map(|shown| shown.lamp).collect() }
+        Self { light: light.expect("a picture"), classes, lamps: whole.iter().map(|shown| shown.lamp).collect() }
     }
 }
 
-/// Light that surfaces send on: all but what comes straight from lamps, whose edges few paths would fray.
-fn scattered(room: &Room, shot: &Shot, seed: u64) -> Image {
-    let monitor = Monitor::default();
-    let world = World::build(Arc::new(room.scene.clone()), monitor.job()).expect("a world");
-    let film = |half: u64| {
-        let mut outputs = Outputs::default();
-        outputs.add("scattered", "C.+L").expect("an expression");
-        outputs.aovs = vec![Aov::Position, Aov::Normal, Aov::Albedo];
-        let params = render::Params {
-            width: shot.width,
-            height: shot.height,
-            samples: PATHS,
-            bounce_error: MAX_LOST,
-            seed: 2 * seed + half,
-            outputs,
-            ..render::Params::default()
+/// Light that surfaces send on, over their albedo: all but what comes straight from lamps, whose edges few paths would fray.
+struct Scattered {
+    light: Image,
+    normal: Image,
+    /// Number of the mesh plus 1.
+    mesh: Image,
+}
+
+impl Scattered {
+    fn of(room: &Room, shot: &Shot, seed: u64) -> Self {
+        let monitor = Monitor::default();
+        let world = World::build(Arc::new(room.scene.clone()), monitor.job()).expect("a world");
+        let film = |half: u64| {
+            let mut outputs = Outputs::default();
+            outputs.add("scattered", "C.+L").expect("an expression");
+            outputs.aovs = vec![Aov::Position, Aov::Normal, Aov::Albedo, Aov::Object];
+            let params = render::Params {
+                width: shot.width / REDUCED,
+                height: shot.height / REDUCED,
+                samples: PATHS,
+                bounce_error: MAX_LOST,
+                seed: 2 * seed + half,
+                outputs,
+                ..render::Params::default()
+            };
+            render::run(&world, &shot.camera, &params, monitor.job(), &mut |_| {}).expect("a picture")
         };
-        render::run(&world, &shot.camera, &params, monitor.job(), &mut |_| {}).expect("a picture")
-    };
-    let (one, other) = (film(0), film(1));
-    let light = |film: &Film, layer: usize| film.layers[layer].image.clone();
-    let halves = [light(&one, 0), light(&other, 0)];
-    // Half the squared difference of two estimates is the variance of one, a quarter that of their mean.
-    let mut variance = halves[0].clone();
-    variance.data.iter_mut().zip(&halves[1].data).for_each(|(a, b)| *a = (*a - b).powi(2) / 4.0);
-    let mean = |layer: usize| {
-        let mut mean = light(&one, layer);
-        mean.data.iter_mut().zip(&other.layers[layer].image.data).for_each(|(a, b)| *a = (*a + b) / 2.0);
-        mean
-    };
-    let (position, normal, albedo) = (mean(1), mean(2), mean(3));
-    let input = denoise::Input {
-        halves: [&halves[0], &halves[1]],
-        variance: &variance,
-        albedo: &albedo,
-        normal: &normal,
-        position: &position,
-    };
-    denoise::run(&input, &denoise::Params { strength: SMOOTHING }, monitor.job()).expect("a smooth picture").image
+        let (one, other) = (film(0), film(1));
+        let halves = [&one.layers[0].image, &other.layers[0].image];
+        // Half the squared difference of two estimates is the variance of one, a quarter that of their mean.
+        let mut variance = halves[0].clone();
+        variance.data.iter_mut().zip(&halves[1].data).for_each(|(a, b)| *a = (*a - b).powi(2) / 4.0);
+        let mean = |layer: usize| mean(&one, &other, layer);
+        let (position, normal, albedo) = (mean(1), mean(2), mean(3));
+        let input =
+            denoise::Input { halves, variance: &variance, albedo: &albedo, normal: &normal, position: &position };
+        let params = denoise::Params { strength: SMOOTHING };
+        let mut light = denoise::run(&input, &params, monitor.job()).expect("a smooth picture").image;
+        light.data.iter_mut().zip(&albedo.data).for_each(|(v, a)| *v /= a.max(MIN_ALBEDO));
+        Self { light, normal, mesh: one.layers[4].image.clone() }
+    }
+
+    /// At a pixel of the photo: the mean of the four pixels around it, as far as they show its surface.
+    fn at(&self, x: usize, y: usize, shown: &Shown) -> Vec3 {
+        let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / REDUCED as f32 - 0.5;
+        let corner = place.floor();
+        let part = place - corner;
+        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        for k in 0..4 {
+            let step = Vec2::new((k % 2) as f32, (k / 2) as f32);
+            let at = (corner + step)
+                .clamp(Vec2::ZERO, Vec2::new(self.light.width as f32 - 1.0, self.light.height as f32 - 1.0));
+            let (u, v) = (at.x as usize, at.y as usize);
+            let near = (1.0 - (part - step).abs()).max(Vec2::splat(0.05)).element_product();
+            let is_own = self.mesh.pixel(u, v)[0] == (shown.mesh + 1) as f32
+                && self.normal.rgb(u, v).dot(shown.normal).abs() > 0.9;
+            let weight = near * if is_own { 1.0 } else { STRANGE };
+            sum += self.light.rgb(u, v) * weight;
+            weights += weight;
+        }
+        sum / weights
+    }
+}
+
+/// The mean of a layer of two films.
+fn mean(one: &Film, other: &Film, layer: usize) -> Image {
+    let mut mean = one.layers[layer].image.clone();
+    mean.data.iter_mut().zip(&other.layers[layer].image.data).for_each(|(a, b)| *a = (*a + b) / 2.0);
+    mean
 }
 
 /// What a pixel shows.
 #[derive(Clone, Copy)]
 struct Shown {
-    /// Of surfaces that shine, the mean over the pixel.
+    /// Of surfaces that shine, and the colour of what does not: means over the pixel.
     emission: Vec3,
+    albedo: Vec3,
     class: u8,
     lamp: u16,
+    /// Of the surface in its middle.
+    mesh: u32,
+    normal: Vec3,
 }
 
 fn shown(room: &Room, surfaces: &Surfaces, shot: &Shot) -> Vec<Shown> {
@@ -101,14 +143,18 @@ fn shown(room: &Room, surfaces: &Surfaces, shot: &Shot) -> Vec<Shown> {
         let (x, y) = (i % width, i / width);
         let neighbours = [(x.saturating_sub(1), y), (x + 1, y), (x, y.saturating_sub(1)), (x, y + 1)];
         let differs = |&(x, y): &(usize, usize)| meshes[y.min(height - 1) * width + x.min(width - 1)] != meshes[i];
-        let shines = |mesh: u32| room.scene.materials[room.scene.meshes[mesh as usize].material].emission != Vec3::ZERO;
-        let fine = if neighbours.iter().any(differs) || shines(meshes[i]) { FINE } else { 1 };
+        let material = &room.scene.materials[room.scene.meshes[meshes[i] as usize].material];
+        let fine = match () {
+            _ if neighbours.iter().any(differs) || material.emission != Vec3::ZERO => FINE,
+            _ if material.base_color_texture.is_some() => PATTERNED,
+            _ => 1,
+        };
         let at = |k: usize| {
             let step = DVec2::new((k % fine) as f64 + 0.5, (k / fine) as f64 + 0.5) / fine as f64;
             sample(room, surfaces, shot, DVec2::new(x as f64, y as f64) + step)
         };
         let samples: Vec<Shown> = (0..fine * fine).map(at).collect();
-        let emission = samples.iter().map(|s| s.emission).sum::<Vec3>() / samples.len() as f32;
+        let mean = |of: fn(&Shown) -> Vec3| samples.iter().map(of).sum::<Vec3>() / samples.len() as f32;
         let most = |of: &dyn Fn(&Shown) -> (u8, u16)| {
             let count = |value: (u8, u16)| samples.iter().filter(|s| of(s) == value).count();
             samples.iter().map(of).max_by_key(|value| (count(*value), *value)).expect("a sample")
@@ -117,7 +163,8 @@ fn shown(room: &Room, surfaces: &Surfaces, shot: &Shot) -> Vec<Shown> {
         let lit = samples.iter().filter(|s| s.lamp != NO_LAMP).count() * 2 >= samples.len();
         let (class, lamp) = most(&|s| if (s.lamp != NO_LAMP) == lit { (s.class, s.lamp) } else { (0, 0) });
         let (class, lamp) = if class == 0 { (samples[0].class, samples[0].lamp) } else { (class, lamp) };
-        Shown { emission, class, lamp }
+        let middle = samples[samples.len() / 2];
+        Shown { emission: mean(|s| s.emission), albedo: mean(|s| s.albedo), class, lamp, ..middle }
     };
     exec::map(width * height, job.job(), pixel).expect("what is seen")
 }
@@ -129,18 +176,33 @@ fn mesh_at(surfaces: &Surfaces, shot: &Shot, at: DVec2) -> u32 {
 fn sample(room: &Room, surfaces: &Surfaces, shot: &Shot, at: DVec2) -> Shown {
     let direction = shot.direction(at);
     let Some(seen) = surfaces.seen(shot.camera.position, direction) else {
-        return Shown { emission: Vec3::ZERO, class: Class::Wall as u8, lamp: NO_LAMP };
+        let (class, lamp) = (Class::Wall as u8, NO_LAMP);
+        return Shown { emission: Vec3::ZERO, albedo: Vec3::ZERO, class, lamp, mesh: 0, normal: Vec3::Y };
     };
     let mesh = &room.scene.meshes[seen.mesh];
     let (class, number) = room.classes[seen.mesh];
     let material = &room.scene.materials[mesh.material];
     let [a, b, c] = mesh.corners(seen.triangle);
-    let faces = (b - a).cross(c - a).dot(direction) < 0.0;
-    let mut emission = if faces || material.double_sided { material.emission } else { Vec3::ZERO };
-    if let Some(map) = material.emission_texture {
-        let [p, q, r] = mesh.triangles[seen.triangle].map(|i| mesh.uvs[0][i as usize]);
-        let uv: Vec2 = p + (q - p) * seen.barycentric.x + (r - p) * seen.barycentric.y;
-        emission *= room.scene.textures[map.texture].sample(uv).truncate();
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let faces = normal.dot(direction) < 0.0 || material.double_sided;
+    // Patterns are laid by coordinates that run from corner to corner.
+    let coordinates = || {
+        let [p, q, r] = mesh.triangles[seen.triangle].map(|i| mesh.uvs[0].get(i as usize).copied().unwrap_or_default());
+        p + (q - p) * seen.barycentric.x + (r - p) * seen.barycentric.y
+    };
+    let pattern = |map: Option<TextureRef>| {
+        let sample = |map: TextureRef| {
+            let uv = map.transform * coordinates().extend(1.0);
+            room.scene.textures[map.texture].sample(uv.truncate()).truncate()
+        };
+        map.map_or(Vec3::ONE, sample)
+    };
+    Shown {
+        emission: if faces { material.emission * pattern(material.emission_texture) } else { Vec3::ZERO },
+        albedo: (material.base_color * pattern(material.base_color_texture)).max(Vec3::splat(MIN_ALBEDO)),
+        class: class as u8,
+        lamp: if class == Class::Lamp { number as u16 } else { NO_LAMP },
+        mesh: seen.mesh as u32,
+        normal,
     }
-    Shown { emission, class: class as u8, lamp: if class == Class::Lamp { number as u16 } else { NO_LAMP } }
 }

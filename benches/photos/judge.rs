@@ -184,7 +184,13 @@ impl Judgement {
 
 /// Share of a mask's area that lies on a lamp or near one.
 fn precision(lights: &Mask, truth: &Truth) -> f64 {
-    lights.common(&truth.lights.dilated(NEAR)) as f64 / lights.count().max(1) as f64
+    let mut lights = lights.clone();
+    let near = truth.lights.dilated(NEAR);
+    if let Some(unlisted) = &truth.unlisted {
+        let unlisted = unlisted.on.iter().zip(&near.on).map(|(unlisted, near)| *unlisted && !near);
+        lights.on.iter_mut().zip(unlisted).for_each(|(on, unlisted)| *on &= !unlisted);
+    }
+    lights.common(&near) as f64 / lights.count().max(1) as f64
 }
 
 /// Share of the lamps whose centre lies in a mask, or half of whose pixels where these are known.

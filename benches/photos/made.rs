@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Version of the generator: photos of another version are made anew.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// First seeds: those that may be tuned on, those that figures are of, and those that a classifier may learn from.
 pub const TUNING: u64 = 1_000_000;
 pub const EVALUATION: u64 = 2_000_000;
@@ -161,7 +161,16 @@ fn truth(room: &Room, shot: &Shot, look: &Look, scenery: &Scenery) -> Truth {
         * DMat3::from_translation(-centre);
     let to_photo = Homography(scale * shot.to_photo().0);
     let layout = Some(layout(room, shot, &to_photo, &pixels, &lit(room, shot, scenery)));
-    Truth { lights, plane: Some(plane), either: Some(either), lamps, layout, to_photo: Some(to_photo), is_trap: false }
+    Truth {
+        lights,
+        unlisted: None,
+        plane: Some(plane),
+        either: Some(either),
+        lamps,
+        layout,
+        to_photo: Some(to_photo),
+        is_trap: false,
+    }
 }
 
 /// The lamps as the photo shows them on the ceiling: those seen whole, or all where fewer than three are.

@@ -32,6 +32,8 @@ pub struct Lamp {
 pub struct Truth {
     /// Pixels of lamps.
     pub lights: Mask,
+    /// Pixels of lamps that are in no list: a mask of lights is judged there neither way.
+    pub unlisted: Option<Mask>,
     /// Pixels of the plane with its lamps, where known.
     pub plane: Option<Mask>,
     /// Pixels that may be taken for the plane or not, as of beams under a ceiling.
