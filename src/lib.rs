@@ -83,4 +83,6 @@ pub mod transfer;
 
 pub mod plan;
 
+// Its comments become a C header, in which brackets are no links and no tags.
+#[allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
 pub mod ffi;
