@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// Where a focal length came from, best first.
+/// Where a focal length came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FocalSource {
     /// Given by the caller.
@@ -11,6 +11,8 @@ pub enum FocalSource {
     VanishingPoints,
     /// A guess, 0.85 of the image width: the vanishing points do not determine it.
     Assumed,
+    /// Mainly from what the photo's file says: the vanishing points say less.
+    Metadata,
 }
 
 /// Index of a room axis: two horizontal ones and the vertical.

@@ -11,7 +11,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Usual focal length as a share of the image width, and the deviation of its logarithm over photos of rooms.
 const USUAL_FOCAL: f64 = 0.85;
-pub const USUAL_SPREAD: f64 = 0.35;
+const USUAL_SPREAD: f64 = 0.35;
 
 /// The error in radians of an axis that nothing but convention fixes.
 pub const FREE_ERROR: f64 = 0.5;
@@ -21,6 +21,7 @@ pub struct Oriented {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
+    pub expected: Expected,
     /// For each point of the input the axis it became, if any.
     pub axis_of: Vec<Option<usize>>,
 }
@@ -28,8 +29,9 @@ pub struct Oriented {
 /// Names the vanishing points, finds the focal length and makes the axes orthonormal.
 pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -> Oriented {
     let principal = params.principal(width, height);
+    let expected = Expected::new(params, width);
     let orthogonal = &found.points[..found.points.len().min(3)];
-    let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, usual_focal(width));
+    let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, expected);
 
     // Directions in camera space; those far from orthogonal to a better supported one are no room axes.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
@@ -78,35 +80,58 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
         Refined { direction: turned, ..*r }
     };
     let free = [0, 1, 2].map(|axis| named[axis].map(|k| as_axis(&found.free[k], axis)));
-    let squareness = squareness::measure(&free, found.focal, params.focal.is_some(), width);
+    let squareness = squareness::measure(&free, found.focal, params.focal.is_some(), expected);
     let axis_of = (0..found.points.len()).map(|k| named.iter().position(|&n| n == Some(k))).collect();
-    Oriented { perspective, vanishing_points, squareness, axis_of }
+    Oriented { perspective, vanishing_points, squareness, expected, axis_of }
 }
 
-/// The focal length that is expected of a photo of the given width.
-pub fn usual_focal(width: usize) -> f64 {
-    USUAL_FOCAL * width as f64
+/// A focal length before lines are looked at, and the standard deviation of its logarithm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    pub focal: f64,
+    pub spread: f64,
+    source: FocalSource,
 }
 
-/// The focal length: as given, or else from the points and what is usual.
-fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>, usual: f64) -> (f64, FocalSource) {
-    match (given, focal_from_points(points, principal, usual)) {
+impl Expected {
+    /// What the photo's file says, or what is usual of photos of that width.
+    fn new(params: &Params, width: usize) -> Self {
+        match params.expected_focal {
+            Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },
+            None => Self { focal: USUAL_FOCAL * width as f64, spread: USUAL_SPREAD, source: FocalSource::Assumed },
+        }
+    }
+
+    /// Longer by so many standard deviations.
+    pub fn moved(self, deviations: f64) -> Self {
+        Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
+    }
+}
+
+/// The focal length: as given, or else from the points and what is expected.
+fn focal_length(
+    points: &[VanishingPoint],
+    principal: DVec2,
+    given: Option<f64>,
+    expected: Expected,
+) -> (f64, FocalSource) {
+    match (given, focal_from_points(points, principal, expected.focal)) {
         (Some(f), _) => (f, FocalSource::Given),
         (None, Some((log_focal, spread))) => {
-            // The usual focal length is one more observation; it decides only where the points say little.
-            let (a, b) = (spread.powi(-2), USUAL_SPREAD.powi(-2));
-            let focal = ((log_focal * a + usual.ln() * b) / (a + b)).exp();
-            (focal, if a > b { FocalSource::VanishingPoints } else { FocalSource::Assumed })
+            // The expected focal length is one more observation; it decides only where the points say little.
+            let (a, b) = (spread.powi(-2), expected.spread.powi(-2));
+            let focal = ((log_focal * a + expected.focal.ln() * b) / (a + b)).exp();
+            (focal, if a > b { FocalSource::VanishingPoints } else { expected.source })
         }
-        (None, None) => (usual, FocalSource::Assumed),
+        (None, None) => (expected.focal, expected.source),
     }
 }
 
 /// The camera anew from the vanishing points of its axes, of which those without support say nothing.
-pub fn again(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> Perspective {
+pub fn again(camera: &Perspective, points: &[VanishingPoint; 3], expected: Expected) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
-    let (focal, _) = focal_length(&known, camera.principal, given, usual);
+    let (focal, _) = focal_length(&known, camera.principal, given, expected);
     let axes = orthonormal(
         points.each_ref().map(|p| (p.support > 0).then(|| (direction(p.point, camera.principal, focal), p.error))),
     );

@@ -4,7 +4,7 @@
 //! Walls that meet at other angles show here, and so do pixels that are not square and an axis of the lens that is elsewhere than
 //! thought. Not all photos tell: pixels of any shape are right where two directions run along the picture's sides.
 
-use super::camera::{USUAL_SPREAD, usual_focal};
+use super::camera::Expected;
 use super::sphere::Refined;
 use glam::DVec3;
 
@@ -47,21 +47,27 @@ impl Pair {
 /// For each axis the angle between the two others, of directions that point as the axes do; nothing where one of them is unknown.
 ///
 /// `focal` is the one they were found with, in pixels. Unless it was given, each angle is judged under the focal length that the other
-/// angles and photos of that width in general lead one to expect.
-pub fn measure(directions: &[Option<Refined>; 3], focal: f64, is_given: bool, width: usize) -> [Option<Squareness>; 3] {
+/// angles, and what was expected before, lead one to expect.
+pub fn measure(
+    directions: &[Option<Refined>; 3],
+    focal: f64,
+    is_given: bool,
+    expected: Expected,
+) -> [Option<Squareness>; 3] {
     let pair = |beside: usize| {
         let [a, b] = [(beside + 1) % 3, (beside + 2) % 3].map(|k| directions[k].as_ref());
         a.zip(b).map(|(a, b)| Pair::new(beside, a, b))
     };
     let pairs = [0, 1, 2].map(pair);
-    let usual = [USUAL_SPREAD.powi(-2), (usual_focal(width) / focal).ln() * USUAL_SPREAD.powi(-2)];
+    let weight = expected.spread.powi(-2);
+    let before = [weight, (expected.focal / focal).ln() * weight];
     pairs.each_ref().map(|pair| {
         let pair = pair.as_ref()?;
         let [growth, variance] = if is_given {
             [0.0, 0.0]
         } else {
             let others = pairs.iter().flatten().filter(|p| p.beside != pair.beside).map(Pair::of_focal);
-            let [information, pull] = others.fold(usual, |sum, said| [sum[0] + said[0], sum[1] + said[1]]);
+            let [information, pull] = others.fold(before, |sum, said| [sum[0] + said[0], sum[1] + said[1]]);
             [pull / information, 1.0 / information]
         };
         let cosine = (pair.cosine + pair.slope * growth).clamp(-1.0, 1.0);

@@ -1,10 +1,29 @@
 """Arrays in and out: every layout, no copies where none is needed, nothing touched that is not part of the image."""
 
+import struct
 import unittest
 
 from support import Case, context, luxfer, np
 
 from luxfer import _arrays
+
+
+def tiff(picture, pixels, camera=()):
+    """A TIFF file: entries of tag, kind and value, and those of the camera's notes at byte 120, whose fractions follow."""
+
+    def directory(entries, fractions):
+        out = struct.pack("<H", len(entries))
+        for tag, kind, value in entries:
+            if isinstance(value, tuple):
+                fractions.append(struct.pack("<II", *value))
+                value = 176 + 8 * len(fractions)
+            out += struct.pack("<HHII", tag, kind, 1, value)
+        return out
+
+    fractions = []
+    notes = directory(camera, fractions) if camera else b""
+    head = (b"II*\0" + struct.pack("<I", 8) + directory(picture, [])).ljust(120, b"\0") + notes
+    return (head.ljust(184, b"\0") + b"".join(fractions)).ljust(200, b"\0") + pixels
 
 
 class Images(Case):
@@ -84,6 +103,37 @@ class Images(Case):
         image.save(self.folder / "a.png")
         again = luxfer.Image.from_bytes(context(), (self.folder / "a.png").read_bytes())
         np.testing.assert_array_equal(again.numpy(np.uint8, "srgb"), image.numpy(np.uint8, "srgb"))
+
+    def test_formats(self):
+        """Two pixels, red and blue, in formats that are simple enough to be written here."""
+        red, blue = b"\xff\0\0", b"\0\0\xff"
+        files = {
+            "bmp": b"BM" + struct.pack("<IIIIiiHHIIiiII", 62, 0, 54, 40, 2, 1, 1, 24, 0, 8, 0, 0, 0, 0) + red[::-1] + blue[::-1] + b"\0\0",
+            "gif": b"GIF89a" + struct.pack("<HHBBB", 2, 1, 0x80, 0, 0) + red + blue
+            + b"\x2c" + struct.pack("<HHHHB", 0, 0, 2, 1, 0) + b"\x02\x02\x44\x0a\0;",
+            "tif": tiff([(256, 3, 2), (257, 3, 1), (258, 3, 8), (262, 3, 2), (273, 4, 200), (277, 3, 3), (279, 4, 6)], red + blue),
+        }
+        for ending, data in files.items():
+            with self.subTest(ending):
+                (self.folder / f"a.{ending}").write_bytes(data)
+                pixels = luxfer.Image.load(context(), self.folder / f"a.{ending}").numpy()
+                np.testing.assert_array_equal(pixels[0, :, :3], [[1, 0, 0], [0, 0, 1]])
+        for data, name in ((b"\0\0\0\x1cftypavif", "AVIF"), (b"\0\0\0\x18ftypheic", "HEIC"), (b"\xff\x0a", "JPEG XL")):
+            with self.assertRaisesRegex(luxfer.Unsupported, f"{name}.*convert it to JPEG"):
+                luxfer.Image.from_bytes(context(), data)
+
+    def test_metadata(self):
+        picture = [(256, 3, 2), (257, 3, 1), (258, 3, 8), (262, 3, 1), (273, 4, 200), (274, 3, 8), (279, 4, 2), (0x8769, 4, 120)]
+        camera = [(0x829A, 5, (1, 50)), (0x829D, 5, (2, 1)), (0x8827, 3, 100), (0xA405, 3, 36)]
+        photo = luxfer.Image.from_bytes(context(), tiff(picture, b"\0\xff", camera))
+        self.assertEqual(photo.numpy().tolist(), [[[1.0]], [[0.0]]])
+        known = photo.metadata
+        self.assertEqual((known.orientation, known.f_number, known.exposure_time, known.iso), (8, 2, 0.02, 100))
+        self.assertAlmostEqual(known.focal, 36 * 5**0.5 / np.hypot(36, 24))
+        self.assertAlmostEqual(known.white_luminance, 240)
+        self.assertLess(known.white_luminance_low, 240)
+        nothing = luxfer.Image(context(), np.zeros((2, 2))).metadata
+        self.assertEqual((nothing.orientation, nothing.focal, nothing.white_luminance), (1, 0, 0))
 
     def test_many_channels(self):
         photo = luxfer.Image(context(), np.random.default_rng(3).random((24, 32, 3)))
