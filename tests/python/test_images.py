@@ -135,6 +135,30 @@ class Images(Case):
         nothing = luxfer.Image(context(), np.zeros((2, 2))).metadata
         self.assertEqual((nothing.orientation, nothing.focal, nothing.white_luminance), (1, 0, 0))
 
+    def test_the_focal_length_of_a_file_is_used_where_lines_do_not_tell_it(self):
+        """A corridor seen straight along: boxes within boxes, and lines that meet in the middle."""
+        width, height = 360, 240
+        x, y = (np.arange(n) - (n - 1) / 2 for n in (width, height))
+        depth = np.maximum(abs(x)[None] / width, abs(y)[:, None] / height)
+        boxes = (np.log2(depth + 0.02) * 3).astype(int) % 2
+        sides = (np.arctan2(y[:, None] * width, x[None] * height) * 12 / np.pi).astype(int) % 2
+        pixels = (60 + 60 * boxes + 100 * sides).astype(np.uint8)
+        picture = [(256, 3, width), (257, 3, height), (258, 3, 8), (262, 3, 1), (273, 4, 200), (279, 4, pixels.size), (0x8769, 4, 120)]
+        photo = luxfer.Image.from_bytes(context(), tiff(picture, pixels.tobytes(), [(0xA405, 3, 50)]))
+        focal = photo.metadata.focal
+        self.assertAlmostEqual(focal, 50 * np.hypot(width, height) / np.hypot(36, 24))
+        scene = luxfer.Scene.demo(context(), "target-room")
+        whole = luxfer.Transfer(context(), photo, scene, "Ceiling").run(last="view").view
+        for view in (luxfer.Rectify(context(), photo).run().report, whole):
+            self.assertEqual(view.focal_source, luxfer.types.FocalSource.FROM_METADATA)
+            self.assertLess(abs(view.focal / focal - 1), 0.05)
+        self.assertEqual(luxfer.Rectify(context(), photo.numpy()).run().report.focal_source, luxfer.types.FocalSource.ASSUMED)
+        for view in (
+            luxfer.Rectify(context(), photo).run(focal=300).report,
+            luxfer.Transfer(context(), photo, scene, "Ceiling").run(last="view", rectify={"focal": 300}).view,
+        ):
+            self.assertEqual((view.focal, view.focal_source), (300, luxfer.types.FocalSource.GIVEN))
+
     def test_many_channels(self):
         photo = luxfer.Image(context(), np.random.default_rng(3).random((24, 32, 3)))
         channels = luxfer.Features(context(), photo).run().image().numpy()
