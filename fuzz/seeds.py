@@ -56,6 +56,83 @@ def jpeg(channels: int) -> bytes:
     return b"\xff\xd8" + segment(0xDB, bytes([0, *[1] * 64])) + frame + tables + segment(0xDA, scan) + bytes(3 * channels) + b"\xff\xd9"
 
 
+def notes(orientation: int) -> bytes:
+    """EXIF: a photo held on its side, and its exposure."""
+    camera = [(0x829A, 5, 68), (0x829D, 5, 76), (0x8827, 3, 100), (0xA405, 3, 26)]
+    picture = [(0x0112, 3, orientation), (0x8769, 4, 84)]
+    first, second = (struct.pack("<H", len(e)) + b"".join(struct.pack("<HHII", t, k, 1, v) for t, k, v in e) for e in (picture, camera))
+    return (b"II*\0\x08\0\0\0" + first).ljust(68, b"\0") + struct.pack("<IIII", 1, 50, 28, 10) + second
+
+
+def tiff(samples: int, bits: int, photometric: int, compression: int = 1, predictor: int = 1, tile: int = 0, planar: int = 1) -> bytes:
+    """Four pixels square, in strips of two rows or in tiles, with colours for a palette; floating point if of 32 bits."""
+    row = bytes(range(-(-4 * samples * bits // 8 // (samples if planar == 2 else 1))))
+    rows = tile or 2
+    pixels = row * rows * (tile // 4 if tile else 1)
+    literal = b"".join(bytes([len(pixels[i : i + 99]) - 1]) + pixels[i : i + 99] for i in range(0, len(pixels), 99))
+    # LZW: clear, a code for each byte, the end; all of nine bits.
+    codes = "".join(f"{code:09b}" for code in (256, *pixels[:200], 257))
+    lzw = int(codes.ljust(-(-len(codes) // 8) * 8, "0"), 2).to_bytes(-(-len(codes) // 8), "big")
+    packed = {1: pixels, 5: lzw, 8: zlib.compress(pixels), 32773: literal}[compression]
+    count = (1 if tile else 2) * (samples if planar == 2 else 1)
+    fields = {256: 4, 257: 4, 258: bits, 259: compression, 262: photometric, 274: 6, 277: samples, 284: planar, 317: predictor}
+    fields |= {322: tile, 323: tile} if tile else {278: rows}
+    fields |= {339: 3 if bits == 32 else 1} | ({338: 2} if samples in (2, 4) and photometric != 5 else {})
+    # What is too long for an entry follows the directory, then the pixels.
+    tail = 8 + 2 + 12 * (len(fields) + 2 + (photometric == 3)) + 4
+    start = tail + (8 * count if count > 1 else 0) + (6 << bits if photometric == 3 else 0)
+    lists = {
+        324 if tile else 273: (4, [start + k * len(packed) for k in range(count)]),
+        325 if tile else 279: (4, [len(packed)] * count),
+    } | ({320: (3, range(0, 3 << bits))} if photometric == 3 else {})
+    entries, more = {tag: struct.pack("<HHIHxx", tag, 3, 1, value) for tag, value in fields.items()}, b""
+    for tag, (kind, values) in lists.items():
+        content = b"".join(struct.pack("<I" if kind == 4 else "<H", value) for value in values)
+        is_inline = len(content) <= 4
+        place = content if is_inline else struct.pack("<I", tail + len(more))
+        entries[tag] = struct.pack("<HHI", tag, kind, len(values)) + place
+        more += b"" if is_inline else content
+    directory = struct.pack("<H", len(entries)) + b"".join(entries[tag] for tag in sorted(entries)) + bytes(4)
+    return b"II*\0\x08\0\0\0" + directory + more + packed * count
+
+
+def bmp(bits: int) -> bytes:
+    palette = bytes(4 << bits) if bits <= 8 else b""
+    row = -(-4 * bits // 32) * 4
+    head = struct.pack("<IiiHHIIiiII", 40, 4, 4, 1, bits, 0, 4 * row, 0, 0, 0, 0)
+    return b"BM" + struct.pack("<III", 54 + len(palette) + 4 * row, 0, 54 + len(palette)) + head + palette + bytes(range(4 * row))
+
+
+def gif(interlaced: int = 0) -> bytes:
+    """Two pixels of two colours behind a comment."""
+    head = b"GIF89a" + struct.pack("<HHBBB", 2, 1, 0x80, 0, 0) + bytes(range(6)) + b"\x21\xfe\x01a\0\x21\xf9\x04\x01\0\0\1\0"
+    return head + b"\x2c" + struct.pack("<HHHHB", 0, 0, 2, 1, interlaced << 6) + b"\x02\x02\x44\x0a\0;"
+
+
+def webp(extended: bool) -> bytes:
+    """A black pixel without loss: every code has one symbol."""
+    pixel = b"\x2f\0\0\0\x10\x07\x10\x11\x11\x88\x88\xfe\x07"
+
+    def chunk(name: bytes, content: bytes) -> bytes:
+        return name + struct.pack("<I", len(content)) + content + bytes(len(content) % 2)
+
+    chunks = chunk(b"VP8L", pixel)
+    if extended:
+        chunks = chunk(b"VP8X", b"\x08\0\0\0" + bytes(6)) + chunks + chunk(b"EXIF", notes(8))
+    return b"RIFF" + struct.pack("<I", len(chunks) + 4) + b"WEBP" + chunks
+
+
+def photos() -> list[bytes]:
+    """Pictures with notes of a camera, and formats of photos beside PNG and JPEG."""
+    exif = b"Exif\0\0" + notes(6)
+    plain = jpeg(3)
+    camera = plain[:2] + struct.pack(">BBH", 0xFF, 0xE1, len(exif) + 2) + exif + plain[2:]
+    kinds = [(1, 1, 0), (1, 4, 3), (1, 8, 1), (3, 8, 2), (4, 8, 5), (4, 16, 2), (3, 32, 2)]
+    tiffs = [tiff(*kind, compression) for kind in kinds for compression in (1, 5, 8, 32773)]
+    tiffs += [tiff(3, 8, 2, 8, 2, 16), tiff(3, 16, 2, 5, 2), tiff(3, 32, 2, 8, 3), tiff(3, 8, 2, 1, 1, 0, 2), tiff(3, 16, 2, 1, 1, 16, 2)]
+    return [camera, *tiffs, *map(bmp, (1, 4, 8, 16, 24, 32)), gif(), gif(1), webp(False), webp(True)]
+
+
 def rasters() -> list[bytes]:
     kinds = [(1, 0), (8, 0), (16, 0), (8, 2), (16, 2), (2, 3), (8, 3), (8, 4), (16, 4), (8, 6), (16, 6)]
     head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n"
@@ -167,6 +244,11 @@ MORE = {"sparse", "matrix", "children", "KHR_materials_unlit", "EXT_lights_ies",
 #: 1, infinity and not a number, in 32 and 64 bits.
 NUMBERS = [rf"\x00\x00{end}" for end in (r"\x80\x3f", r"\x80\x7f", r"\xc0\x7f", r"\xf0\x3f", r"\xf0\x7f", r"\xf8\x7f")]
 
+PNG_WORDS = ["IHDR", "PLTE", "tRNS", "IDAT", "IEND", "gAMA", "iCCP", "fdAT", "eXIf"]
+JPEG_WORDS = ["\\xff\\xc4", "\\xff\\xdb", "\\xff\\xdd", "\\xff\\xe1", "Exif"]
+RIFF_WORDS = ["VP8 ", "VP8L", "VP8X", "ALPH", "ANIM", "ANMF", "EXIF"]
+IMAGE_WORDS = [*PNG_WORDS, *JPEG_WORDS, *RIFF_WORDS, "II*", "MM", "BM", "GIF89a", "NETSCAPE2.0"]
+
 EXPRESSIONS = ["L.*E", "LDE", "L<.D>E", "C<RS>[DG]*L", "L(D|S){1,2}E", "L[^S]+E", "C.*<L.>", "L<RD'Floor'>?E", "(L|O).*E"]
 STROKES = ["plane 2 5 5 9 9\nnot-plane 1.5 40 2 42 20\n", "light 2 5 5\n# a remark\nnot-light 3 1e1 -3 7 7 250 9\n"]
 
@@ -190,7 +272,7 @@ def seeds() -> dict[str, tuple[list[bytes], list[str]]]:
     nets = networks()
     programs = [calls.Program().encode(program) for program in scenarios.programs().values()]
     return {
-        "image": (rasters(), ["IHDR", "PLTE", "tRNS", "IDAT", "IEND", "gAMA", "iCCP", "fdAT", "\\xff\\xc4", "\\xff\\xdb", "\\xff\\xdd"]),
+        "image": (rasters() + photos(), IMAGE_WORDS),
         "exr": (layered(context), ["channels", "compression", "dataWindow", "tiles", "chunkCount", "box2i", "scanlineimage", "tiledesc"]),
         "gltf": ([glb, as_text(glb)], [f'\\"{word}\\"' for word in sorted(words(tree) | MORE)]),
         "ies": ([text.encode() for text in IES], ["TILT=NONE", "TILT=INCLUDE", "IESNA:LM-63-1986", "[LUMCAT]"]),

@@ -20,6 +20,7 @@ const GROUPS: &[&str] = &[
     "status",
     "context",
     "image",
+    "photo",
     "job",
     "scene",
     "scene_materials",
@@ -338,6 +339,8 @@ layouts! {
     luxfer_context_params: struct_size num_threads memory_budget_mib;
     luxfer_image_view: struct_size channels sample colour_space width height flags reserved pixel_stride row_stride
         byte_size data;
+    luxfer_photo_metadata: struct_size orientation focal focal_error f_number exposure_time iso white_luminance
+        white_luminance_low white_luminance_high;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area bent;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior

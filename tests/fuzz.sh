@@ -5,8 +5,9 @@
 #
 #   tests/fuzz.sh [SECONDS] [TARGET...]     default 600, and all targets in turn
 #
-# image: PNG, JPEG, Radiance HDR; exr; gltf: GLB and glTF; ies, ldt: luminaires; onnx: networks, which are run; lpe: light path expressions,
-# rendered by; strokes; part: parts of a rendering, merged; calls: sequences of calls to all functions of the header.
+# image: PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR, and what cameras write into them; exr; gltf: GLB and glTF; ies, ldt:
+# luminaires; onnx: networks, which are run; lpe: light path expressions, rendered by; strokes; part: parts of a rendering, merged;
+# calls: sequences of calls to all functions of the header.
 #
 # Corpora grow in target/fuzz/corpus from one run to the next. What fails is in target/fuzz/artifacts; to see it again, and to cut it down:
 #

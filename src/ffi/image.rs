@@ -11,6 +11,7 @@ use super::params::{self, Versioned};
 use super::pointer::{Out, bytes, bytes_mut, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
+use crate::image::photo::PhotoMetadata;
 use crate::image::view::{ColourSpace, Layout, Sample};
 use crate::image::{Image, io, view};
 use std::ffi::{c_char, c_void};
@@ -138,6 +139,7 @@ fn colour_space(name: &str, value: luxfer_colour_space) -> Result<ColourSpace> {
 pub(super) struct Pixels {
     context: Arc<Context>,
     source: Source,
+    metadata: PhotoMetadata,
 }
 
 /// Who owns the pixels.
@@ -183,9 +185,14 @@ impl Pixels {
         }
     }
 
+    /// What the file of a loaded photo says of its camera.
+    pub(super) fn metadata(&self) -> &PhotoMetadata {
+        &self.metadata
+    }
+
     /// Pixels of the caller's, counted in the budget.
-    fn own(context: &Arc<Context>, image: Image, charge: Charge) -> Arc<Self> {
-        Arc::new(Self { context: context.clone(), source: Source::Own(Arc::new(image), charge) })
+    fn own(context: &Arc<Context>, image: Image, charge: Charge, metadata: PhotoMetadata) -> Arc<Self> {
+        Arc::new(Self { context: context.clone(), source: Source::Own(Arc::new(image), charge), metadata })
     }
 
     /// An image that the library makes at the caller's request, counted in the budget before it is made.
@@ -197,7 +204,7 @@ impl Pixels {
         make: impl FnOnce() -> Result<Image>,
     ) -> Result<Arc<Self>> {
         let charge = context.charge(cost(width, height, channels))?;
-        Ok(Self::own(context, make()?, charge))
+        Ok(Self::own(context, make()?, charge, PhotoMetadata::default()))
     }
 
     /// An image inside a result, shared with it.
@@ -207,7 +214,8 @@ impl Pixels {
         pick: impl Fn(&O) -> &Image + Send + Sync + 'static,
     ) -> Arc<Self> {
         let holder = Part { output, pick };
-        Arc::new(Self { context: context.clone(), source: Source::Result(Arc::new(holder)) })
+        let source = Source::Result(Arc::new(holder));
+        Arc::new(Self { context: context.clone(), source, metadata: PhotoMetadata::default() })
     }
 
     /// An input that may be left out.
@@ -256,16 +264,20 @@ pub unsafe extern "C" fn luxfer_image_create(
         let layout = view.layout()?;
         let pixels = bytes(view.data.cast(), view.byte_size, "view.data")?;
         let charge = context.charge(cost(layout.width, layout.height, layout.channels))?;
-        out.set(handle::give(Pixels::own(context, view::read(layout, pixels)?, charge)));
+        out.set(handle::give(Pixels::own(context, view::read(layout, pixels)?, charge, PhotoMetadata::default())));
         Ok(())
     })
 }
 
-/// Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space is the encoding of integer samples:
-/// LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; floating-point samples are
-/// always linear. The caller releases *image. Any thread.
-/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if an
-/// OpenEXR file has neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, upright: a photo that its
+/// camera stored on its side is turned, see luxfer_image_get_metadata. path is UTF-8. colour_space is the encoding of
+/// integer samples: LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth;
+/// floating-point samples are always linear. Colour profiles (ICC) are not applied. Grey with alpha becomes RGBA,
+/// palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any thread.
+/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if it
+/// is of a format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of cameras, a TIFF
+/// with JPEG compression), or an OpenEXR file with neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond
+/// the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_load(
     context: *mut luxfer_context,
@@ -312,7 +324,8 @@ fn encoding(value: luxfer_colour_space) -> Result<io::Encoding> {
 fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Result<Arc<Pixels>> {
     let (width, height, channels) = io::probe(bytes)?;
     let charge = context.charge(cost(width, height, channels))?;
-    Ok(Pixels::own(context, io::decode(bytes, encoding)?, charge))
+    let photo = io::decode_photo(bytes, encoding)?;
+    Ok(Pixels::own(context, photo.image, charge, photo.metadata))
 }
 
 /// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure

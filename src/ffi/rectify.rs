@@ -55,6 +55,8 @@ pub const LUXFER_FOCAL_GIVEN: luxfer_focal_source = 0;
 pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
 /// Assumed: 0.85 times the width of the photo.
 pub const LUXFER_FOCAL_ASSUMED: luxfer_focal_source = 2;
+/// Mainly from what the photo's file says; see luxfer_image_get_metadata.
+pub const LUXFER_FOCAL_FROM_METADATA: luxfer_focal_source = 3;
 
 /// An image of a rectification: a LUXFER_RECTIFY_ value.
 pub type luxfer_rectify_image = i32;
@@ -78,7 +80,8 @@ pub struct luxfer_rectify_params {
     /// Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2], for
     /// LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
     pub hough_band: f64,
-    /// Focal length in pixels, > 0; 0, the default: unknown.
+    /// Focal length in pixels, > 0; 0, the default: estimated from the lines, and from the photo's metadata if it has
+    /// any.
     pub focal: f64,
     /// Principal point in pixels; NaN, the default: the image's centre.
     pub principal: [f64; 2],
@@ -152,6 +155,7 @@ impl luxfer_rectify_params {
             metric,
             hough_band: self.hough_band,
             focal: (self.focal != 0.0).then_some(self.focal),
+            expected_focal: None,
             principal: (!x.is_nan() || !y.is_nan()).then_some(DVec2::new(x, y)),
             seed: self.seed,
         };
@@ -256,6 +260,7 @@ impl luxfer_rectify_report {
                 FocalSource::Given => LUXFER_FOCAL_GIVEN,
                 FocalSource::VanishingPoints => LUXFER_FOCAL_FROM_VANISHING_POINTS,
                 FocalSource::Assumed => LUXFER_FOCAL_ASSUMED,
+                FocalSource::Metadata => LUXFER_FOCAL_FROM_METADATA,
             },
             focal: camera.focal,
             principal: camera.principal.to_array(),
@@ -371,6 +376,7 @@ pub unsafe extern "C" fn luxfer_rectify_start(
         need(&stage.inputs().photo, "luxfer_rectify_set_photo")?;
         stage.start(job, move |inputs, stage, job| {
             let photo = need(&inputs.photo, "luxfer_rectify_set_photo")?;
+            let params = rectify::Params { expected_focal: photo.metadata().expected_focal(), ..params };
             let known = stage.output().ok().filter(|o| Arc::ptr_eq(&o.found_in, photo) && o.found_with == params);
             let view = match known {
                 Some(output) => output.view.clone(),

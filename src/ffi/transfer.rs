@@ -187,6 +187,7 @@ impl Inputs {
         };
         Ok(transfer::Input {
             photo: self.photo.as_ref().map(|photo| photo.shared()).transpose()?,
+            photo_focal: self.photo.as_ref().and_then(|photo| photo.metadata().expected_focal()),
             depth,
             strokes: self.strokes.clone(),
             texture: self.texture.as_ref().map(|texture| texture.shared()).transpose()?,

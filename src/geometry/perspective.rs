@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// Origin of a focal length, most reliable first.
+/// Origin of a focal length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FocalSource {
     /// Given by the caller.
@@ -11,6 +11,8 @@ pub enum FocalSource {
     VanishingPoints,
     /// Assumed as 0.85 of the image width, because the vanishing points do not determine it.
     Assumed,
+    /// Mainly from what the photo's file says: the vanishing points say less.
+    Metadata,
 }
 
 /// Indices of the room axes: two horizontal ones and the vertical.

@@ -1,24 +1,29 @@
-//! Image files: PNG, JPEG, Radiance HDR and OpenEXR in; PNG and OpenEXR out. The only user of `image` and `exr`.
+//! Picture files: PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR in; PNG and OpenEXR out. With `raster` and `samples` the
+//! only user of `image` and `exr`.
 //!
-//! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it.
+//! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it. Colour profiles (ICC) are not
+//! applied: integers are taken as sRGB, or as they are. So the saturated colours of a photo in Display P3 or Adobe RGB come out
+//! paler than they were; greys, and light near white, do not change.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
+use crate::image::colour::linear_to_srgb;
+use crate::image::format::Format;
+use crate::image::photo::{self, Orientation, PhotoMetadata};
 use crate::image::samples::Largest;
-use crate::image::{Image, MAX_SIDE, room, try_collect, try_vec, try_with_capacity};
+use crate::image::{Image, MAX_SIDE, raster, room, tiff, try_collect, try_with_capacity};
 use exr::prelude as ex;
-use image::{ImageDecoder, ImageFormat, ImageReader};
+use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
 
 /// Largest image a file may hold: 2^28 pixels, a 16 k square.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
-const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+pub(super) const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// No compression of an OpenEXR file that can be read makes samples more times shorter (deflate: 1032, once PXR24 has left out a
-/// quarter).
-const DENSEST: usize = 1400;
+/// No compression of an OpenEXR or TIFF file that can be read makes samples more times shorter (deflate: 1032, once PXR24 has left
+/// out a quarter; LZW: 1330).
+pub(super) const DENSEST: usize = 1400;
 
 /// Bytes of a tile that any file may have.
 const LARGEST_TILE: usize = 64 << 20;
@@ -31,9 +36,16 @@ pub enum Encoding {
     Linear,
 }
 
-/// Reads a file with 1, 3 or 4 channels, as linear values.
+/// A picture that stands upright, and what its file says of the camera.
+#[derive(Clone, Debug)]
+pub struct Photo {
+    pub image: Image,
+    pub metadata: PhotoMetadata,
+}
+
+/// Reads a file with 1, 3 or 4 channels, as linear values, upright.
 pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
-    decode(&read_file(path)?, encoding).map_err(|e| e.within(path.display()))
+    decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.within(path.display()))
 }
 
 /// Reads a whole file.
@@ -45,108 +57,51 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>> {
     })
 }
 
-/// Reads an image file held in memory.
+/// Reads a picture file held in memory, its rows and columns as they are stored.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
-    if bytes.starts_with(&EXR_MAGIC) { decode_exr(bytes) } else { decode_raster(bytes, encoding) }
+    decode_turned(bytes, encoding, Orientation::UPRIGHT)
 }
 
-/// Width, height and largest number of channels of an image file, from its header alone: what decoding it will need.
-pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
-    if bytes.starts_with(&EXR_MAGIC) {
-        let headers = exr_headers(bytes)?;
-        let size = headers.iter().map(|h| (h.layer_size.0, h.layer_size.1, h.channels.list.len().min(4)));
-        return size.max_by_key(|s| s.0 * s.1 * s.2).ok_or_else(|| Error::format("the OpenEXR file has no layers"));
+/// Reads a picture file held in memory, and puts it upright by what the camera wrote into it.
+pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
+    let exif = match Format::of(bytes)? {
+        Format::Exr => photo::Exif::default(),
+        Format::Tiff | Format::Raster(_) => photo::read(bytes),
+    };
+    let image = decode_turned(bytes, encoding, exif.orientation)?;
+    let metadata = PhotoMetadata::new(&exif, image.width, image.height);
+    Ok(Photo { image, metadata })
+}
+
+fn decode_turned(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
+    match Format::of(bytes)? {
+        Format::Exr => decode_exr(bytes),
+        Format::Tiff => tiff::decode(bytes, encoding, orientation),
+        Format::Raster(format) => raster::decode(bytes, format, encoding, orientation),
     }
-    let (_, decoder) = raster_decoder(bytes)?;
-    let (width, height) = decoder.dimensions();
-    Ok((width as usize, height as usize, usize::from(decoder.color_type().channel_count())))
 }
 
-fn check_size(width: u64, height: u64) -> Result<()> {
+/// Width, height and largest number of channels of a picture file, from its header alone: what decoding it will need. The sides are
+/// those of the stored picture, not of the upright one.
+pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
+    match Format::of(bytes)? {
+        Format::Exr => {
+            let headers = exr_headers(bytes)?;
+            let size = headers.iter().map(|h| (h.layer_size.0, h.layer_size.1, h.channels.list.len().min(4)));
+            size.max_by_key(|s| s.0 * s.1 * s.2).ok_or_else(|| Error::format("the OpenEXR file has no layers"))
+        }
+        Format::Tiff => tiff::probe(bytes),
+        Format::Raster(format) => raster::probe(bytes, format),
+    }
+}
+
+pub(super) fn check_size(width: u64, height: u64) -> Result<()> {
     if width == 0 || height == 0 || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {
         return Err(Error::format(format!(
             "the header says {width} x {height} pixels; sides must lie in [1, {MAX_SIDE}] and the area in [1, {MAX_PIXELS}]"
         )));
     }
     Ok(())
-}
-
-fn raster_decoder(bytes: &[u8]) -> Result<(ImageFormat, impl ImageDecoder + '_)> {
-    let format = image::guess_format(bytes)
-        .map_err(|_| Error::format("not a PNG, JPEG, Radiance HDR or OpenEXR file".to_string()))?;
-    if format == ImageFormat::Png {
-        check_chunks(bytes)?;
-    }
-    let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(broken_raster)?;
-    let (width, height) = decoder.dimensions();
-    check_size(width.into(), height.into())?;
-    Ok((format, decoder))
-}
-
-/// The decoder takes for granted that a PNG's palette holds whole colours, and takes memory for other chunks as they come.
-fn check_chunks(bytes: &[u8]) -> Result<()> {
-    let mut chunks = bytes.get(8..).unwrap_or_default();
-    while let Some((&[a, b, c, d, ref name @ ..], rest)) = chunks.split_first_chunk::<8>() {
-        let length = u32::from_be_bytes([a, b, c, d]) as usize;
-        if name == b"PLTE" && !(length % 3 == 0 && (1..=256).contains(&(length / 3))) {
-            return Err(Error::format(format!(
-                "the PNG's palette has {length} bytes; it must hold 1 to 256 colours of 3"
-            )));
-        }
-        room::check_chunk(name, length.min(rest.len()))?;
-        // Beyond its content lie four bytes of a checksum.
-        chunks = rest.get(length.saturating_add(4)..).unwrap_or_default();
-    }
-    Ok(())
-}
-
-fn broken_raster(e: image::ImageError) -> Error {
-    if let image::ImageError::IoError(io) = &e
-        && io.kind() == std::io::ErrorKind::OutOfMemory
-    {
-        return Error::new(ErrorKind::OutOfMemory, "could not allocate memory to decode the file");
-    }
-    Error::format(format!("the file cannot be decoded: {e}"))
-}
-
-fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
-    let (format, decoder) = raster_decoder(bytes)?;
-    let (width, height) = decoder.dimensions();
-    let colour = decoder.color_type();
-    let mut raw = try_vec(usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX), 0u8)?;
-    room::check_pixels(format, width as usize, height as usize, usize::from(colour.bytes_per_pixel()))?;
-    decoder.read_image(&mut raw).map_err(broken_raster)?;
-
-    // Grey with alpha becomes RGBA.
-    let given = usize::from(colour.channel_count());
-    let channels = if given == 2 { 4 } else { given };
-    let mut out = Image::new(width as usize, height as usize, channels)?;
-    let mut fill = |value: &dyn Fn(usize, bool) -> f32| {
-        for (i, pixel) in out.data.chunks_exact_mut(channels).enumerate() {
-            for (c, sample) in pixel.iter_mut().enumerate() {
-                let from = if given == 2 { c / 3 } else { c };
-                *sample = value(i * given + from, c == 3);
-            }
-        }
-    };
-    // Integers in sRGB decode through a table or the curve; everything else is scaled only.
-    let is_curved = encoding == Encoding::Srgb && format != ImageFormat::Hdr;
-    let curve = |v: f32, is_alpha: bool| if is_curved && !is_alpha { srgb_to_linear(v) } else { v };
-    match usize::from(colour.bytes_per_pixel()) / given {
-        1 => {
-            let linear: [f32; 256] = std::array::from_fn(|i| i as f32 / 255.0);
-            let table = if is_curved { srgb8_table() } else { linear };
-            fill(&|i, is_alpha| (if is_alpha { &linear } else { &table })[usize::from(raw[i])]);
-        }
-        2 => fill(&|i, is_alpha| curve(f32::from(sample(&raw, i, u16::from_ne_bytes)) / 65_535.0, is_alpha)),
-        _ => fill(&|i, is_alpha| curve(sample(&raw, i, f32::from_ne_bytes), is_alpha)),
-    }
-    Ok(out)
-}
-
-/// The sample of a number of bytes at an index.
-fn sample<const N: usize, T>(raw: &[u8], index: usize, of: fn([u8; N]) -> T) -> T {
-    of(std::array::from_fn(|k| raw[index * N + k]))
 }
 
 pub(super) fn broken_exr(e: exr::error::Error) -> Error {

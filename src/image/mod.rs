@@ -6,14 +6,19 @@
 
 mod buffer;
 pub mod colour;
+mod containers;
+mod format;
 pub mod io;
 pub mod numbers;
 pub(crate) mod pages;
 pub mod patches;
+pub mod photo;
 mod planes;
 pub mod pyramid;
+mod raster;
 mod room;
 mod samples;
+mod tiff;
 pub mod view;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};

@@ -1,7 +1,8 @@
 //! Memory that codecs of others take, and without which they would end the process: asked for before they run.
 //!
-//! The bounds are of what the crates `png`, `zune-jpeg` and `exr` allocate beside what they are given.
+//! The bounds are of what the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr` allocate beside what they are given.
 
+use super::containers::riff_chunks;
 use super::no_memory;
 use crate::error::Result;
 use crate::reserve;
@@ -15,13 +16,40 @@ fn check(bytes: usize) -> Result<()> {
     if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 
-/// For the pixels of a PNG, JPEG or Radiance HDR file.
-pub(super) fn check_pixels(format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> Result<()> {
+/// For the pixels of a file of the crate `image`, which have memory themselves.
+pub(super) fn check_pixels(
+    file: &[u8],
+    format: ImageFormat,
+    width: usize,
+    height: usize,
+    pixel_bytes: usize,
+) -> Result<()> {
     check(match format {
         // Of progressive ones the coefficients of four components, two bytes each, in blocks of up to 32 pixels; a row of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
+        ImageFormat::WebP => webp(file, width, height),
+        // The frame, where it is not as wide as the screen; LZW.
+        ImageFormat::Gif => 5 * width * height + (1 << 20),
         _ => 16 * width * pixel_bytes + (1 << 20),
     })
+}
+
+/// For a WebP's pixels beside the picture itself.
+fn webp(file: &[u8], width: usize, height: usize) -> usize {
+    let has = |wanted: &[u8; 4]| riff_chunks(file).any(|(name, _)| name == wanted);
+    // Of lossy ones Y, U and V in blocks of 16, and the file's partitions, of which one may lie about its 2^24 bytes.
+    let lossy = 2 * (width + 16) * (height + 16) + 3 * file.len() + (17 << 20);
+    if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {
+        return lossy;
+    }
+    // RGBA, of moving pictures twice; transforms and the choice of codes for blocks of 4 x 4 pixels; codes, of which the shortest that
+    // have a table of 4 KiB take 12 bytes of the file.
+    11 * width * height + 400 * file.len() + lossy
+}
+
+/// For the decompressors of a TIFF's pixels.
+pub(super) fn check_unpacking() -> Result<()> {
+    check(1 << 20)
 }
 
 /// For a chunk of a PNG file beside its pixels. The pixels' are read bit by bit, a colour profile is unpacked, up to the limit

@@ -22,6 +22,8 @@ pub struct Oriented {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
+    /// The focal length before the lines were looked at.
+    pub expected: Expected,
     /// For each input point, the index of the axis it became, if any.
     pub axis_of: Vec<Option<usize>>,
 }
@@ -29,8 +31,9 @@ pub struct Oriented {
 /// Assigns the vanishing points to room axes, estimates the focal length and makes the axes orthonormal.
 pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -> Oriented {
     let principal = params.principal(width, height);
+    let expected = Expected::new(params, width);
     let orthogonal = &found.points[..found.points.len().min(3)];
-    let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, usual_focal(width));
+    let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, expected);
 
     // Drop directions far from orthogonal to a better supported direction: they are not room axes.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
@@ -80,36 +83,59 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
         Refined { direction: turned, ..*r }
     };
     let free = [0, 1, 2].map(|axis| named[axis].map(|k| as_axis(&found.free[k], axis)));
-    let squareness = squareness::measure(&free, found.focal, params.focal.is_some(), width);
+    let squareness = squareness::measure(&free, found.focal, params.focal.is_some(), expected);
     let axis_of = (0..found.points.len()).map(|k| named.iter().position(|&n| n == Some(k))).collect();
-    Oriented { perspective, vanishing_points, squareness, axis_of }
+    Oriented { perspective, vanishing_points, squareness, expected, axis_of }
 }
 
-/// The prior focal length in pixels of a photo of the given width.
-pub fn usual_focal(width: usize) -> f64 {
-    USUAL_FOCAL * width as f64
+/// The prior of a focal length, in pixels, and the standard deviation of its logarithm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    pub focal: f64,
+    pub spread: f64,
+    source: FocalSource,
+}
+
+impl Expected {
+    /// From the photo's metadata, or else the prior of photos of that width.
+    fn new(params: &Params, width: usize) -> Self {
+        match params.expected_focal {
+            Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },
+            None => Self { focal: USUAL_FOCAL * width as f64, spread: USUAL_SPREAD, source: FocalSource::Assumed },
+        }
+    }
+
+    /// Longer by the given number of standard deviations.
+    pub fn moved(self, deviations: f64) -> Self {
+        Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
+    }
 }
 
 /// The focal length in pixels: the given one, or else an estimate from the points and the prior.
-fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>, usual: f64) -> (f64, FocalSource) {
-    match (given, focal_from_points(points, principal, usual)) {
+fn focal_length(
+    points: &[VanishingPoint],
+    principal: DVec2,
+    given: Option<f64>,
+    expected: Expected,
+) -> (f64, FocalSource) {
+    match (given, focal_from_points(points, principal, expected.focal)) {
         (Some(f), _) => (f, FocalSource::Given),
         (None, Some((log_focal, spread))) => {
             // Combine with the prior by inverse variance; the prior decides only where the points constrain the focal
             // length weakly.
-            let (a, b) = (spread.powi(-2), USUAL_SPREAD.powi(-2));
-            let focal = ((log_focal * a + usual.ln() * b) / (a + b)).exp();
-            (focal, if a > b { FocalSource::VanishingPoints } else { FocalSource::Assumed })
+            let (a, b) = (spread.powi(-2), expected.spread.powi(-2));
+            let focal = ((log_focal * a + expected.focal.ln() * b) / (a + b)).exp();
+            (focal, if a > b { FocalSource::VanishingPoints } else { expected.source })
         }
-        (None, None) => (usual, FocalSource::Assumed),
+        (None, None) => (expected.focal, expected.source),
     }
 }
 
 /// Re-estimates the camera from the vanishing points of its axes, ignoring points without support.
-pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> Perspective {
+pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: Expected) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
-    let (focal, _) = focal_length(&known, camera.principal, given, usual);
+    let (focal, _) = focal_length(&known, camera.principal, given, expected);
     let axes = orthonormal(
         points.each_ref().map(|p| (p.support > 0).then(|| (direction(p.point, camera.principal, focal), p.error))),
     );

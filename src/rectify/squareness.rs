@@ -4,7 +4,7 @@
 //! Walls at other angles show here; so do non-square pixels and a wrong principal point. Some photos cannot reveal
 //! this: where two directions run parallel to the image sides, any pixel aspect ratio is consistent.
 
-use super::camera::{USUAL_SPREAD, usual_focal};
+use super::camera::Expected;
 use super::sphere::Refined;
 use glam::DVec3;
 
@@ -48,14 +48,20 @@ impl Pair {
 /// same way as the axes.
 ///
 /// `focal` is the focal length in pixels they were estimated with. Unless it was given by the user, each angle is
-/// evaluated at the focal length expected from the other angles and the prior for photos of that width.
-pub fn measure(directions: &[Option<Refined>; 3], focal: f64, is_given: bool, width: usize) -> [Option<Squareness>; 3] {
+/// evaluated at the focal length expected from the other angles and the prior.
+pub fn measure(
+    directions: &[Option<Refined>; 3],
+    focal: f64,
+    is_given: bool,
+    expected: Expected,
+) -> [Option<Squareness>; 3] {
     let pair = |beside: usize| {
         let [a, b] = [(beside + 1) % 3, (beside + 2) % 3].map(|k| directions[k].as_ref());
         a.zip(b).map(|(a, b)| Pair::new(beside, a, b))
     };
     let pairs = [0, 1, 2].map(pair);
-    let usual = [USUAL_SPREAD.powi(-2), (usual_focal(width) / focal).ln() * USUAL_SPREAD.powi(-2)];
+    let weight = expected.spread.powi(-2);
+    let prior = [weight, (expected.focal / focal).ln() * weight];
     pairs.each_ref().map(|pair| {
         let pair = pair.as_ref()?;
         let [growth, variance] = if is_given {
@@ -63,7 +69,7 @@ pub fn measure(directions: &[Option<Refined>; 3], focal: f64, is_given: bool, wi
         } else {
             let others = pairs.iter().flatten().filter(|p| p.beside != pair.beside).map(Pair::focal_constraint);
             let [information, pull] =
-                others.fold(usual, |sum, constraint| [sum[0] + constraint[0], sum[1] + constraint[1]]);
+                others.fold(prior, |sum, constraint| [sum[0] + constraint[0], sum[1] + constraint[1]]);
             [pull / information, 1.0 / information]
         };
         let cosine = (pair.cosine + pair.slope * growth).clamp(-1.0, 1.0);

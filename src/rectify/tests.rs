@@ -109,6 +109,36 @@ fn points_at_the_centre_and_at_infinity_are_exact() {
 }
 
 #[test]
+fn the_files_focal_length_decides_where_lines_do_not() {
+    let expected = |focal: f64| Params { expected_focal: Some([focal, 0.05 * focal]), ..Params::default() };
+    let mask = Image::from_fn(SIZE.0, SIZE.1, |_, _| [1.0f32]).unwrap();
+    // Straight along the room: lines say nothing of the focal length, and so of how long the ceiling is.
+    let ahead = camera(0.0, 0.0, 0.0, 1000.0);
+    let (photo, lines) = (ceiling(&ahead), room(&ahead, [20, 20, 20], 0.0, 3));
+    let unwarped = |params: &Params| {
+        let view = view_of(&lines, params).unwrap();
+        let flat = unwarp(&photo, &view, &mask, &UnwarpParams::default(), Monitor::default().job()).unwrap();
+        (view.perspective.focal, view.perspective.focal_source, flat.aspect_confidence)
+    };
+    let (focal, source, confidence) = unwarped(&Params::default());
+    assert!((focal - 680.0).abs() < 1e-6 && source == FocalSource::Assumed && confidence < 0.2, "{confidence}");
+    let (focal, source, confidence) = unwarped(&expected(1000.0));
+    assert!((focal - 1000.0).abs() < 1e-6 && source == FocalSource::Metadata && confidence > 0.7, "{confidence}");
+    let (focal, source, _) = unwarped(&Params { focal: Some(900.0), ..expected(1000.0) });
+    assert!(focal == 900.0 && source == FocalSource::Given);
+
+    // Across it lines are surer than any file.
+    let across = camera(0.5, 0.3, 0.05, 700.0);
+    let view = view_of(&room(&across, [40, 40, 40], 0.1, 8), &expected(1000.0)).unwrap();
+    assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.01, "{}", view.perspective.focal);
+    assert_eq!(view.perspective.focal_source, FocalSource::VanishingPoints);
+    for bad in [[-1.0, 1.0], [700.0, 0.0], [f64::NAN, 1.0]] {
+        let params = Params { expected_focal: Some(bad), ..Params::default() };
+        assert_eq!(view_of(&lines, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
+    }
+}
+
+#[test]
 fn one_family_gives_its_point_wherever_it_is() {
     // Inside the image, on its border, and ever farther outside.
     let border = 400.0 / 0.4f64.cos();

@@ -1,7 +1,7 @@
 //! Texture unwarping (§5.3): the homography of the plane from the room axes and the focal length, which gives the true
 //! aspect ratio, and the expected error of the homography.
 
-use super::camera::{self, FREE_ERROR, USUAL_SPREAD, usual_focal};
+use super::camera::{self, FREE_ERROR};
 use super::plane::{Plane, choose, marked_pixels};
 use super::{UnwarpParams, Unwarped, View, quad, resample};
 use crate::error::Result;
@@ -43,7 +43,7 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
 
     let (w, h) = (width as f64, height as f64);
     let corners = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)].map(|c| to_photo.apply(c));
-    let uncertainty = uncertainty(&plane, view, corners, pixel_size, photo.width);
+    let uncertainty = uncertainty(&plane, view, corners, pixel_size);
     job.report(1.0);
     Ok(Unwarped {
         image,
@@ -64,11 +64,11 @@ struct Uncertainty {
 /// Propagates the covariances of the vanishing points and the uncertainty of the focal length to the rectified
 /// corners, to first order: perturb each input slightly and re-estimate the camera (focal length and axes) from the
 /// perturbed inputs.
-fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64, width: usize) -> Uncertainty {
+fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64) -> Uncertainty {
     let camera = &view.perspective;
-    let usual = usual_focal(width);
+    let expected = view.expected_focal;
     let points = &view.vanishing_points;
-    let nominal = camera::reestimate(camera, points, usual);
+    let nominal = camera::reestimate(camera, points, expected);
     let flat = |found: &Perspective| {
         let turn = found.axes * nominal.axes.transpose();
         rectified(&plane.seen_by(turn, camera.focal * found.focal / nominal.focal), corners)
@@ -83,10 +83,10 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64,
             let mut points = points.clone();
             let ray = camera::direction(point.point, camera.principal, camera.focal);
             points[k].point = (camera.intrinsics() * (ray + step * SMALL)).normalize();
-            moved.push(flat(&camera::reestimate(camera, &points, usual)));
+            moved.push(flat(&camera::reestimate(camera, &points, expected)));
         }
     }
-    moved.push(flat(&camera::reestimate(camera, points, usual * (USUAL_SPREAD * SMALL).exp())));
+    moved.push(flat(&camera::reestimate(camera, points, expected.moved(SMALL))));
     // A single point leaves the rotation about it free: give that rotation the uncertainty of an axis fixed by
     // convention.
     if points.iter().filter(|p| p.support > 0).count() < 2 {

@@ -77,6 +77,8 @@ const WEIGHTS: [f64; 8] = [0.06, 0.06, 0.03, 0.03, 0.06, 0.12, 0.14, 0.5];
 pub struct Input {
     /// Linear RGB, 1 = display white.
     pub photo: Option<Arc<Image>>,
+    /// Focal length in pixels that the photo's file says, and its standard deviation.
+    pub photo_focal: Option<[f64; 2]>,
     /// Depth of the photo, if the caller has it.
     pub depth: Option<(Arc<Image>, DepthKind)>,
     pub strokes: StrokeSet,

@@ -19,7 +19,10 @@ const EDGE_BLUR: f32 = 0.9;
 impl Transfer {
     pub(super) fn find_view(&mut self, job: Job) -> Result<()> {
         let photo = need(&self.input.photo, "set the photo")?;
-        self.results.view = Some(Arc::new(rectify::find_view(photo, &self.params.rectify, job)?));
+        let settings = &self.params.rectify;
+        let expected_focal = settings.expected_focal.or(self.input.photo_focal);
+        let settings = rectify::Params { expected_focal, ..settings.clone() };
+        self.results.view = Some(Arc::new(rectify::find_view(photo, &settings, job)?));
         Ok(())
     }
 

@@ -67,6 +67,7 @@ def images() -> Scenario:
     image = s.image()
     s.references("image", image)
     s.call("image_size", image, ROOM, ROOM, ROOM)
+    s.call("image_get_metadata", image, struct("photo_metadata", "size"))
     s.call("image_read", image, 0, view(12, 8))
     s.call("image_save", image, "a.png", 1.0)
     s.call("image_save", image, "a.exr", 1.0)

@@ -279,6 +279,47 @@ void exceptions_cross_the_callbacks() {
 
 #endif
 
+/// A TIFF of one row of two grey pixels, whose camera was turned a quarter, of 36 mm on film, at f/2, 1/50 s and ISO 100.
+std::vector<std::uint8_t> turned_photo() {
+    std::vector<std::uint8_t> file = {'I', 'I', 42, 0, 8, 0, 0, 0};
+    const auto put = [&](std::uint32_t value, int bytes) {
+        for (int k = 0; k < bytes; ++k)
+            file.push_back(static_cast<std::uint8_t>(value >> 8 * k));
+    };
+    // Tag, kind, value: two of one byte each, then what the camera says, its fractions behind.
+    const std::uint32_t picture[][3] = {{256, 3, 2}, {257, 3, 1}, {258, 3, 8},   {262, 3, 1},
+                                        {273, 4, 200}, {274, 3, 6}, {279, 4, 2}, {0x8769, 4, 120}};
+    const std::uint32_t camera[][3] = {{0x829a, 5, 184}, {0x829d, 5, 192}, {0x8827, 3, 100}, {0xa405, 3, 36}};
+    const auto directory = [&](const auto &entries) {
+        put(std::size(entries), 2);
+        for (const auto &entry : entries) {
+            put(entry[0], 2), put(entry[1], 2), put(1, 4), put(entry[2], 4);
+        }
+    };
+    directory(picture);
+    file.resize(120);
+    directory(camera);
+    file.resize(184);
+    put(1, 4), put(50, 4), put(2, 4), put(1, 4);
+    put(0, 1), put(255, 1);
+    return file;
+}
+
+void photos_say_what_their_cameras_wrote() {
+    const Context context = new_context();
+    const Image photo = ok(Image::load_memory(context, turned_photo()));
+    const luxfer::ImageSize size = ok(photo.size());
+    CHECK(size.width == 1 && size.height == 2 && ok(photo.samples())[1] == 1.0f);
+    const luxfer_photo_metadata known = ok(photo.metadata());
+    CHECK(known.orientation == 6 && known.f_number == 2 && known.exposure_time == 0.02 && known.iso == 100);
+    CHECK(std::abs(known.focal - 36 * std::sqrt(5) / std::hypot(36, 24)) < 1e-9 && known.focal_error < 0.1 * known.focal);
+    CHECK(std::abs(known.white_luminance - 240) < 1e-9);
+    CHECK(known.white_luminance_low < 240 && known.white_luminance_high > 240);
+
+    const luxfer_photo_metadata nothing = ok(new_image(context).metadata());
+    CHECK(nothing.orientation == 1 && nothing.focal == 0 && nothing.white_luminance == 0);
+}
+
 void views_of_memory() {
     const Context context = new_context();
     std::uint8_t bytes[2 * 2] = {0, 255, 128, 64};
@@ -480,6 +521,7 @@ int main() {
 #ifndef LUXFER_NO_EXCEPTIONS
     exceptions_cross_the_callbacks();
 #endif
+    photos_say_what_their_cameras_wrote();
     views_of_memory();
     scenes_come_back();
     layers_have_names();

@@ -1,10 +1,29 @@
 """Arrays in and out: every layout, no copies where none is needed, nothing touched that is not part of the image."""
 
+import struct
 import unittest
 
 from support import Case, context, luxfer, np
 
 from luxfer import _arrays
+
+
+def tiff(picture, pixels, camera=()):
+    """A TIFF file: entries of tag, kind and value, and those of the camera's notes at byte 120, whose fractions follow."""
+
+    def directory(entries, fractions):
+        out = struct.pack("<H", len(entries))
+        for tag, kind, value in entries:
+            if isinstance(value, tuple):
+                fractions.append(struct.pack("<II", *value))
+                value = 176 + 8 * len(fractions)
+            out += struct.pack("<HHII", tag, kind, 1, value)
+        return out
+
+    fractions = []
+    notes = directory(camera, fractions) if camera else b""
+    head = (b"II*\0" + struct.pack("<I", 8) + directory(picture, [])).ljust(120, b"\0") + notes
+    return (head.ljust(184, b"\0") + b"".join(fractions)).ljust(200, b"\0") + pixels
 
 
 class Images(Case):
@@ -84,6 +103,61 @@ class Images(Case):
         image.save(self.folder / "a.png")
         again = luxfer.Image.from_bytes(context(), (self.folder / "a.png").read_bytes())
         np.testing.assert_array_equal(again.numpy(np.uint8, "srgb"), image.numpy(np.uint8, "srgb"))
+
+    def test_formats(self):
+        """Two pixels, red and blue, in formats that are simple enough to be written here."""
+        red, blue = b"\xff\0\0", b"\0\0\xff"
+        files = {
+            "bmp": b"BM" + struct.pack("<IIIIiiHHIIiiII", 62, 0, 54, 40, 2, 1, 1, 24, 0, 8, 0, 0, 0, 0) + red[::-1] + blue[::-1] + b"\0\0",
+            "gif": b"GIF89a" + struct.pack("<HHBBB", 2, 1, 0x80, 0, 0) + red + blue
+            + b"\x2c" + struct.pack("<HHHHB", 0, 0, 2, 1, 0) + b"\x02\x02\x44\x0a\0;",
+            "tif": tiff([(256, 3, 2), (257, 3, 1), (258, 3, 8), (262, 3, 2), (273, 4, 200), (277, 3, 3), (279, 4, 6)], red + blue),
+        }
+        for ending, data in files.items():
+            with self.subTest(ending):
+                (self.folder / f"a.{ending}").write_bytes(data)
+                pixels = luxfer.Image.load(context(), self.folder / f"a.{ending}").numpy()
+                np.testing.assert_array_equal(pixels[0, :, :3], [[1, 0, 0], [0, 0, 1]])
+        for data, name in ((b"\0\0\0\x1cftypavif", "AVIF"), (b"\0\0\0\x18ftypheic", "HEIC"), (b"\xff\x0a", "JPEG XL")):
+            with self.assertRaisesRegex(luxfer.Unsupported, f"{name}.*convert it to JPEG"):
+                luxfer.Image.from_bytes(context(), data)
+
+    def test_metadata(self):
+        picture = [(256, 3, 2), (257, 3, 1), (258, 3, 8), (262, 3, 1), (273, 4, 200), (274, 3, 8), (279, 4, 2), (0x8769, 4, 120)]
+        camera = [(0x829A, 5, (1, 50)), (0x829D, 5, (2, 1)), (0x8827, 3, 100), (0xA405, 3, 36)]
+        photo = luxfer.Image.from_bytes(context(), tiff(picture, b"\0\xff", camera))
+        self.assertEqual(photo.numpy().tolist(), [[[1.0]], [[0.0]]])
+        known = photo.metadata
+        self.assertEqual((known.orientation, known.f_number, known.exposure_time, known.iso), (8, 2, 0.02, 100))
+        self.assertAlmostEqual(known.focal, 36 * 5**0.5 / np.hypot(36, 24))
+        self.assertAlmostEqual(known.white_luminance, 240)
+        self.assertLess(known.white_luminance_low, 240)
+        nothing = luxfer.Image(context(), np.zeros((2, 2))).metadata
+        self.assertEqual((nothing.orientation, nothing.focal, nothing.white_luminance), (1, 0, 0))
+
+    def test_the_focal_length_of_a_file_is_used_where_lines_do_not_tell_it(self):
+        """A corridor seen straight along: boxes within boxes, and lines that meet in the middle."""
+        width, height = 360, 240
+        x, y = (np.arange(n) - (n - 1) / 2 for n in (width, height))
+        depth = np.maximum(abs(x)[None] / width, abs(y)[:, None] / height)
+        boxes = (np.log2(depth + 0.02) * 3).astype(int) % 2
+        sides = (np.arctan2(y[:, None] * width, x[None] * height) * 12 / np.pi).astype(int) % 2
+        pixels = (60 + 60 * boxes + 100 * sides).astype(np.uint8)
+        picture = [(256, 3, width), (257, 3, height), (258, 3, 8), (262, 3, 1), (273, 4, 200), (279, 4, pixels.size), (0x8769, 4, 120)]
+        photo = luxfer.Image.from_bytes(context(), tiff(picture, pixels.tobytes(), [(0xA405, 3, 50)]))
+        focal = photo.metadata.focal
+        self.assertAlmostEqual(focal, 50 * np.hypot(width, height) / np.hypot(36, 24))
+        scene = luxfer.Scene.demo(context(), "target-room")
+        whole = luxfer.Transfer(context(), photo, scene, "Ceiling").run(last="view").view
+        for view in (luxfer.Rectify(context(), photo).run().report, whole):
+            self.assertEqual(view.focal_source, luxfer.types.FocalSource.FROM_METADATA)
+            self.assertLess(abs(view.focal / focal - 1), 0.05)
+        self.assertEqual(luxfer.Rectify(context(), photo.numpy()).run().report.focal_source, luxfer.types.FocalSource.ASSUMED)
+        for view in (
+            luxfer.Rectify(context(), photo).run(focal=300).report,
+            luxfer.Transfer(context(), photo, scene, "Ceiling").run(last="view", rectify={"focal": 300}).view,
+        ):
+            self.assertEqual((view.focal, view.focal_source), (300, luxfer.types.FocalSource.GIVEN))
 
     def test_many_channels(self):
         photo = luxfer.Image(context(), np.random.default_rng(3).random((24, 32, 3)))

@@ -201,7 +201,7 @@ public:
         return make_in<Image>(context, luxfer_image_create, &view);
     }
 
-    /// Loads a PNG, JPEG, Radiance HDR or OpenEXR file.
+    /// Loads a JPEG, PNG, WebP, TIFF, BMP, GIF, Radiance HDR or OpenEXR file, upright.
     static Result<Image> load(const Context &context, Text path, luxfer_colour_space colour_space = LUXFER_COLOUR_SRGB) {
         return make_in<Image>(context, luxfer_image_load, path.get(), colour_space);
     }
@@ -222,6 +222,11 @@ public:
         ImageSize size;
         const luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
         return detail::finish(context().get(), status, size);
+    }
+
+    /// What the file of a loaded photo says of its camera; 0 is unknown.
+    Result<luxfer_photo_metadata> metadata() const {
+        return value<luxfer_photo_metadata>(luxfer_image_get_metadata);
     }
 
     /// Writes the image into the caller's pixels.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import os
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, Union, cast
 
 import numpy as np
 
 from . import _abi, _arrays, _params
 from ._handle import Handle, call
-from .types import ColourSpace
+from .types import ColourSpace, PhotoMetadata
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -45,8 +45,8 @@ class Image(Handle):
 
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str], colour_space: ColourSpace | str = ColourSpace.SRGB) -> Image:
-        """Loads a PNG, JPEG, Radiance HDR or OpenEXR file. Use "srgb" for pictures, "linear" for data such as
-        masks."""
+        """Loads a JPEG, PNG, WebP, TIFF, BMP, GIF, Radiance HDR or OpenEXR file, upright. Use "srgb" for pictures,
+        "linear" for data such as masks."""
         space = _params.member(ColourSpace, colour_space)
         return made(context, "luxfer_image_load", context, _params.text(os.fspath(path), "path"), space)
 
@@ -66,6 +66,11 @@ class Image(Handle):
         numbers = [ctypes.c_uint32() for _ in range(3)]
         self._call("size", *numbers)
         return numbers[0].value, numbers[1].value, numbers[2].value
+
+    @property
+    def metadata(self) -> PhotoMetadata:
+        """What the file of a loaded photo says of its camera; 0 is unknown."""
+        return cast(PhotoMetadata, self._read("get_metadata", _abi.luxfer_photo_metadata))
 
     @property
     def shape(self) -> tuple[int, int, int]:

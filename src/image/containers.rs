@@ -1,0 +1,109 @@
+//! The parts that picture files are made of, found without decoding them: slices of the file, never more.
+
+/// Payloads of the segments of a JPEG before its pixels, with their markers.
+pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
+    let mut rest = bytes.strip_prefix(&[0xff, 0xd8]).unwrap_or_default();
+    std::iter::from_fn(move || {
+        // Markers begin with any number of 0xff.
+        let at = rest.iter().position(|&b| b != 0xff)?;
+        let (&marker, after) = rest.get(at..)?.split_first()?;
+        // At the start of a scan, or of what is none of a marker, the segments end.
+        if at == 0 || matches!(marker, 0x00 | 0xd8..=0xda) {
+            return None;
+        }
+        let (length, _) = after.split_first_chunk()?;
+        let (segment, next) = after.split_at_checked(usize::from(u16::from_be_bytes(*length)))?;
+        rest = next;
+        Some((marker, segment.get(2..)?))
+    })
+}
+
+/// Chunks of a PNG: name, length as it is said to be, and content as far as the file has it.
+pub fn png_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], usize, &[u8])> {
+    let mut rest = bytes.get(8..).unwrap_or_default();
+    std::iter::from_fn(move || {
+        let (&[a, b, c, d, ..], _) = rest.split_first_chunk::<8>()?;
+        let (name, content) = rest[4..].split_first_chunk()?;
+        let length = u32::from_be_bytes([a, b, c, d]) as usize;
+        // Beyond its content lie four bytes of a checksum.
+        rest = content.get(length.saturating_add(4)..).unwrap_or_default();
+        Some((name, length, &content[..length.min(content.len())]))
+    })
+}
+
+/// Chunks of a RIFF file such as WebP: name, and content as far as the file has it.
+pub fn riff_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
+    let mut rest = bytes.get(12..).unwrap_or_default();
+    std::iter::from_fn(move || {
+        let (name, after) = rest.split_first_chunk()?;
+        let (length, content) = after.split_first_chunk()?;
+        let length = u32::from_le_bytes(*length) as usize;
+        // Chunks begin at even places.
+        rest = content.get(length.saturating_add(length % 2)..).unwrap_or_default();
+        Some((name, &content[..length.min(content.len())]))
+    })
+}
+
+/// Left, top, width and height of the first frame of a GIF within its screen.
+pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
+    let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
+    // The screen and its colours.
+    let mut rest = bytes.get(13 + table(*bytes.get(10)?)..)?;
+    loop {
+        match rest {
+            // An extension: a label, then blocks with their lengths, the last of which is empty.
+            [0x21, _, blocks @ ..] => {
+                let mut blocks = blocks;
+                while let (&length @ 1.., after) = blocks.split_first()? {
+                    blocks = after.get(usize::from(length)..)?;
+                }
+                rest = &blocks[1..];
+            }
+            [0x2c, numbers @ ..] => {
+                let (numbers, _) = numbers.first_chunk::<8>()?.as_chunks::<2>();
+                return Some([0, 1, 2, 3].map(|k| u16::from_le_bytes(numbers[k]).into()));
+            }
+            _ => return None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_end_where_pixels_begin() {
+        let mut file = b"\xff\xd8\xff\xe0\x00\x04ab\xff\xff\xff\xe1\x00\x03c\xff\xda\x00\x02\xff\xe1\x00\x03x".to_vec();
+        let segments: Vec<_> = jpeg_segments(&file).collect();
+        assert_eq!(segments, [(0xe0, &b"ab"[..]), (0xe1, b"c")]);
+        for cut in 0..file.len() {
+            assert!(jpeg_segments(&file[..cut]).count() <= 2);
+        }
+        // A length below its own two bytes.
+        file[5] = 1;
+        assert_eq!(jpeg_segments(&file).count(), 0);
+    }
+
+    #[test]
+    fn chunks_are_cut_where_the_file_ends() {
+        let png = b"\x89PNG\r\n\x1a\n\0\0\0\x02abcdxy....\0\0\0\x09efgh12";
+        let chunks: Vec<_> = png_chunks(png).collect();
+        assert_eq!(chunks, [(b"abcd", 2, &b"xy"[..]), (b"efgh", 9, b"12")]);
+        let webp = b"RIFF\0\0\0\0WEBPabcd\x03\0\0\0xyz.efgh\xff\xff\xff\xff12";
+        let chunks: Vec<_> = riff_chunks(webp).collect();
+        assert_eq!(chunks, [(b"abcd", &b"xyz"[..]), (b"efgh", b"12")]);
+        for cut in 0..=webp.len() {
+            assert!(riff_chunks(&webp[..cut]).chain(riff_chunks(&png[..cut.min(png.len())])).count() <= 4);
+        }
+    }
+
+    #[test]
+    fn the_first_frame_of_a_gif_is_found_behind_extensions() {
+        let file = b"GIF89a\x09\0\x08\0\x80\0\0RGBrgb\x21\xff\x02ab\x01c\0\x2c\x01\0\x02\0\x03\0\x04\x01";
+        assert_eq!(gif_frame(file), Some([1, 2, 3, 260]));
+        for cut in 0..file.len() {
+            assert_eq!(gif_frame(&file[..cut]), None);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What cameras write into their pictures: the EXIF notes of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA CP-3451).
+
+use super::Orientation;
+use crate::image::containers::{jpeg_segments, png_chunks, riff_chunks};
+use crate::image::tiff::ifd::{Directory, Ifds};
+
+/// Tags of EXIF; the first two stand in the directory of the picture, the others in one of their own.
+mod tag {
+    pub const ORIENTATION: u16 = 0x0112;
+    pub const EXIF: u16 = 0x8769;
+    pub const EXPOSURE_TIME: u16 = 0x829a;
+    pub const F_NUMBER: u16 = 0x829d;
+    pub const SENSITIVITY: u16 = 0x8827;
+    pub const STANDARD_OUTPUT_SENSITIVITY: u16 = 0x8831;
+    pub const RECOMMENDED_EXPOSURE_INDEX: u16 = 0x8832;
+    pub const ISO_SPEED: u16 = 0x8833;
+    pub const SHUTTER_SPEED: u16 = 0x9201;
+    pub const APERTURE: u16 = 0x9202;
+    pub const FOCAL_LENGTH: u16 = 0x920a;
+    pub const WIDTH: u16 = 0xa002;
+    pub const HEIGHT: u16 = 0xa003;
+    pub const PLANE_X_RESOLUTION: u16 = 0xa20e;
+    pub const PLANE_Y_RESOLUTION: u16 = 0xa20f;
+    pub const PLANE_UNIT: u16 = 0xa210;
+    pub const FOCAL_LENGTH_35: u16 = 0xa405;
+}
+
+/// What the sensitivity of 16 bits says where the number is too large for it.
+const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
+
+/// The notes that the library has a use for. Numbers that no camera can mean are absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Exif {
+    pub orientation: Orientation,
+    /// Of a lens that shows as much on film of 36 x 24 mm, in millimetres.
+    pub focal_35: Option<f64>,
+    /// Of the lens, in millimetres.
+    pub focal: Option<f64>,
+    /// Pixels of the recorded size per millimetre of the sensor.
+    pub density: Option<f64>,
+    /// Width and height that the camera recorded.
+    pub recorded: Option<[f64; 2]>,
+    pub f_number: Option<f64>,
+    /// In seconds.
+    pub exposure_time: Option<f64>,
+    pub iso: Option<f64>,
+}
+
+/// The notes in a file of any format; of files without them nothing is known.
+pub fn read(bytes: &[u8]) -> Exif {
+    let picture = notes(bytes).and_then(Ifds::new).and_then(Ifds::first);
+    picture.map(|picture| Exif::new(&picture)).unwrap_or_default()
+}
+
+/// The notes of a file, which are a TIFF file without pixels.
+fn notes(bytes: &[u8]) -> Option<&[u8]> {
+    const NAME: &[u8] = b"Exif\0\0";
+    match bytes {
+        [0xff, 0xd8, ..] => {
+            jpeg_segments(bytes).filter(|s| s.0 == 0xe1).find_map(|(_, segment)| segment.strip_prefix(NAME))
+        }
+        // Some writers keep the name that only JPEG asks for.
+        [0x89, b'P', b'N', b'G', ..] => {
+            let chunk = png_chunks(bytes).find(|c| c.0 == b"eXIf")?.2;
+            Some(chunk.strip_prefix(NAME).unwrap_or(chunk))
+        }
+        [b'R', b'I', b'F', b'F', ..] => {
+            let chunk = riff_chunks(bytes).find(|c| c.0 == b"EXIF")?.1;
+            Some(chunk.strip_prefix(NAME).unwrap_or(chunk))
+        }
+        _ => Some(bytes),
+    }
+}
+
+impl Exif {
+    fn new(picture: &Directory) -> Self {
+        let orientation = picture.integer(tag::ORIENTATION).and_then(Orientation::new).unwrap_or_default();
+        let notes = picture.integer(tag::EXIF).and_then(|offset| picture.ifds().directory(u32::try_from(offset).ok()?));
+        let Some(notes) = notes else { return Self { orientation, ..Self::default() } };
+        let positive = |tag| notes.number(tag).filter(|v| *v > 0.0);
+        let within = |value: Option<f64>, low: f64, high: f64| value.filter(|v| (low..=high).contains(v));
+
+        // Older cameras write logarithms only: 2 log2 N, and -log2 t.
+        let f_number = positive(tag::F_NUMBER).or_else(|| notes.number(tag::APERTURE).map(|v| (v / 2.0).exp2()));
+        let time = positive(tag::EXPOSURE_TIME).or_else(|| notes.number(tag::SHUTTER_SPEED).map(|v| (-v).exp2()));
+        let iso = positive(tag::SENSITIVITY).filter(|v| *v != SENSITIVITY_ELSEWHERE).or_else(|| {
+            let tags = [tag::STANDARD_OUTPUT_SENSITIVITY, tag::RECOMMENDED_EXPOSURE_INDEX, tag::ISO_SPEED];
+            tags.into_iter().find_map(positive)
+        });
+        // [convention]: what no lens, shutter or sensor of a camera reaches.
+        Self {
+            orientation,
+            focal_35: within(positive(tag::FOCAL_LENGTH_35), 1.0, 1e4),
+            focal: within(positive(tag::FOCAL_LENGTH), 0.1, 1e4),
+            density: within(density(&notes), 1.0, 1e5),
+            recorded: positive(tag::WIDTH).zip(positive(tag::HEIGHT)).map(|(width, height)| [width, height]),
+            f_number: within(f_number, 0.5, 256.0),
+            exposure_time: within(time, 1e-7, 1e5),
+            iso: within(iso, 1.0, 1e8),
+        }
+    }
+}
+
+/// Pixels per millimetre of the sensor: the geometric mean of both directions.
+fn density(notes: &Directory) -> Option<f64> {
+    let millimetres = match notes.integer(tag::PLANE_UNIT).unwrap_or(2) {
+        2 => 25.4,
+        3 => 10.0,
+        // Beyond the standard, but written.
+        4 => 1.0,
+        5 => 1e-3,
+        _ => return None,
+    };
+    let [x, y] = [tag::PLANE_X_RESOLUTION, tag::PLANE_Y_RESOLUTION].map(|tag| notes.number(tag).filter(|v| *v > 0.0));
+    Some((x? * y.or(x)?).sqrt() / millimetres)
+}

@@ -1,0 +1,292 @@
+//! Directories of tagged values, as TIFF files and the EXIF notes of other pictures hold them (TIFF 6.0, section 2).
+//!
+//! The bytes come from anywhere. A directory or a value that is said to lie outside of them is absent, and no chain of
+//! directories is followed, so reading takes no memory and ends after one pass over each directory that is asked for.
+
+/// The bytes of a structure of directories, after its header has been looked at.
+#[derive(Clone, Copy)]
+pub struct Ifds<'a> {
+    bytes: &'a [u8],
+    order: Order,
+}
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    Little,
+    Big,
+}
+
+impl Order {
+    pub fn u16(self, bytes: [u8; 2]) -> u16 {
+        if self == Self::Little { u16::from_le_bytes(bytes) } else { u16::from_be_bytes(bytes) }
+    }
+
+    pub fn u32(self, bytes: [u8; 4]) -> u32 {
+        if self == Self::Little { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) }
+    }
+
+    pub fn u64(self, bytes: [u8; 8]) -> u64 {
+        if self == Self::Little { u64::from_le_bytes(bytes) } else { u64::from_be_bytes(bytes) }
+    }
+}
+
+impl<'a> Ifds<'a> {
+    /// The structure that bytes begin with; nothing if they begin otherwise.
+    pub fn new(bytes: &'a [u8]) -> Option<Self> {
+        let order = match bytes.first_chunk()? {
+            [b'I', b'I', 42, 0] => Order::Little,
+            [b'M', b'M', 0, 42] => Order::Big,
+            _ => return None,
+        };
+        Some(Self { bytes, order })
+    }
+
+    /// The directory that the header points to.
+    pub fn first(self) -> Option<Directory<'a>> {
+        self.directory(self.order.u32(*self.bytes.get(4..)?.first_chunk()?))
+    }
+
+    /// The directory at an offset, as far as its entries lie within the bytes.
+    pub fn directory(self, offset: u32) -> Option<Directory<'a>> {
+        let (count, entries) = self.bytes.get(offset as usize..)?.split_first_chunk()?;
+        let (entries, _) = entries.as_chunks();
+        let count = usize::from(self.order.u16(*count)).min(entries.len());
+        Some(Directory { ifds: self, entries: &entries[..count] })
+    }
+
+    pub fn order(self) -> Order {
+        self.order
+    }
+
+    /// Bytes from an offset on.
+    pub fn slice(self, offset: u64, len: u64) -> Option<&'a [u8]> {
+        let start = usize::try_from(offset).ok()?;
+        self.bytes.get(start..start.checked_add(usize::try_from(len).ok()?)?)
+    }
+}
+
+/// A list of values by their tags.
+#[derive(Clone, Copy)]
+pub struct Directory<'a> {
+    ifds: Ifds<'a>,
+    entries: &'a [[u8; 12]],
+}
+
+impl<'a> Directory<'a> {
+    pub fn ifds(&self) -> Ifds<'a> {
+        self.ifds
+    }
+
+    /// The values of a tag. Those said to lie outside the file count, but cannot be read.
+    pub fn field(&self, tag: u16) -> Option<Field<'a>> {
+        let order = self.ifds.order;
+        let entry = self.entries.iter().find(|e| order.u16([e[0], e[1]]) == tag)?;
+        let [_, _, k0, k1, c0, c1, c2, c3, ref inline @ ..] = *entry;
+        let kind = Kind::new(order.u16([k0, k1]))?;
+        let count = order.u32([c0, c1, c2, c3]);
+        // Four bytes or less stand in the entry itself.
+        let len = u64::from(count) * kind.size() as u64;
+        let values =
+            if len <= 4 { inline.get(..len as usize) } else { self.ifds.slice(order.u32(*inline).into(), len) };
+        Some(Field { kind, count: count as usize, values: values.unwrap_or_default(), order })
+    }
+
+    /// The first value of a tag, as a whole number.
+    pub fn integer(&self, tag: u16) -> Option<u64> {
+        self.field(tag)?.integer(0)
+    }
+
+    /// The first value of a tag, if it is a finite number.
+    pub fn number(&self, tag: u16) -> Option<f64> {
+        self.field(tag)?.number(0)
+    }
+}
+
+/// How the values of a tag are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    U8,
+    U16,
+    U32,
+    I8,
+    I16,
+    I32,
+    F32,
+    F64,
+    URational,
+    IRational,
+}
+
+impl Kind {
+    fn new(code: u16) -> Option<Self> {
+        Some(match code {
+            // Texts and bytes without a meaning, too.
+            1 | 2 | 7 => Self::U8,
+            3 => Self::U16,
+            // Offsets of directories, too.
+            4 | 13 => Self::U32,
+            5 => Self::URational,
+            6 => Self::I8,
+            8 => Self::I16,
+            9 => Self::I32,
+            10 => Self::IRational,
+            11 => Self::F32,
+            12 => Self::F64,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 => 2,
+            Self::U32 | Self::I32 | Self::F32 => 4,
+            Self::F64 | Self::URational | Self::IRational => 8,
+        }
+    }
+}
+
+/// The values of a tag.
+#[derive(Clone, Copy)]
+pub struct Field<'a> {
+    kind: Kind,
+    count: usize,
+    values: &'a [u8],
+    order: Order,
+}
+
+impl Field<'_> {
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    fn bytes<const N: usize>(&self, index: usize) -> Option<[u8; N]> {
+        self.values.as_chunks::<N>().0.get(index).copied()
+    }
+
+    /// A value that is a whole number and not negative.
+    pub fn integer(&self, index: usize) -> Option<u64> {
+        match self.kind {
+            Kind::U8 => self.bytes(index).map(|[v]| v.into()),
+            Kind::U16 => self.bytes(index).map(|v| self.order.u16(v).into()),
+            Kind::U32 => self.bytes(index).map(|v| self.order.u32(v).into()),
+            _ => None,
+        }
+    }
+
+    /// A value that is a finite number.
+    pub fn number(&self, index: usize) -> Option<f64> {
+        let u32 = |index| self.bytes(index).map(|v| self.order.u32(v));
+        let value = match self.kind {
+            Kind::U8 | Kind::U16 | Kind::U32 => self.integer(index)? as f64,
+            Kind::I8 => self.bytes(index).map(i8::from_ne_bytes)?.into(),
+            Kind::I16 => (self.bytes(index).map(|v| self.order.u16(v))? as i16).into(),
+            Kind::I32 => (u32(index)? as i32).into(),
+            Kind::F32 => f32::from_bits(u32(index)?).into(),
+            Kind::F64 => f64::from_bits(self.bytes(index).map(|v| self.order.u64(v))?),
+            Kind::URational => f64::from(u32(2 * index)?) / f64::from(u32(2 * index + 1)?),
+            Kind::IRational => f64::from(u32(2 * index)? as i32) / f64::from(u32(2 * index + 1)? as i32),
+        };
+        value.is_finite().then_some(value)
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// One entry of a directory: tag, kind, values as bytes in the file's order.
+    pub type Entry = (u16, u16, Vec<u8>);
+
+    /// A structure with one directory, in either order of bytes; what is too long for an entry follows it.
+    pub fn structure(order: Order, entries: &[Entry]) -> Vec<u8> {
+        let (head, u16, u32) = writers(order);
+        let mut out = [head.to_vec(), u32(8), u16(entries.len() as u16)].concat();
+        let mut tail = 8 + 2 + 12 * entries.len() + 4;
+        let mut values: Vec<u8> = Vec::new();
+        for (tag, kind, bytes) in entries {
+            let size = Kind::new(*kind).unwrap().size();
+            out.extend([u16(*tag), u16(*kind), u32((bytes.len() / size) as u32)].concat());
+            if bytes.len() <= 4 {
+                out.extend(bytes);
+                out.resize(out.len() + 4 - bytes.len(), 0);
+            } else {
+                out.extend(u32(tail as u32));
+                tail += bytes.len();
+                values.extend(bytes);
+            }
+        }
+        out.extend([0; 4]);
+        out.extend(values);
+        out
+    }
+
+    type Writers = (&'static [u8], fn(u16) -> Vec<u8>, fn(u32) -> Vec<u8>);
+
+    /// The first four bytes, and how numbers are written.
+    pub fn writers(order: Order) -> Writers {
+        match order {
+            Order::Little => (b"II*\0", |v| v.to_le_bytes().to_vec(), |v| v.to_le_bytes().to_vec()),
+            Order::Big => (b"MM\0*", |v| v.to_be_bytes().to_vec(), |v| v.to_be_bytes().to_vec()),
+        }
+    }
+
+    #[test]
+    fn values_of_every_kind_are_read_in_either_order() {
+        for order in [Order::Little, Order::Big] {
+            let (_, u16, u32) = writers(order);
+            let rational = [u32(7), u32(2)].concat();
+            let negative = [u32(-7i32 as u32), u32(2)].concat();
+            let double = if order == Order::Little { 2.5f64.to_le_bytes() } else { 2.5f64.to_be_bytes() };
+            let entries = vec![
+                (1, 3, u16(500)),
+                (2, 4, [u32(70_000), u32(3)].concat()),
+                (3, 5, rational),
+                (4, 10, negative),
+                (5, 1, vec![1, 2, 3]),
+                (6, 11, u32(0.25f32.to_bits())),
+                (7, 12, double.to_vec()),
+                (8, 8, u16(-3i16 as u16)),
+                (9, 6, vec![0xff]),
+            ];
+            let bytes = structure(order, &entries);
+            let directory = Ifds::new(&bytes).unwrap().first().unwrap();
+            assert_eq!(directory.integer(1), Some(500));
+            assert_eq!(
+                directory.field(2).map(|f| [f.integer(0), f.integer(1), f.integer(2)]),
+                Some([Some(70_000), Some(3), None])
+            );
+            let numbers = [3, 4, 6, 7, 8, 9].map(|tag| directory.number(tag));
+            assert_eq!(numbers, [3.5, -3.5, 0.25, 2.5, -3.0, -1.0].map(Some));
+            assert!(directory.integer(7).is_none());
+            assert_eq!(directory.field(5).unwrap().integer(2), Some(3));
+            assert!(directory.field(10).is_none());
+        }
+    }
+
+    #[test]
+    fn what_leads_out_of_the_file_is_absent() {
+        let order = Order::Little;
+        let (_, u16, u32) = writers(order);
+        let bytes =
+            structure(order, &[(1, 3, u16(1)), (2, 5, [u32(1), u32(2)].concat()), (3, 5, [u32(1), u32(0)].concat())]);
+        let first = |bytes: &[u8], tag| Ifds::new(bytes).and_then(Ifds::first).and_then(|d| d.number(tag));
+        assert_eq!([1, 2, 3].map(|tag| first(&bytes, tag)), [Some(1.0), Some(0.5), None]);
+        for cut in 0..bytes.len() {
+            let known = [1, 2].map(|tag| first(&bytes[..cut], tag));
+            assert!(known[0].is_none_or(|v| v == 1.0) && known[1].is_none_or(|v| v == 0.5), "cut at {cut}");
+        }
+        // Counts and offsets of every size.
+        for at in 4..bytes.len() - 3 {
+            for value in [0, 1, 9, 255, 65_535, 0x7fff_ffff, 0xffff_ffff] {
+                let mut bad = bytes.clone();
+                bad[at..at + 4].copy_from_slice(&u32(value));
+                for tag in 0..5 {
+                    let _ = first(&bad, tag);
+                }
+            }
+        }
+        assert!(Ifds::new(b"II+\0\x08\0\0\0").is_none() && Ifds::new(b"II").is_none());
+    }
+}

@@ -1,0 +1,398 @@
+//! How the pixels of a TIFF file are stored, by the tags of its first directory, all of them checked.
+
+use super::ifd::{Directory, Field};
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::io::{DENSEST, check_size};
+
+/// The tags that say how pixels are stored (TIFF 6.0).
+mod tag {
+    pub const NEW_SUBFILE_TYPE: u16 = 254;
+    pub const WIDTH: u16 = 256;
+    pub const HEIGHT: u16 = 257;
+    pub const BITS: u16 = 258;
+    pub const COMPRESSION: u16 = 259;
+    pub const PHOTOMETRIC: u16 = 262;
+    pub const FILL_ORDER: u16 = 266;
+    pub const STRIP_OFFSETS: u16 = 273;
+    pub const SAMPLES: u16 = 277;
+    pub const ROWS_PER_STRIP: u16 = 278;
+    pub const STRIP_SIZES: u16 = 279;
+    pub const PLANAR: u16 = 284;
+    pub const PREDICTOR: u16 = 317;
+    pub const COLOUR_MAP: u16 = 320;
+    pub const TILE_WIDTH: u16 = 322;
+    pub const TILE_HEIGHT: u16 = 323;
+    pub const TILE_OFFSETS: u16 = 324;
+    pub const TILE_SIZES: u16 = 325;
+    pub const EXTRA_SAMPLES: u16 = 338;
+    pub const SAMPLE_FORMAT: u16 = 339;
+    pub const DNG_VERSION: u16 = 50_706;
+}
+
+/// Samples of a pixel as stored, colours and others. [convention]: no photo has more.
+const MAX_SAMPLES: u64 = 16;
+
+/// Width of a tile that any picture may have; wider ones must not be wider than the picture. [convention]
+const MAX_TILE: usize = 4096;
+
+/// How a sample is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// Less than a byte: 1, 2 or 4 bits, the highest of a byte first.
+    Bits(u8),
+    U8,
+    U16,
+    U32,
+    F16,
+    F32,
+    F64,
+}
+
+impl Depth {
+    pub fn bits(self) -> usize {
+        match self {
+            Self::Bits(bits) => bits.into(),
+            Self::U8 => 8,
+            Self::U16 | Self::F16 => 16,
+            Self::U32 | Self::F32 => 32,
+            Self::F64 => 64,
+        }
+    }
+
+    pub fn is_float(self) -> bool {
+        matches!(self, Self::F16 | Self::F32 | Self::F64)
+    }
+}
+
+#[derive(Clone, Copy)]
+pub enum Colour<'a> {
+    Grey {
+        is_inverted: bool,
+    },
+    Rgb,
+    Cmyk,
+    /// All reds, then all greens, then all blues, of 16 bits.
+    Palette(Field<'a>),
+}
+
+/// Whether colours have been multiplied by alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alpha {
+    Associated,
+    Unassociated,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compression {
+    None,
+    Lzw,
+    Deflate,
+    PackBits,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Predictor {
+    None,
+    Horizontal,
+    Float,
+}
+
+/// A rectangle of pixels that is stored by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chunk {
+    /// Its place in the list of chunks.
+    pub index: usize,
+    /// The sample that it holds, where each has chunks of its own.
+    pub plane: usize,
+    /// Its upper left pixel.
+    pub x: usize,
+    pub y: usize,
+    /// Pixels of it that lie within the picture.
+    pub width: usize,
+    pub height: usize,
+}
+
+#[derive(Clone, Copy)]
+pub struct Layout<'a> {
+    pub width: usize,
+    pub height: usize,
+    pub depth: Depth,
+    pub colour: Colour<'a>,
+    pub alpha: Option<Alpha>,
+    pub compression: Compression,
+    pub predictor: Predictor,
+    /// Samples of a pixel in one chunk: all, or one where each has chunks of its own.
+    pub samples: usize,
+    planes: usize,
+    /// Width and height of a chunk as stored.
+    chunk: [usize; 2],
+    offsets: Field<'a>,
+    sizes: Field<'a>,
+    directory: Directory<'a>,
+}
+
+impl<'a> Layout<'a> {
+    /// Reads and checks the tags of a directory in a file of so many bytes.
+    pub fn new(directory: Directory<'a>, file_bytes: usize) -> Result<Self> {
+        check_is_picture(&directory)?;
+        let required = |tag, name| integer(&directory, tag, name)?.ok_or_else(|| missing(name));
+        let or = |tag, name, default| Ok::<u64, Error>(integer(&directory, tag, name)?.unwrap_or(default));
+        let (width, height) = (required(tag::WIDTH, "ImageWidth")?, required(tag::HEIGHT, "ImageLength")?);
+        check_size(width, height)?;
+        let (width, height) = (width as usize, height as usize);
+
+        let samples = or(tag::SAMPLES, "SamplesPerPixel", 1)?;
+        if !(1..=MAX_SAMPLES).contains(&samples) {
+            return Err(Error::format(format!(
+                "the TIFF has {samples} samples per pixel; it must have 1 to {MAX_SAMPLES}"
+            )));
+        }
+        let samples = samples as usize;
+        let depth = depth(&directory, samples)?;
+        let colour = colour(&directory, required(tag::PHOTOMETRIC, "PhotometricInterpretation")?, depth)?;
+        let alpha = alpha(&directory, colour, samples)?;
+        let compression = compression(or(tag::COMPRESSION, "Compression", 1)?)?;
+        let predictor = predictor(or(tag::PREDICTOR, "Predictor", 1)?, depth)?;
+        if or(tag::FILL_ORDER, "FillOrder", 1)? != 1 {
+            return Err(unsupported("bytes whose lowest bit comes first (FillOrder 2)"));
+        }
+        let is_planar = samples > 1 && or(tag::PLANAR, "PlanarConfiguration", 1)? == 2;
+        if is_planar && matches!(colour, Colour::Cmyk) {
+            return Err(unsupported("CMYK in separate planes"));
+        }
+
+        // Strips are chunks as wide as the picture.
+        let is_tiled = directory.field(tag::TILE_OFFSETS).is_some();
+        let (chunk, offsets, sizes) = if is_tiled {
+            let size = [required(tag::TILE_WIDTH, "TileWidth")?, required(tag::TILE_HEIGHT, "TileLength")?];
+            (size, tag::TILE_OFFSETS, tag::TILE_SIZES)
+        } else {
+            let rows = or(tag::ROWS_PER_STRIP, "RowsPerStrip", height as u64)?.min(height as u64);
+            ([width as u64, rows], tag::STRIP_OFFSETS, tag::STRIP_SIZES)
+        };
+        if chunk.contains(&0) || chunk[0] > width.max(MAX_TILE) as u64 {
+            return Err(Error::format(format!(
+                "the TIFF is stored in pieces of {} x {} pixels; they must not be empty, nor wider than the picture",
+                chunk[0], chunk[1]
+            )));
+        }
+        let layout = Self {
+            width,
+            height,
+            depth,
+            colour,
+            alpha,
+            compression,
+            predictor,
+            samples: if is_planar { 1 } else { samples },
+            planes: if is_planar { samples } else { 1 },
+            chunk: [chunk[0] as usize, chunk[1].min(height as u64) as usize],
+            offsets: directory.field(offsets).ok_or_else(|| missing("StripOffsets"))?,
+            sizes: directory.field(sizes).ok_or_else(|| missing("StripByteCounts"))?,
+            directory,
+        };
+        layout.check_room(file_bytes)?;
+        Ok(layout)
+    }
+
+    /// Channels of the image that the picture becomes: grey with alpha becomes RGBA, palettes and CMYK RGB.
+    pub fn channels(&self) -> usize {
+        match (self.colour, self.alpha) {
+            (Colour::Grey { .. }, None) => 1,
+            (Colour::Grey { .. } | Colour::Rgb, Some(_)) => 4,
+            (Colour::Rgb | Colour::Cmyk | Colour::Palette(_), _) => 3,
+        }
+    }
+
+    /// Samples that make a colour.
+    pub fn colours(&self) -> usize {
+        match self.colour {
+            Colour::Grey { .. } | Colour::Palette(_) => 1,
+            Colour::Rgb => 3,
+            Colour::Cmyk => 4,
+        }
+    }
+
+    /// Bytes of a row of a chunk, once it is unpacked.
+    pub fn row_bytes(&self) -> usize {
+        (self.chunk[0] * self.samples * self.depth.bits()).div_ceil(8)
+    }
+
+    /// Bytes that unpacked chunks need at most: the rows of them that lie within the picture.
+    pub fn chunk_bytes(&self) -> usize {
+        self.row_bytes() * self.chunk[1]
+    }
+
+    fn grid(&self) -> [usize; 2] {
+        [self.width.div_ceil(self.chunk[0]), self.height.div_ceil(self.chunk[1])]
+    }
+
+    /// The chunks of all planes whose samples are of use.
+    pub fn chunks(&self) -> impl Iterator<Item = Chunk> + use<> {
+        let ([across, down], [width, height]) = (self.grid(), self.chunk);
+        let (picture_width, picture_height) = (self.width, self.height);
+        let used = self.planes.min(self.colours() + usize::from(self.alpha.is_some()));
+        (0..used * across * down).map(move |index| {
+            let (x, y) = (index % across * width, index / across % down * height);
+            Chunk {
+                index,
+                plane: index / (across * down),
+                x,
+                y,
+                width: width.min(picture_width - x),
+                height: height.min(picture_height - y),
+            }
+        })
+    }
+
+    /// The bytes that a chunk is stored in.
+    pub fn stored(&self, chunk: &Chunk) -> Result<&'a [u8]> {
+        let (offset, size) = (self.offsets.integer(chunk.index), self.sizes.integer(chunk.index));
+        offset
+            .zip(size)
+            .and_then(|(offset, size)| self.directory.ifds().slice(offset, size))
+            .ok_or_else(|| Error::format(format!("piece {} of the TIFF's pixels lies outside the file", chunk.index)))
+    }
+
+    /// Refuses what so short a file cannot hold, before memory is taken for it.
+    fn check_room(&self, file_bytes: usize) -> Result<()> {
+        let [across, down] = self.grid();
+        let chunks = across * down * self.planes;
+        if self.offsets.len() < chunks || self.sizes.len() < chunks {
+            return Err(Error::format(format!(
+                "the TIFF lists {} pieces with {} sizes; its picture has {chunks}",
+                self.offsets.len(),
+                self.sizes.len()
+            )));
+        }
+        let densest = if self.compression == Compression::None { 1 } else { DENSEST };
+        let pixel_bits = self.samples * self.planes * self.depth.bits();
+        if self.width * self.height * pixel_bits / 8 > file_bytes.saturating_mul(densest) {
+            return Err(Error::format("the TIFF header promises more than so short a file can hold"));
+        }
+        Ok(())
+    }
+}
+
+fn missing(name: &str) -> Error {
+    Error::format(format!("the TIFF has no {name}"))
+}
+
+pub fn unsupported(what: impl std::fmt::Display) -> Error {
+    Error::new(
+        ErrorKind::Unsupported,
+        format!(
+            "the TIFF has {what}, which is not read: save it as 8, 16 or 32-bit RGB without compression, or with LZW"
+        ),
+    )
+}
+
+/// The first value of a tag, which must be readable if the tag is there.
+fn integer(directory: &Directory, tag: u16, name: &str) -> Result<Option<u64>> {
+    let unreadable = || Error::format(format!("the TIFF's {name} is not a whole number within the file"));
+    directory.field(tag).map(|f| f.integer(0).ok_or_else(unreadable)).transpose()
+}
+
+/// Files of a camera's raw data are TIFF files too, whose first picture is a thumbnail.
+fn check_is_picture(directory: &Directory) -> Result<()> {
+    let is_thumbnail = directory.integer(tag::NEW_SUBFILE_TYPE).unwrap_or(0) & 1 != 0;
+    if is_thumbnail || directory.field(tag::DNG_VERSION).is_some() {
+        return Err(Error::new(
+            ErrorKind::Unsupported,
+            "the file holds a camera's raw data, which is not read: develop it, and save it as TIFF, PNG or JPEG",
+        ));
+    }
+    Ok(())
+}
+
+fn depth(directory: &Directory, samples: usize) -> Result<Depth> {
+    // One value may stand for all samples.
+    let all = |tag, name, default| -> Result<u64> {
+        let Some(field) = directory.field(tag) else { return Ok(default) };
+        let first = field.integer(0).ok_or_else(|| missing(name))?;
+        let is_same = (0..field.len().min(samples)).all(|i| field.integer(i) == Some(first));
+        if is_same { Ok(first) } else { Err(unsupported(format_args!("samples of unequal {name}"))) }
+    };
+    // 1 = unsigned, 2 = signed, 3 = floating point, 4 = of no known kind.
+    let (bits, format) = (all(tag::BITS, "BitsPerSample", 1)?, all(tag::SAMPLE_FORMAT, "SampleFormat", 1)?);
+    match (format, bits) {
+        (1 | 4, 1 | 2 | 4) if samples == 1 => Ok(Depth::Bits(bits as u8)),
+        (1 | 4, 8) => Ok(Depth::U8),
+        (1 | 4, 16) => Ok(Depth::U16),
+        (1 | 4, 32) => Ok(Depth::U32),
+        (3, 16) => Ok(Depth::F16),
+        (3, 32) => Ok(Depth::F32),
+        (3, 64) => Ok(Depth::F64),
+        _ => Err(unsupported(format_args!("{samples} samples of {bits} bits (SampleFormat {format})"))),
+    }
+}
+
+fn colour<'a>(directory: &Directory<'a>, photometric: u64, depth: Depth) -> Result<Colour<'a>> {
+    match photometric {
+        0 | 1 => Ok(Colour::Grey { is_inverted: photometric == 0 && !depth.is_float() }),
+        2 => Ok(Colour::Rgb),
+        3 if matches!(depth, Depth::Bits(_) | Depth::U8) => {
+            let map = directory.field(tag::COLOUR_MAP).ok_or_else(|| missing("ColorMap"))?;
+            let needed = 3 << depth.bits();
+            match map.len() {
+                len if len >= needed => Ok(Colour::Palette(map)),
+                len => Err(Error::format(format!("the TIFF's ColorMap has {len} values; it must have {needed}"))),
+            }
+        }
+        5 => Ok(Colour::Cmyk),
+        other => {
+            let name = match other {
+                6 => "YCbCr".to_string(),
+                8..=10 => "CIELAB".to_string(),
+                32_803 | 34_892 => "a sensor's own".to_string(),
+                other => format!("unknown (PhotometricInterpretation {other})"),
+            };
+            Err(unsupported(format_args!("colours that are {name}")))
+        }
+    }
+}
+
+/// Whether a sample after the colours is alpha. The tag says so; without it, the fourth of four is.
+fn alpha(directory: &Directory, colour: Colour, samples: usize) -> Result<Option<Alpha>> {
+    let colours = match colour {
+        Colour::Grey { .. } | Colour::Palette(_) => 1,
+        Colour::Rgb => 3,
+        Colour::Cmyk => 4,
+    };
+    if samples < colours {
+        return Err(Error::format(format!("the TIFF has {samples} samples per pixel; its colours need {colours}")));
+    }
+    if samples == colours || matches!(colour, Colour::Cmyk | Colour::Palette(_)) {
+        return Ok(None);
+    }
+    Ok(match directory.field(tag::EXTRA_SAMPLES).map(|f| f.integer(0)) {
+        Some(Some(1)) => Some(Alpha::Associated),
+        None | Some(Some(2)) => Some(Alpha::Unassociated),
+        Some(_) => None,
+    })
+}
+
+fn compression(code: u64) -> Result<Compression> {
+    let name = match code {
+        1 => return Ok(Compression::None),
+        5 => return Ok(Compression::Lzw),
+        8 | 32_946 => return Ok(Compression::Deflate),
+        32_773 => return Ok(Compression::PackBits),
+        2..=4 => "fax",
+        6 | 7 => "JPEG",
+        34_925 => "LZMA",
+        50_000 => "Zstandard",
+        50_001 => "WebP",
+        _ => "unknown",
+    };
+    Err(unsupported(format_args!("{name} compression ({code})")))
+}
+
+fn predictor(code: u64, depth: Depth) -> Result<Predictor> {
+    match code {
+        1 => Ok(Predictor::None),
+        2 if !matches!(depth, Depth::Bits(_)) => Ok(Predictor::Horizontal),
+        3 if depth.is_float() => Ok(Predictor::Float),
+        _ => Err(unsupported(format_args!("predictor {code} with samples of {} bits", depth.bits()))),
+    }
+}

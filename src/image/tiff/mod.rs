@@ -1,0 +1,124 @@
+//! TIFF files: grey, RGB, palette and CMYK, integers of 1 to 32 bits and floating point of 16 to 64, with or without alpha,
+//! in strips or tiles, as they are or packed with LZW, deflate or PackBits, under any predictor. The first picture is read.
+//!
+//! The crate `tiff` takes memory by the word of the file and prints, so the tags are read here, and checked before memory is
+//! taken. Not read, and said by name: JPEG and fax compression, YCbCr, CIELAB, and the raw data of cameras.
+//!
+//! TIFF revision 6.0 (Adobe, 1992); floating-point predictor: Adobe Photoshop TIFF technical note 3 (2005).
+
+mod chunk;
+pub(super) mod ifd;
+mod layout;
+#[cfg(test)]
+mod tests;
+
+use super::colour::{srgb_to_linear, srgb8_table};
+use super::io::Encoding;
+use super::photo::{Orientation, Upright};
+use super::{Image, room, try_vec};
+use crate::error::{Error, Result};
+use chunk::{sample, undo_predictor, unpack};
+use ifd::{Ifds, Order};
+use layout::{Alpha, Chunk, Colour, Depth, Layout};
+
+fn layout(bytes: &[u8]) -> Result<(Layout<'_>, Order)> {
+    let directory = Ifds::new(bytes).and_then(Ifds::first);
+    let directory = directory.ok_or_else(|| Error::format("the TIFF has no directory of its pictures"))?;
+    Ok((Layout::new(directory, bytes.len())?, directory.ifds().order()))
+}
+
+/// Width, height and number of channels of the first picture.
+pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
+    let (layout, _) = layout(bytes)?;
+    Ok((layout.width, layout.height, layout.channels()))
+}
+
+/// The first picture, as linear values.
+pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
+    let (layout, order) = layout(bytes)?;
+    room::check_unpacking()?;
+    let mut out = Upright::new(layout.width, layout.height, layout.channels(), orientation)?;
+    let mut unpacked = try_vec(layout.chunk_bytes(), 0u8)?;
+    let mut spare = try_vec(layout.row_bytes(), 0u8)?;
+    for chunk in layout.chunks() {
+        let rows = &mut unpacked[..layout.row_bytes() * chunk.height];
+        unpack(layout.stored(&chunk)?, layout.compression, rows)?;
+        for (y, row) in rows.chunks_exact_mut(layout.row_bytes()).enumerate() {
+            let order = undo_predictor(row, &mut spare, &layout, order);
+            put_row(&mut out, row, order, &layout, &Chunk { y: chunk.y + y, ..chunk });
+        }
+    }
+    let mut image = out.image;
+    finish(&mut image, &layout, encoding);
+    Ok(image)
+}
+
+/// Puts the samples of a row of a chunk where they belong: colours first, alpha last, all as they are encoded.
+fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Chunk) {
+    let stored = layout.samples;
+    let value = |i: usize| sample(row, i, layout.depth, order);
+    let (colours, has_alpha) = (layout.colours(), layout.alpha.is_some());
+    for x in 0..at.width {
+        let pixel = out.pixel(at.x + x, at.y);
+        let last = pixel.len() - 1;
+        match layout.colour {
+            // Each sample has chunks of its own.
+            _ if stored == 1 && at.plane > 0 => pixel[if at.plane == colours { last } else { at.plane }] = value(x),
+            Colour::Palette(map) => {
+                let size = 1 << layout.depth.bits();
+                let index = (value(x) * (size - 1) as f32).round() as usize;
+                for (c, channel) in pixel.iter_mut().enumerate() {
+                    *channel = map.integer(c * size + index).unwrap_or(0) as f32 / 65_535.0;
+                }
+            }
+            Colour::Cmyk => {
+                let black = value(x * stored + 3);
+                for (c, channel) in pixel.iter_mut().enumerate() {
+                    *channel = (1.0 - value(x * stored + c)) * (1.0 - black);
+                }
+            }
+            Colour::Grey { is_inverted } => {
+                let grey = value(x * stored);
+                pixel[0] = if is_inverted { 1.0 - grey } else { grey };
+                if stored > 1 && has_alpha {
+                    pixel[last] = value(x * stored + 1);
+                }
+            }
+            Colour::Rgb => {
+                let count = if stored == 1 { 1 } else { pixel.len() };
+                for (c, channel) in pixel[..count].iter_mut().enumerate() {
+                    *channel = value(x * stored + c);
+                }
+            }
+        }
+    }
+}
+
+/// Decodes colours that have been put in place, once they have been divided by alpha where they were multiplied by it.
+fn finish(image: &mut Image, layout: &Layout, encoding: Encoding) {
+    let is_curved = encoding == Encoding::Srgb && !layout.depth.is_float();
+    let is_associated = layout.alpha == Some(Alpha::Associated);
+    // A colour of 8 bits is one of 256.
+    let table =
+        (layout.depth == Depth::U8 && !is_associated && !matches!(layout.colour, Colour::Cmyk | Colour::Palette(_)))
+            .then(srgb8_table);
+    let linear = |v: f32| match &table {
+        _ if !is_curved => v,
+        Some(table) => table[(v * 255.0).round() as usize],
+        None => srgb_to_linear(v),
+    };
+    let is_grey = matches!(layout.colour, Colour::Grey { .. });
+    for pixel in image.data.chunks_exact_mut(image.channels) {
+        let (colours, alpha) = pixel.split_at_mut(if layout.alpha.is_some() { 3 } else { layout.channels() });
+        if is_associated && alpha[0] > 0.0 {
+            let bound = if layout.depth.is_float() { f32::INFINITY } else { 1.0 };
+            colours.iter_mut().for_each(|v| *v = (*v / alpha[0]).min(bound));
+        }
+        if is_grey {
+            let grey = linear(colours[0]);
+            colours.fill(grey);
+        } else {
+            colours.iter_mut().for_each(|v| *v = linear(*v));
+        }
+    }
+}
