@@ -36,6 +36,8 @@ pub struct Site {
     /// Photo pixels of lamps at sites in full view that are marked as none: that shine, and that do not.
     pub unmarked: f64,
     pub missing: f64,
+    /// How many of them do not shine.
+    pub dark: usize,
 }
 
 impl Site {
@@ -85,6 +87,7 @@ impl Sites {
                         shown: 0.0,
                         unmarked: 0.0,
                         missing: 0.0,
+                        dark: 0,
                     });
                 }
             }
@@ -114,14 +117,14 @@ impl Sites {
         let shown: f64 = lamps.iter().map(|l| l.weight).sum();
         let off: DVec2 = lamps.iter().map(|l| self.residual(l.centre - first.centre) * l.weight).sum();
         let at = first.centre + off / shown.max(f64::MIN_POSITIVE);
-        let (unmarked, missing) = self.missing(at, lamps, exemplar);
+        let (unmarked, missing, dark) = self.missing(at, lamps, exemplar);
         let site = &mut self.list[k];
-        (site.at, site.shown, site.unmarked, site.missing) = (at, shown, unmarked, missing);
+        (site.at, site.shown, site.unmarked, site.missing, site.dark) = (at, shown, unmarked, missing, dark);
     }
 
     /// Photo pixels of the lamps that are not marked in full view: where the photo shines as lamps of the site do, and
     /// where it does not.
-    fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64) {
+    fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64, usize) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
         let is_shown = |p: DVec2| {
@@ -145,13 +148,17 @@ impl Sites {
         let contrast = |p: DVec2| exemplar.working.contrast(p, half);
         let of_lamps = lamps.iter().take(MAX_COMPARED).filter_map(|l| contrast(l.centre));
         let brightest = of_lamps.fold(0.0, f64::max);
-        let (mut unmarked, mut missing) = (0.0, 0.0);
+        let (mut unmarked, mut missing, mut dark) = (0.0, 0.0, 0);
         for p in empty {
             let pixels = 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area();
             let shines = brightest > 0.0 && contrast(p).is_some_and(|c| c >= SHINES * brightest);
-            if shines { unmarked += pixels } else { missing += pixels }
+            if shines {
+                unmarked += pixels;
+            } else {
+                (missing, dark) = (missing + pixels, dark + 1);
+            }
         }
-        (unmarked, missing)
+        (unmarked, missing, dark)
     }
 
     /// How well the lattice predicts the lamps, in [0, 1]: the share of the photo pixels of seen and predicted lamps
