@@ -280,11 +280,15 @@ luxfer_status luxfer_image_create(luxfer_context *context,
                                   luxfer_image **image);
 
 /**
- * Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space is the encoding of integer samples:
- * LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; floating-point samples are
- * always linear. The caller releases *image. Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if an
- * OpenEXR file has neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, upright: a photo that its
+ * camera stored on its side is turned, see luxfer_image_get_metadata. path is UTF-8. colour_space is the encoding of
+ * integer samples: LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth;
+ * floating-point samples are always linear. Colour profiles (ICC) are not applied. Grey with alpha becomes RGBA,
+ * palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if it
+ * is of a format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of cameras, a TIFF
+ * with JPEG compression), or an OpenEXR file with neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond
+ * the memory budget.
  */
 luxfer_status luxfer_image_load(luxfer_context *context,
                                 const char *path,
@@ -330,6 +334,56 @@ luxfer_status luxfer_image_retain(luxfer_image *image);
 
 /** Removes a reference. Any thread. */
 luxfer_status luxfer_image_release(luxfer_image *image);
+
+/* ====================================================================================================================
+ * Photo metadata
+ *
+ * What a photo's file says of its camera, in the EXIF notes of JPEG, PNG, WebP and TIFF. Loading puts a photo upright by it.
+ * luxfer_rectify and luxfer_transfer expect its focal length where the caller gives none, and believe the lines where they are
+ * surer. The luminance of white is offered only: it becomes luxfer_transfer_params.white_luminance if the caller says so.
+ * ==================================================================================================================== */
+
+/** What a photo's file says of its camera. Set struct_size before the call. */
+typedef struct luxfer_photo_metadata {
+    /** sizeof(luxfer_photo_metadata), set by the caller. */
+    uint32_t struct_size;
+    /**
+     * How the file stores the photo, a value of EXIF's tag Orientation in [1, 8]; 1 = upright, or not said. Loading has undone it:
+     * 2 by mirroring left to right, 3 by a half turn, 4 by both, 6 and 8 by a quarter turn clockwise and counter-clockwise, 5 and 7
+     * by these and mirroring.
+     */
+    uint32_t orientation;
+    /**
+     * Focal length in pixels of the loaded photo; 0 = unknown, also for photos whose sides show that they have been cropped.
+     */
+    double focal;
+    /** Its standard deviation; 0 where it is unknown. */
+    double focal_error;
+    /** F-number N of the aperture; 0 = unknown. */
+    double f_number;
+    /** Exposure time t in seconds; 0 = unknown. */
+    double exposure_time;
+    /** ISO sensitivity S; 0 = unknown. */
+    double iso;
+    /**
+     * Luminance in cd/m² that became the value 1, by the saturation-based speed of ISO 12232: 78 N² / (0.65 t S). 0 = unknown. It
+     * holds for the photo as the camera developed it: an editor that changes brightness does not change these notes.
+     */
+    double white_luminance;
+    /**
+     * Lower end of its range: the sensitivity may be a standard output sensitivity instead, which clips 0.71 times as high.
+     */
+    double white_luminance_low;
+    /** Upper end of its range: a recommended exposure index leaves the headroom to the maker, here one stop. */
+    double white_luminance_high;
+} luxfer_photo_metadata;
+
+/**
+ * Gets what the file of a loaded image says of the camera. Of images that were not loaded, and of files that say nothing,
+ * everything is unknown. Any thread.
+ */
+luxfer_status luxfer_image_get_metadata(luxfer_image *image,
+                                        luxfer_photo_metadata *metadata);
 
 /* ====================================================================================================================
  * Job
@@ -1282,7 +1336,10 @@ typedef struct luxfer_rectify_params {
      * LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
      */
     double hough_band;
-    /** Focal length in pixels, > 0; 0, the default: unknown. */
+    /**
+     * Focal length in pixels, > 0; 0, the default: estimated from the lines, and from the photo's metadata if it has
+     * any.
+     */
     double focal;
     /** Principal point in pixels; NaN, the default: the image's centre. */
     double principal[2];
@@ -1393,6 +1450,9 @@ typedef struct luxfer_rectify_report {
 
 /** Assumed: 0.85 times the width of the photo. */
 #define LUXFER_FOCAL_ASSUMED 2
+
+/** Mainly from what the photo's file says; see luxfer_image_get_metadata. */
+#define LUXFER_FOCAL_FROM_METADATA 3
 
 /** The plane in frontal view, linear RGB. */
 #define LUXFER_RECTIFY_UNWARPED 0

@@ -68,6 +68,7 @@ LUXFER_METRIC_VISIBLE_LINE = 1
 LUXFER_FOCAL_GIVEN = 0
 LUXFER_FOCAL_FROM_VANISHING_POINTS = 1
 LUXFER_FOCAL_ASSUMED = 2
+LUXFER_FOCAL_FROM_METADATA = 3
 LUXFER_RECTIFY_UNWARPED = 0
 LUXFER_RECTIFY_VALID = 1
 LUXFER_DEPTH_ALONG_Z = 0
@@ -352,6 +353,24 @@ class luxfer_image_view(Structure):
         ("data", c_void_p),
     ]
     enumerations: dict[str, type] = {"sample": types.Sample, "colour_space": types.ColourSpace, "flags": types.View}
+
+
+class luxfer_photo_metadata(Structure):
+    """What a photo's file says of its camera."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("orientation", c_uint32),
+        ("focal", c_double),
+        ("focal_error", c_double),
+        ("f_number", c_double),
+        ("exposure_time", c_double),
+        ("iso", c_double),
+        ("white_luminance", c_double),
+        ("white_luminance_low", c_double),
+        ("white_luminance_high", c_double),
+    ]
+    result = types.PhotoMetadata
 
 
 class luxfer_scene_counts(Structure):
@@ -1325,6 +1344,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_image_read": (c_int32, [("image", POINTER(luxfer_image)), ("first_channel", c_uint32), ("view", POINTER(luxfer_image_view))]),
     "luxfer_image_retain": (c_int32, [("image", POINTER(luxfer_image))]),
     "luxfer_image_release": (c_int32, [("image", POINTER(luxfer_image))]),
+    "luxfer_image_get_metadata": (c_int32, [("image", POINTER(luxfer_image)), ("metadata", POINTER(luxfer_photo_metadata))]),
     "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p)]),
     "luxfer_job_poll": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("finished", POINTER(c_int32))]),
     "luxfer_job_status": (c_int32, [("job", POINTER(luxfer_job))]),

@@ -167,6 +167,8 @@ class FocalSource(IntEnum):
     """Estimated from vanishing points of orthogonal directions."""
     ASSUMED = 2
     """Assumed: 0.85 times the width of the photo."""
+    FROM_METADATA = 3
+    """Mainly from what the photo's file says; see luxfer_image_get_metadata."""
 
 
 class DepthKind(IntEnum):
@@ -813,6 +815,36 @@ class ImageView(TypedDict, total=False):
 
 
 @dataclass(frozen=True)
+class PhotoMetadata:
+    """What a photo's file says of its camera."""
+
+    orientation: int
+    """How the file stores the photo, a value of EXIF's tag Orientation in [1, 8]; 1 = upright, or not said.
+    Loading has undone it: 2 by mirroring left to right, 3 by a half turn, 4 by both, 6 and 8 by a quarter turn
+    clockwise and counter-clockwise, 5 and 7 by these and mirroring."""
+    focal: float
+    """Focal length in pixels of the loaded photo; 0 = unknown, also for photos whose sides show that they have
+    been cropped."""
+    focal_error: float
+    """Its standard deviation; 0 where it is unknown."""
+    f_number: float
+    """F-number N of the aperture; 0 = unknown."""
+    exposure_time: float
+    """Exposure time t in seconds; 0 = unknown."""
+    iso: float
+    """ISO sensitivity S; 0 = unknown."""
+    white_luminance: float
+    """Luminance in cd/m² that became the value 1, by the saturation-based speed of ISO 12232: 78 N² / (0.65 t
+    S). 0 = unknown. It holds for the photo as the camera developed it: an editor that changes brightness does
+    not change these notes."""
+    white_luminance_low: float
+    """Lower end of its range: the sensitivity may be a standard output sensitivity instead, which clips 0.71
+    times as high."""
+    white_luminance_high: float
+    """Upper end of its range: a recommended exposure index leaves the headroom to the maker, here one stop."""
+
+
+@dataclass(frozen=True)
 class SceneCounts:
     """Numbers of the objects in a scene."""
 
@@ -1077,7 +1109,8 @@ class RectifyParams(TypedDict, total=False):
     """Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2],
     for Lines.HOUGH; default 0.0436, which is 2.5 degrees."""
     focal: float
-    """Focal length in pixels, > 0; 0, the default: unknown."""
+    """Focal length in pixels, > 0; 0, the default: estimated from the lines, and from the photo's metadata if
+    it has any."""
     principal: Sequence[float]
     """Principal point in pixels; NaN, the default: the image's centre."""
     plane_axes: Sequence[int]
