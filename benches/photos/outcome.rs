@@ -73,10 +73,12 @@ impl Outcome {
         self.results().emission.as_deref()
     }
 
-    /// The run's own words that its texture may not be the photo's. An error is the clearest of them. Empty otherwise: the
-    /// library has no warnings yet; they are to be read here.
+    /// The run's own words that its texture may not be the photo's: its error, and its warnings up to the texture.
     pub fn warnings(&self) -> Vec<String> {
-        self.failure.iter().cloned().collect()
+        let raised = self.results().warnings(&self.transfer.input.strokes);
+        let of_texture = raised.into_iter().filter(|(stage, _)| *stage <= Stage::Emission);
+        let texts = of_texture.map(|(_, w)| format!("{:?} {:.3} (limit {:.3})", w.code, w.severity, w.limit));
+        self.failure.iter().cloned().chain(texts).collect()
     }
 
     /// The lamps of the texture, where 1 is the distance of the photo's camera from its plane.

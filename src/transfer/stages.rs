@@ -53,7 +53,7 @@ impl Transfer {
     pub(super) fn segment_lights(&mut self, job: Job) -> Result<()> {
         let features = need(&self.results.features, "run stage Features")?;
         let plane = need(&self.results.plane, "run stage Plane")?;
-        let strokes = self.input.strokes.light_examples()?;
+        let strokes = self.input.strokes.light_examples(&features.image)?;
         let input = segment::Input { features: &features.image, strokes: &strokes, within: Some(&plane.mask) };
         let lights = segment::run(&input, &self.params.lights, job).map_err(|e| e.within("strokes of the lights"))?;
         self.results.lights = Some(Arc::new(lights));

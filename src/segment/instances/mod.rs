@@ -6,13 +6,15 @@
 //! strokes ──────────────────────────────────────────────────┘
 //! ```
 //! 1. [`tree`]: the connected regions above every level of brightness, each inside another.
-//! 2. [`regions`]: their size, shape, colour and the contrast along their contour.
+//! 2. [`regions`]: their size, in the photo and on the plane ([`footprint`]), shape, colour and the contrast along
+//!    their contour.
 //! 3. [`painted`]: for each positive stroke, the regions that cover it with the sharpest contours.
 //! 4. [`similar`]: regions without a stroke that look like the painted ones and lie on the plane.
 //! 5. [`soft`]: confidence that falls to one half on each region's contour, between pixels.
 //!
 //! Not modelled: lamps darker than the plane they light, such as the body of a lamp that shines upwards; lamps behind a grid.
 
+mod footprint;
 mod painted;
 mod regions;
 mod similar;
@@ -22,6 +24,7 @@ mod surroundings;
 mod tests;
 mod tree;
 
+use super::face;
 use super::samples::{self, Ownership};
 use super::{Input, Segmentation};
 use crate::error::{Error, Result};
@@ -71,7 +74,12 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let photo = Brightness::new(input.features, white(input.features, &paint)?, job.part(0.0, 0.2))?;
     let floor = floor(&photo, &paint)?;
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
-    let regions = Regions::new(&tree, &photo, job.part(0.6, 0.8))?;
+    // In a room laid out as a box, the features tell how large things are.
+    let footprint = match face::is_laid_out(input) {
+        true => Some(footprint::areas(input.features, job.part(0.6, 0.65))?),
+        false => None,
+    };
+    let regions = Regions::new(&tree, &photo, footprint.as_deref(), job.part(0.65, 0.8))?;
     let mut negatives = try_vec(tree.len(), 0f64)?;
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);

@@ -86,7 +86,10 @@ impl Brightness {
 
 /// Sums over the pixels of each node, and over its contour.
 pub struct Regions {
+    /// In pixels.
     pub area: Vec<f64>,
+    /// On the surface of a room that was laid out.
+    pub surface: Option<Vec<f64>>,
     x: Vec<f64>,
     y: Vec<f64>,
     xx: Vec<f64>,
@@ -98,10 +101,11 @@ pub struct Regions {
 }
 
 impl Regions {
-    pub fn new(tree: &Tree, photo: &Brightness, job: Job) -> Result<Self> {
+    pub fn new(tree: &Tree, photo: &Brightness, footprint: Option<&[f32]>, job: Job) -> Result<Self> {
         let blank = || try_vec(tree.len(), 0f64);
         let mut sums = Self {
             area: blank()?,
+            surface: footprint.map(|_| blank()).transpose()?,
             x: blank()?,
             y: blank()?,
             xx: blank()?,
@@ -117,7 +121,11 @@ impl Regions {
             }
             sums.add_row(tree, photo, y);
         }
-        let Self { area, x, y, xx, yy, xy, lab: [l, a, b], contour_gradient, contour_length } = &mut sums;
+        if let (Some(surface), Some(footprint)) = (&mut sums.surface, footprint) {
+            tree.node_of.iter().zip(footprint).for_each(|(&node, &area)| surface[node as usize] += f64::from(area));
+            tree.accumulate(surface);
+        }
+        let Self { area, x, y, xx, yy, xy, lab: [l, a, b], contour_gradient, contour_length, .. } = &mut sums;
         let all = [area, x, y, xx, yy, xy, l, a, b, contour_gradient, contour_length];
         all.into_iter().for_each(|values| tree.accumulate(values));
         Ok(sums)

@@ -24,6 +24,12 @@ const SOLIDITY: f64 = 0.85;
 const SMALLER: f64 = 1.0 / 27.0;
 /// Area, relative to the largest painted lamp. [judged on 28 photos]
 const LARGER: f64 = 1.6;
+/// Factor between its area on the plane and those of the painted lamps: bloom and blur spread far ones. [judged on 44
+/// photos]
+const SURFACE: f64 = 4.0;
+/// Share of the pixels of the largest painted lamp from which a painted lamp shows its area on the plane. [judged on 44
+/// photos]
+const SHOWN: f64 = 0.01;
 /// Breadth, relative to the broadest painted lamp. [judged on 28 photos]
 const BROADER: f64 = 1.5;
 /// Share of the ring that must be plane. [judged on 28 photos]
@@ -53,6 +59,8 @@ pub struct Similar {
 struct Model {
     min_area: f64,
     max_area: f64,
+    /// On the plane, where the room was laid out.
+    surface: Option<[f64; 2]>,
     max_breadth: f64,
     min_lightness: f64,
     min_solidity: f64,
@@ -137,6 +145,13 @@ impl Search<'_> {
         Ok(Some(Model {
             min_area: (least(of(&|n| regions.area[n])) * SMALLER).max(MIN_AREA),
             max_area: most(of(&|n| regions.area[n])) * LARGER,
+            surface: regions.surface.as_ref().map(|surface| {
+                let min_shown = SHOWN * most(of(&|n| regions.area[n]));
+                let shown = painted.iter().map(|&n| n as usize).filter(|&n| regions.area[n] >= min_shown);
+                let range =
+                    shown.fold([f64::INFINITY, 0.0f64], |[low, high], n| [low.min(surface[n]), high.max(surface[n])]);
+                [range[0] / SURFACE, range[1] * SURFACE]
+            }),
             max_breadth: most(of(&|n| regions.axes(n)[1])) * BROADER,
             min_lightness: least(of(&|n| regions.colour(n)[0])) - DIMMER,
             min_solidity: least(of(&|n| regions.solidity(n))) * SOLIDITY,
@@ -158,6 +173,10 @@ impl Search<'_> {
         let contour = regions.contrast(node) / (model.contour * sharpness);
         if contour < NEARLY || regions.axes(node)[1] > model.max_breadth || regions.solidity(node) < model.min_solidity
         {
+            return 0.0;
+        }
+        let surface = model.surface.zip(regions.surface.as_ref());
+        if surface.is_some_and(|([least, most], surface)| !(least..=most).contains(&surface[node])) {
             return 0.0;
         }
         let [l, a, b] = regions.colour(node);

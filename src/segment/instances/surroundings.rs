@@ -18,7 +18,8 @@ pub struct Surroundings {
     pub on_plane: f64,
 }
 
-/// Looks at the ring around a node's pixels. Pixels of other regions, `taken`, do not count; none where nothing else is left.
+/// Looks at the ring around a node's pixels. Pixels of other regions, `taken` ones and those as bright as the node itself, do not
+/// count: panes lie side by side. None where nothing else is left.
 pub fn around(
     node: u32,
     tree: &Tree,
@@ -30,11 +31,12 @@ pub fn around(
     let bounds = Bounds::of(pixels, photo, GAP + RING);
     let distance = bounds.distance(pixels, photo.width)?;
 
+    let contour = pixels.iter().map(|&p| photo.levels[p as usize]).min().unwrap_or(0);
     let mut ring = Vec::new();
     let mut on_plane = 0usize;
     for (k, &d) in distance.iter().enumerate() {
         let i = bounds.pixel(k, photo.width);
-        if d as isize > GAP && d as isize <= GAP + RING && !taken[i] {
+        if d as isize > GAP && d as isize <= GAP + RING && !taken[i] && photo.levels[i] < contour {
             try_push(&mut ring, photo.smooth.data[i])?;
             on_plane += usize::from(plane.is_none_or(|p| p.data[i] > 0.5));
         }

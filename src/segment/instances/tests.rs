@@ -5,7 +5,7 @@ use crate::features::CHANNELS;
 use crate::image::{Image, colour};
 use crate::job::Monitor;
 use crate::rng::Rng;
-use crate::segment::{Input, Params, Segmentation, Stroke, Subject, run};
+use crate::segment::{Input, Params, Segmentation, Stroke, StrokeSet, Subject, run};
 use glam::{DVec2, Vec3};
 
 const WIDTH: usize = 320;
@@ -150,4 +150,44 @@ fn whole_images_of_one_brightness_and_of_noise_end_well() {
         let segmented = run(&input, &params, Monitor::default().job()).unwrap();
         assert!(segmented.confidence.data.iter().all(|c| (0.0..=1.0).contains(c)));
     }
+}
+
+#[test]
+fn panes_side_by_side_are_found_and_a_stroke_of_the_plane_across_them_does_no_harm() {
+    // Panes of 15 x 15 pixels with bars of 2 between them.
+    let is_pane = |x: usize, y: usize| {
+        (60..196).contains(&x) && (20..88).contains(&y) && (x - 60) % 17 < 15 && (y - 20) % 17 < 15
+    };
+    let mut features = features();
+    for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate().filter(|(i, _)| i / WIDTH < 120) {
+        pixel[0] = if is_pane(i % WIDTH, i / WIDTH) { 99.0 } else { 40.0 };
+    }
+    let painted = StrokeSet {
+        plane: vec![stroke(true, &[[20.0, 60.0], [300.0, 60.0]])],
+        lights: vec![stroke(true, &[[66.0, 27.0], [69.0, 27.0]])],
+    };
+    let ceiling = ceiling();
+    let strokes = painted.light_examples(&features).unwrap();
+    let input = Input { features: &features, strokes: &strokes, within: Some(&ceiling) };
+    let params = Params { subject: Subject::Lamps, ..Params::default() };
+    let mask = run(&input, &params, Monitor::default().job()).unwrap().mask;
+    // The blur before regions are formed takes the four corner pixels of each of the 32 panes, and nothing else.
+    let wrong = (0..WIDTH * 120).filter(|i| (mask.data[*i] > 0.5) != is_pane(i % WIDTH, i / WIDTH)).count();
+    assert!(wrong <= 4 * 32, "{wrong}");
+}
+
+#[test]
+fn lamps_much_smaller_on_the_plane_than_the_painted_ones_are_not_like_them() {
+    // The photo's size says little: the right half shows the plane from ten times as near.
+    let mut features = features();
+    for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+        let (x, y) = ((i % WIDTH) as f32, (i / WIDTH) as f32);
+        let scale = if x < 170.0 { 1.0 } else { 0.1 };
+        (pixel[4], pixel[5], pixel[6]) = (170.0 + scale * (x - 170.0), 0.0, scale * y);
+    }
+    let ceiling = ceiling();
+    let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
+    let input = Input { features: &features, strokes: &strokes, within: Some(&ceiling) };
+    let segmented = run(&input, &Params { subject: Subject::Lamps, ..Params::default() }, Monitor::default().job());
+    assert_eq!(found(&segmented.unwrap().mask).0[..4], [true, true, false, true]);
 }
