@@ -112,7 +112,7 @@ class Colours(Case):
 
     def assert_like_lcms(self, data, pixels, icc):
         image = luxfer.Image.from_bytes(context(), data)
-        self.assertEqual(image.metadata.colour, luxfer.FileColour.CONVERTED)
+        self.assertEqual(image.metadata.colour, luxfer.types.FileColour.CONVERTED)
         difference = np.abs(codes_of(np.asarray(image)) - by_lcms(pixels, icc))
         self.assertLessEqual(difference.max(), 1)
 
@@ -145,7 +145,7 @@ class Colours(Case):
     def test_masks_are_not_converted(self):
         icc = matrix_profile(RED_GREEN_BLUE["Rec.2020"], "gamma")
         image = luxfer.Image.from_bytes(context(), file_of(self.pixels, "PNG", icc), "linear")
-        self.assertEqual(image.metadata.colour, luxfer.FileColour.DATA)
+        self.assertEqual(image.metadata.colour, luxfer.types.FileColour.DATA)
         self.assertTrue(np.array_equal(np.round(np.asarray(image) * 255), self.pixels))
 
     def test_profiles_for_inks_are_named(self):
@@ -153,7 +153,7 @@ class Colours(Case):
         icc = profile(described({}), b"CMYK", b"Lab ")
         Pillow.fromarray(self.pixels).convert("CMYK").save(out, "TIFF", icc_profile=icc)
         image = luxfer.Image.from_bytes(context(), out.getvalue())
-        self.assertEqual(image.metadata.colour, luxfer.FileColour.UNCONVERTED)
+        self.assertEqual(image.metadata.colour, luxfer.types.FileColour.UNCONVERTED)
 
     def test_written_files_state_their_colours(self):
         image = luxfer.Image(context(), np.full((2, 2, 3), 0.5, np.float32))
