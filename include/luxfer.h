@@ -280,15 +280,18 @@ luxfer_status luxfer_image_create(luxfer_context *context,
                                   luxfer_image **image);
 
 /**
- * Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, upright: a photo that its
- * camera stored on its side is turned, see luxfer_image_get_metadata. path is UTF-8. colour_space is the encoding of
- * integer samples: LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth;
- * floating-point samples are always linear. Colour profiles (ICC) are not applied. Grey with alpha becomes RGBA,
- * palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if it
- * is of a format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of cameras, a TIFF
- * with JPEG compression), or an OpenEXR file with neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond
- * the memory budget.
+ * Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, and rotates it upright by
+ * its EXIF orientation. path is UTF-8. With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709
+ * from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of
+ * OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). Without such a statement, integer samples are sRGB and
+ * floating-point samples linear. See luxfer_photo_metadata.colour. With LUXFER_COLOUR_LINEAR, for data such as masks
+ * and depth, samples are not converted. An OpenEXR picture has the size of its display window. Grey with alpha
+ * becomes RGBA, palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any
+ * thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
+ * it is of a known format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of
+ * cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G, B nor
+ * a single channel), or larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_image_load(luxfer_context *context,
                                 const char *path,
@@ -303,10 +306,10 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        luxfer_image **image);
 
 /**
- * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
- * (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels,
- * unchanged, in 32-bit floating point; exposure is not used. An existing file is replaced only once the new one is
- * complete. Any thread.
+ * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by
+ * exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the file
+ * states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709; exposure
+ * is not used. An existing file is replaced only once the new one is complete. Any thread.
  * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
@@ -338,49 +341,85 @@ luxfer_status luxfer_image_release(luxfer_image *image);
 /* ====================================================================================================================
  * Photo metadata
  *
- * What a photo's file says of its camera, in the EXIF notes of JPEG, PNG, WebP and TIFF. Loading puts a photo upright by it.
- * luxfer_rectify and luxfer_transfer expect its focal length where the caller gives none, and believe the lines where they are
- * surer. The luminance of white is offered only: it becomes luxfer_transfer_params.white_luminance if the caller says so.
+ * The camera settings that the file of a loaded photo records in its EXIF tags (JPEG, PNG, WebP, TIFF), and how its
+ * colours were understood. luxfer_image_load applies the orientation. luxfer_rectify and luxfer_transfer use the
+ * focal length as a prior unless the caller sets one; the lines of the photo outweigh it where they determine it
+ * better. The library does not use white_luminance by itself: to apply it, copy it to
+ * luxfer_transfer_params.white_luminance.
  * ==================================================================================================================== */
 
-/** What a photo's file says of its camera. Set struct_size before the call. */
+/**
+ * How the colours of an image were understood: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
+ * ones may be added.
+ */
+typedef int32_t luxfer_file_colour;
+
+/** Metadata of the file of a loaded photo. Set struct_size before the call. */
 typedef struct luxfer_photo_metadata {
     /** sizeof(luxfer_photo_metadata), set by the caller. */
     uint32_t struct_size;
     /**
-     * How the file stores the photo, a value of EXIF's tag Orientation in [1, 8]; 1 = upright, or not said. Loading has undone it:
-     * 2 by mirroring left to right, 3 by a half turn, 4 by both, 6 and 8 by a quarter turn clockwise and counter-clockwise, 5 and 7
-     * by these and mirroring.
+     * EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied it: 2
+     * mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90 degrees, 8
+     * counter-clockwise, 5 and 7 rotate by 90 degrees and mirror.
      */
     uint32_t orientation;
     /**
-     * Focal length in pixels of the loaded photo; 0 = unknown, also for photos whose sides show that they have been cropped.
+     * Focal length in pixels of the loaded photo; 0 = unknown. Also 0 if the photo was cropped, which its aspect
+     * ratio shows.
      */
     double focal;
-    /** Its standard deviation; 0 where it is unknown. */
+    /** Standard deviation of focal, in pixels; 0 = unknown. */
     double focal_error;
     /** F-number N of the aperture; 0 = unknown. */
     double f_number;
     /** Exposure time t in seconds; 0 = unknown. */
     double exposure_time;
-    /** ISO sensitivity S; 0 = unknown. */
+    /** ISO speed S; 0 = unknown. */
     double iso;
     /**
-     * Luminance in cd/m² that became the value 1, by the saturation-based speed of ISO 12232: 78 N² / (0.65 t S). 0 = unknown. It
-     * holds for the photo as the camera developed it: an editor that changes brightness does not change these notes.
+     * Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), the saturation-based
+     * speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change the
+     * brightness keep these tags.
      */
     double white_luminance;
-    /**
-     * Lower end of its range: the sensitivity may be a standard output sensitivity instead, which clips 0.71 times as high.
-     */
+    /** Lower bound of white_luminance: 0.71 times it, if the camera states its standard output sensitivity instead. */
     double white_luminance_low;
-    /** Upper end of its range: a recommended exposure index leaves the headroom to the maker, here one stop. */
+    /** Upper bound of white_luminance: one stop above it, if the camera states a recommended exposure index. */
     double white_luminance_high;
+    /** How the colours of the file were understood. */
+    luxfer_file_colour colour;
+    /** 0. */
+    uint32_t reserved;
 } luxfer_photo_metadata;
 
+/** The image was not loaded from a file. */
+#define LUXFER_FILE_COLOUR_NONE 0
+
 /**
- * Gets what the file of a loaded image says of the camera. Of images that were not loaded, and of files that say nothing,
- * everything is unknown. Any thread.
+ * The file states no colour space. Integers were decoded as sRGB, and floating-point samples taken as linear Rec.709.
+ */
+#define LUXFER_FILE_COLOUR_ASSUMED 1
+
+/** The file states sRGB (integers) or linear Rec.709 (floating point). */
+#define LUXFER_FILE_COLOUR_STATED 2
+
+/** The file states another colour space. The colours were converted to linear Rec.709. */
+#define LUXFER_FILE_COLOUR_CONVERTED 3
+
+/**
+ * A warning: the file states a colour space that the library cannot convert, such as a profile for CMYK or a damaged
+ * profile. The colours were read as if the file stated none, so saturated colours may be wrong. Export the photo as
+ * sRGB.
+ */
+#define LUXFER_FILE_COLOUR_UNCONVERTED 4
+
+/** The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged. */
+#define LUXFER_FILE_COLOUR_DATA 5
+
+/**
+ * Gets the metadata of the file that an image was loaded from. All values are unknown if the image was not loaded
+ * from a file, or if the file has no metadata. Any thread.
  */
 luxfer_status luxfer_image_get_metadata(luxfer_image *image,
                                         luxfer_photo_metadata *metadata);
@@ -4159,9 +4198,10 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
 /* ====================================================================================================================
  * Warnings
  *
- * Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the place in the
- * photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all its stages. A list is a
- * copy, which stays as it is when the stage is started again. An empty list does not prove a result right.
+ * Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the
+ * place in the photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all
+ * its stages. A list is a copy, which stays as it is when the stage is started again. An empty list does not prove a
+ * result right.
  * ==================================================================================================================== */
 
 /** A list of warnings. See luxfer_transfer_get_warnings. */
@@ -4177,8 +4217,8 @@ typedef struct luxfer_warning {
     /** LUXFER_WARNING_ value. */
     luxfer_warning_code code;
     /**
-     * The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look within,
-     * PLANE without.
+     * The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look
+     * within, PLANE without.
      */
     luxfer_stage stage;
     /** 1 if the warning has a place in the photo, else 0. */
@@ -4192,7 +4232,8 @@ typedef struct luxfer_warning {
 } luxfer_warning;
 
 /**
- * The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard deviation.
+ * The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard
+ * deviation.
  */
 #define LUXFER_WARNING_FOCAL_ASSUMED 1
 
@@ -4203,19 +4244,20 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_LENS_DISTORTION 3
 
 /**
- * The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in radians.
+ * The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in
+ * radians.
  */
 #define LUXFER_WARNING_NOT_SQUARE 4
 
 /**
- * The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust, below the
- * limit.
+ * The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust,
+ * below the limit.
  */
 #define LUXFER_WARNING_LAYOUT_UNCERTAIN 5
 
 /**
- * Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the severity is
- * their share of the mask and these regions. The place is the pixel where one more stroke helps most.
+ * Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the
+ * severity is their share of the mask and these regions. The place is the pixel where one more stroke helps most.
  */
 #define LUXFER_WARNING_UNSEEN 6
 
@@ -4243,8 +4285,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_MAGNIFIED 13
 
 /**
- * The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the limit. The
- * place is the flattest.
+ * The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the
+ * limit. The place is the flattest.
  */
 #define LUXFER_WARNING_PLANE_NEAR_HORIZON 14
 
@@ -4271,7 +4313,8 @@ luxfer_status luxfer_transfer_get_warnings(luxfer_transfer *transfer,
                                            luxfer_warnings **warnings);
 
 /**
- * Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any thread.
+ * Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any
+ * thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_rectify_get_warnings(luxfer_rectify *rectify,
@@ -4284,8 +4327,8 @@ luxfer_status luxfer_rectify_get_warnings(luxfer_rectify *rectify,
 luxfer_status luxfer_features_get_warnings(luxfer_features *features, luxfer_warnings **warnings);
 
 /**
- * Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are now. The
- * caller releases *warnings. Any thread.
+ * Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are
+ * now. The caller releases *warnings. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_segment_get_warnings(luxfer_segment *segment,
@@ -4315,8 +4358,8 @@ luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
                                   luxfer_warning *warning);
 
 /**
- * Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be; *needed
- * receives the capacity for all of it, unless NULL. Any thread.
+ * Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be;
+ * *needed receives the capacity for all of it, unless NULL. Any thread.
  * LUXFER_NOT_FOUND if there is no such warning.
  */
 luxfer_status luxfer_warnings_get_message(luxfer_warnings *warnings,
@@ -4342,8 +4385,8 @@ luxfer_status luxfer_warnings_retain(luxfer_warnings *warnings);
 luxfer_status luxfer_warnings_release(luxfer_warnings *warnings);
 
 /**
- * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The string
- * is static: never free it. Any thread.
+ * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
+ * string is static: never free it. Any thread.
  */
 const char *luxfer_warning_name(luxfer_warning_code code);
 

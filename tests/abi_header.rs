@@ -340,7 +340,7 @@ layouts! {
     luxfer_image_view: struct_size channels sample colour_space width height flags reserved pixel_stride row_stride
         byte_size data;
     luxfer_photo_metadata: struct_size orientation focal focal_error f_number exposure_time iso white_luminance
-        white_luminance_low white_luminance_high;
+        white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area bent;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior

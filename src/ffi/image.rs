@@ -185,7 +185,7 @@ impl Pixels {
         }
     }
 
-    /// What the file of a loaded photo says of its camera.
+    /// Metadata of the file of a loaded photo.
     pub(super) fn metadata(&self) -> &PhotoMetadata {
         &self.metadata
     }
@@ -269,15 +269,18 @@ pub unsafe extern "C" fn luxfer_image_create(
     })
 }
 
-/// Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, upright: a photo that its
-/// camera stored on its side is turned, see luxfer_image_get_metadata. path is UTF-8. colour_space is the encoding of
-/// integer samples: LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth;
-/// floating-point samples are always linear. Colour profiles (ICC) are not applied. Grey with alpha becomes RGBA,
-/// palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any thread.
-/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if it
-/// is of a format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of cameras, a TIFF
-/// with JPEG compression), or an OpenEXR file with neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond
-/// the memory budget.
+/// Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, and rotates it upright by
+/// its EXIF orientation. path is UTF-8. With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709
+/// from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of
+/// OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). Without such a statement, integer samples are sRGB and
+/// floating-point samples linear. See luxfer_photo_metadata.colour. With LUXFER_COLOUR_LINEAR, for data such as masks
+/// and depth, samples are not converted. An OpenEXR picture has the size of its display window. Grey with alpha
+/// becomes RGBA, palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any
+/// thread.
+/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
+/// it is of a known format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of
+/// cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G, B nor
+/// a single channel), or larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_load(
     context: *mut luxfer_context,
@@ -328,10 +331,10 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
     Ok(Pixels::own(context, photo.image, charge, photo.metadata))
 }
 
-/// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
-/// (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels,
-/// unchanged, in 32-bit floating point; exposure is not used. An existing file is replaced only once the new one is
-/// complete. Any thread.
+/// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by
+/// exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the file
+/// states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709; exposure
+/// is not used. An existing file is replaced only once the new one is complete. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_save(

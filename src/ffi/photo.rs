@@ -1,8 +1,10 @@
 //! Photo metadata
 //!
-//! What a photo's file says of its camera, in the EXIF notes of JPEG, PNG, WebP and TIFF. Loading puts a photo upright by it.
-//! luxfer_rectify and luxfer_transfer expect its focal length where the caller gives none, and believe the lines where they are
-//! surer. The luminance of white is offered only: it becomes luxfer_transfer_params.white_luminance if the caller says so.
+//! The camera settings that the file of a loaded photo records in its EXIF tags (JPEG, PNG, WebP, TIFF), and how its
+//! colours were understood. luxfer_image_load applies the orientation. luxfer_rectify and luxfer_transfer use the
+//! focal length as a prior unless the caller sets one; the lines of the photo outweigh it where they determine it
+//! better. The library does not use white_luminance by itself: to apply it, copy it to
+//! luxfer_transfer_params.white_luminance.
 
 use super::guard::enter;
 use super::image::luxfer_image;
@@ -10,36 +12,60 @@ use super::params::{Report, Versioned};
 use super::status::luxfer_status;
 use crate::image::photo::PhotoMetadata;
 
-/// What a photo's file says of its camera. Set struct_size before the call.
+/// How the colours of an image were understood: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
+/// ones may be added.
+pub type luxfer_file_colour = i32;
+/// The image was not loaded from a file.
+pub const LUXFER_FILE_COLOUR_NONE: luxfer_file_colour = 0;
+/// The file states no colour space. Integers were decoded as sRGB, and floating-point samples taken as linear Rec.709.
+pub const LUXFER_FILE_COLOUR_ASSUMED: luxfer_file_colour = 1;
+/// The file states sRGB (integers) or linear Rec.709 (floating point).
+pub const LUXFER_FILE_COLOUR_STATED: luxfer_file_colour = 2;
+/// The file states another colour space. The colours were converted to linear Rec.709.
+pub const LUXFER_FILE_COLOUR_CONVERTED: luxfer_file_colour = 3;
+/// A warning: the file states a colour space that the library cannot convert, such as a profile for CMYK or a damaged
+/// profile. The colours were read as if the file stated none, so saturated colours may be wrong. Export the photo as
+/// sRGB.
+pub const LUXFER_FILE_COLOUR_UNCONVERTED: luxfer_file_colour = 4;
+/// The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged.
+pub const LUXFER_FILE_COLOUR_DATA: luxfer_file_colour = 5;
+
+/// Metadata of the file of a loaded photo. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_photo_metadata {
     /// sizeof(luxfer_photo_metadata), set by the caller.
     pub struct_size: u32,
-    /// How the file stores the photo, a value of EXIF's tag Orientation in [1, 8]; 1 = upright, or not said. Loading has undone it:
-    /// 2 by mirroring left to right, 3 by a half turn, 4 by both, 6 and 8 by a quarter turn clockwise and counter-clockwise, 5 and 7
-    /// by these and mirroring.
+    /// EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied it: 2
+    /// mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90 degrees, 8
+    /// counter-clockwise, 5 and 7 rotate by 90 degrees and mirror.
     pub orientation: u32,
-    /// Focal length in pixels of the loaded photo; 0 = unknown, also for photos whose sides show that they have been cropped.
+    /// Focal length in pixels of the loaded photo; 0 = unknown. Also 0 if the photo was cropped, which its aspect
+    /// ratio shows.
     pub focal: f64,
-    /// Its standard deviation; 0 where it is unknown.
+    /// Standard deviation of focal, in pixels; 0 = unknown.
     pub focal_error: f64,
     /// F-number N of the aperture; 0 = unknown.
     pub f_number: f64,
     /// Exposure time t in seconds; 0 = unknown.
     pub exposure_time: f64,
-    /// ISO sensitivity S; 0 = unknown.
+    /// ISO speed S; 0 = unknown.
     pub iso: f64,
-    /// Luminance in cd/m² that became the value 1, by the saturation-based speed of ISO 12232: 78 N² / (0.65 t S). 0 = unknown. It
-    /// holds for the photo as the camera developed it: an editor that changes brightness does not change these notes.
+    /// Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), the saturation-based
+    /// speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change the
+    /// brightness keep these tags.
     pub white_luminance: f64,
-    /// Lower end of its range: the sensitivity may be a standard output sensitivity instead, which clips 0.71 times as high.
+    /// Lower bound of white_luminance: 0.71 times it, if the camera states its standard output sensitivity instead.
     pub white_luminance_low: f64,
-    /// Upper end of its range: a recommended exposure index leaves the headroom to the maker, here one stop.
+    /// Upper bound of white_luminance: one stop above it, if the camera states a recommended exposure index.
     pub white_luminance_high: f64,
+    /// How the colours of the file were understood.
+    pub colour: luxfer_file_colour,
+    /// 0.
+    pub reserved: u32,
 }
 
-const SIZE: usize = 8 + 8 * 8;
+const SIZE: usize = 8 + 8 * 8 + 8;
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_photo_metadata {
@@ -65,12 +91,14 @@ impl luxfer_photo_metadata {
             white_luminance: white.map_or(0.0, |w| w.expected),
             white_luminance_low: white.map_or(0.0, |w| w.low),
             white_luminance_high: white.map_or(0.0, |w| w.high),
+            colour: known.colour as luxfer_file_colour,
+            reserved: 0,
         }
     }
 }
 
-/// Gets what the file of a loaded image says of the camera. Of images that were not loaded, and of files that say nothing,
-/// everything is unknown. Any thread.
+/// Gets the metadata of the file that an image was loaded from. All values are unknown if the image was not loaded
+/// from a file, or if the file has no metadata. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_get_metadata(
     image: *mut luxfer_image,

@@ -1,8 +1,9 @@
 //! Warnings
 //!
-//! Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the place in the
-//! photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all its stages. A list is a
-//! copy, which stays as it is when the stage is started again. An empty list does not prove a result right.
+//! Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the
+//! place in the photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all
+//! its stages. A list is a copy, which stays as it is when the stage is started again. An empty list does not prove a
+//! result right.
 
 use super::context::Context;
 use super::emission::luxfer_emission;
@@ -31,19 +32,21 @@ pub struct luxfer_warnings {
 
 /// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
 pub type luxfer_warning_code = i32;
-/// The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard deviation.
+/// The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard
+/// deviation.
 pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
 /// The directions of the room axes are uncertain; the severity is the largest standard deviation in radians.
 pub const LUXFER_WARNING_VIEW_UNCERTAIN: luxfer_warning_code = 2;
 /// The lens bends straight lines; the severity is the distortion of luxfer_rectify_report without its sign.
 pub const LUXFER_WARNING_LENS_DISTORTION: luxfer_warning_code = 3;
-/// The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in radians.
+/// The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in
+/// radians.
 pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
-/// The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust, below the
-/// limit.
+/// The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust,
+/// below the limit.
 pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
-/// Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the severity is
-/// their share of the mask and these regions. The place is the pixel where one more stroke helps most.
+/// Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the
+/// severity is their share of the mask and these regions. The place is the pixel where one more stroke helps most.
 pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
 /// Strokes of both classes cover the same pixels; the severity is their number per sample.
 pub const LUXFER_WARNING_CONTRADICTORY_STROKES: luxfer_warning_code = 7;
@@ -59,8 +62,8 @@ pub const LUXFER_WARNING_MISSED_STROKES: luxfer_warning_code = 11;
 pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
 /// Much of the unwarped plane is magnified; the severity is its share. The place is the one that is magnified most.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
-/// The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the limit. The
-/// place is the flattest.
+/// The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the
+/// limit. The place is the flattest.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
 /// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
@@ -81,8 +84,8 @@ pub struct luxfer_warning {
     pub struct_size: u32,
     /// LUXFER_WARNING_ value.
     pub code: luxfer_warning_code,
-    /// The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look within,
-    /// PLANE without.
+    /// The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look
+    /// within, PLANE without.
     pub stage: luxfer_stage,
     /// 1 if the warning has a place in the photo, else 0.
     pub has_place: u32,
@@ -152,7 +155,8 @@ pub unsafe extern "C" fn luxfer_transfer_get_warnings(
     })
 }
 
-/// Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any thread.
+/// Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any
+/// thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_warnings(
@@ -183,8 +187,8 @@ pub unsafe extern "C" fn luxfer_features_get_warnings(
     })
 }
 
-/// Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are now. The
-/// caller releases *warnings. Any thread.
+/// Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are
+/// now. The caller releases *warnings. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_warnings(
@@ -264,8 +268,8 @@ pub unsafe extern "C" fn luxfer_warnings_get(
     })
 }
 
-/// Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be; *needed
-/// receives the capacity for all of it, unless NULL. Any thread.
+/// Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be;
+/// *needed receives the capacity for all of it, unless NULL. Any thread.
 /// LUXFER_NOT_FOUND if there is no such warning.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_warnings_get_message(
@@ -303,8 +307,8 @@ pub unsafe extern "C" fn luxfer_warnings_release(warnings: *mut luxfer_warnings)
     handle::release(warnings)
 }
 
-/// The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The string
-/// is static: never free it. Any thread.
+/// The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
+/// string is static: never free it. Any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn luxfer_warning_name(code: luxfer_warning_code) -> *const c_char {
     let name = match code {

@@ -63,12 +63,13 @@ const fn relative_row(row: usize) -> [f64; 3] {
     [m[row] / white, m[row + 3] / white, m[row + 6] / white]
 }
 
-/// The cube root of a value in `[1e-37, 3e38]`, to 1e-13 of it, by operations that processors do on many values at once.
-/// Other values give something finite or NaN.
+/// The cube root of a value in `[1e-37, 3e38]`, to 1e-13 of it, by operations that processors do on many values at
+/// once. Other values give something finite or NaN.
 #[inline(always)]
 fn cube_root(t: f64) -> f64 {
-    // `t^(-1/3)` needs no division: with e = 1 - t r³ the better guess is r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 + 14e³/81 + …).
-    // The first, a third of the exponent and the mantissa as they stand, has |e| < 0.11, the second 6e-5.
+    // `t^(-1/3)` needs no division: with e = 1 - t r³ the better guess is r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 +
+    // 14e³/81 + …). The first, a third of the exponent and the mantissa as they stand, has |e| < 0.11, the second
+    // 6e-5.
     let single = t as f32;
     let third = (single.to_bits() as i32 as f32 * (1.0 / 3.0)) as i32;
     let r = f32::from_bits(1_419_900_000u32.wrapping_sub(third as u32));
@@ -79,8 +80,8 @@ fn cube_root(t: f64) -> f64 {
     t * r * r
 }
 
-/// CIEDE2000 difference of a linear light from another that is wanted, seen at the exposure that shows that as a middle grey;
-/// 0 where it is black.
+/// CIEDE2000 difference of a linear light from another that is wanted, seen at the exposure that shows that as a
+/// middle grey; 0 where it is black.
 pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
     let luminance = f64::from(luminance(wanted.as_vec3()));
     if !(luminance > 0.0) {

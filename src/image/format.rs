@@ -1,6 +1,6 @@
 //! Which format a picture file has, by its first bytes.
 
-use super::io::EXR_MAGIC;
+use super::{openexr, radiance};
 use crate::error::{Error, ErrorKind, Result};
 use image::ImageFormat;
 
@@ -8,6 +8,7 @@ use image::ImageFormat;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Exr,
+    Radiance,
     Tiff,
     /// By the crate `image`.
     Raster(ImageFormat),
@@ -45,15 +46,17 @@ impl Format {
                 format!("the file is in the format {name}, which is not read: convert it to JPEG, PNG, TIFF or WebP"),
             ));
         }
-        if begins(0, &EXR_MAGIC) {
+        if begins(0, &openexr::MAGIC) {
             return Ok(Self::Exr);
+        }
+        if radiance::MAGICS.iter().any(|magic| begins(0, magic)) {
+            return Ok(Self::Radiance);
         }
         match image::guess_format(bytes) {
             Ok(ImageFormat::Tiff) => Ok(Self::Tiff),
             Ok(
                 format @ (ImageFormat::Png
                 | ImageFormat::Jpeg
-                | ImageFormat::Hdr
                 | ImageFormat::WebP
                 | ImageFormat::Bmp
                 | ImageFormat::Gif),

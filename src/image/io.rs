@@ -1,42 +1,39 @@
-//! Picture files: PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR in; PNG and OpenEXR out. With `raster` and `samples` the
-//! only user of `image` and `exr`.
+//! Picture files: PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR in; PNG and OpenEXR out. With `raster` and
+//! `radiance` the only user of `image`.
 //!
-//! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it. Colour profiles (ICC) are not
-//! applied: integers are taken as sRGB, or as they are. So the saturated colours of a photo in Display P3 or Adobe RGB come out
-//! paler than they were; greys, and light near white, do not change.
+//! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it. Photos are
+//! converted from the colour space that their file states to linear Rec.709 ([`super::file_colour`]); textures are
+//! not, as glTF asks (2.0, 3.8.3), nor are data.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::linear_to_srgb;
+use crate::image::file_colour::{Conversion, FileColour, Space};
 use crate::image::format::Format;
 use crate::image::photo::{self, Orientation, PhotoMetadata};
-use crate::image::samples::Largest;
-use crate::image::{Image, MAX_SIDE, raster, room, tiff, try_collect, try_with_capacity};
-use exr::prelude as ex;
+use crate::image::{Image, MAX_SIDE, openexr, radiance, raster, room, tiff, try_collect};
 use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
 
+pub use crate::image::openexr::{Layer, encode as encode_exr};
+
 /// Largest image a file may hold: 2^28 pixels, a 16 k square.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
-pub(super) const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-
-/// No compression of an OpenEXR or TIFF file that can be read makes samples more times shorter (deflate: 1032, once PXR24 has left
-/// out a quarter; LZW: 1330).
+/// No compression of an OpenEXR or TIFF file that can be read makes samples more times shorter (deflate: 1032, once
+/// PXR24 has left out a quarter; LZW: 1330).
 pub(super) const DENSEST: usize = 1400;
 
-/// Bytes of a tile that any file may have.
-const LARGEST_TILE: usize = 64 << 20;
-
-/// How the integers of a file are to be read. Floating-point files are always linear.
+/// How the samples of a file are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
+    /// Colours: integers are sRGB, floating-point numbers linear, unless the file of a photo states another space.
     Srgb,
-    /// Data that is no colour: normal maps, roughness, masks.
+    /// Data that is no colour, as it is: normal maps, roughness, masks.
     Linear,
 }
 
-/// A picture that stands upright, and what its file says of the camera.
+/// A picture that stands upright in linear Rec.709, and what its file says of the camera.
 #[derive(Clone, Debug)]
 pub struct Photo {
     pub image: Image,
@@ -57,117 +54,98 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>> {
     })
 }
 
-/// Reads a picture file held in memory, its rows and columns as they are stored.
+/// Reads a picture file held in memory, its rows and columns and its colours as they are stored.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
-    decode_turned(bytes, encoding, Orientation::UPRIGHT)
-}
-
-/// Reads a picture file held in memory, and puts it upright by what the camera wrote into it.
-pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
-    let exif = match Format::of(bytes)? {
-        Format::Exr => photo::Exif::default(),
-        Format::Tiff | Format::Raster(_) => photo::read(bytes),
-    };
-    let image = decode_turned(bytes, encoding, exif.orientation)?;
-    let metadata = PhotoMetadata::new(&exif, image.width, image.height);
-    Ok(Photo { image, metadata })
-}
-
-fn decode_turned(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
     match Format::of(bytes)? {
-        Format::Exr => decode_exr(bytes),
-        Format::Tiff => tiff::decode(bytes, encoding, orientation),
-        Format::Raster(format) => raster::decode(bytes, format, encoding, orientation),
+        Format::Exr => Ok(openexr::decode(bytes)?.0),
+        Format::Radiance => Ok(radiance::decode(bytes)?.0),
+        Format::Tiff => tiff::decode(bytes, encoding, Orientation::UPRIGHT),
+        Format::Raster(format) => raster::decode(bytes, format, encoding, Orientation::UPRIGHT),
     }
 }
 
-/// Width, height and largest number of channels of a picture file, from its header alone: what decoding it will need. The sides are
-/// those of the stored picture, not of the upright one.
+/// Reads a picture file held in memory, puts it upright by what the camera wrote into it, and converts its colours.
+pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
+    let format = Format::of(bytes)?;
+    let exif = match format {
+        Format::Exr | Format::Radiance => photo::Exif::default(),
+        Format::Tiff | Format::Raster(_) => photo::read(bytes),
+    };
+    let (image, colour) = match format {
+        Format::Exr => convert(openexr::decode(bytes)?, encoding)?,
+        Format::Radiance => convert(radiance::decode(bytes)?, encoding)?,
+        Format::Tiff => convert_stored(Space::of(bytes, format, &exif)?, encoding, |encoding| {
+            tiff::decode(bytes, encoding, exif.orientation)
+        })?,
+        Format::Raster(raster) => convert_stored(Space::of(bytes, format, &exif)?, encoding, |encoding| {
+            raster::decode(bytes, raster, encoding, exif.orientation)
+        })?,
+    };
+    let metadata = PhotoMetadata::new(&exif, image.width, image.height, colour);
+    Ok(Photo { image, metadata })
+}
+
+/// Converts linear colours from the space that their file states.
+fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Image, FileColour)> {
+    let colour = match space {
+        _ if encoding == Encoding::Linear => FileColour::Data,
+        Space::Unstated => FileColour::Assumed,
+        Space::Native => FileColour::Stated,
+        // One channel is no colour.
+        Space::Other(_) if image.channels < 3 => FileColour::Assumed,
+        Space::Other(conversion) => {
+            conversion.apply(&mut image)?;
+            FileColour::Converted
+        }
+        Space::Unusable => FileColour::Unconverted,
+    };
+    Ok((image, colour))
+}
+
+/// Reads a picture as it is stored, and converts it from the space that its file states; without one it is read as
+/// sRGB.
+fn convert_stored(
+    space: Space,
+    encoding: Encoding,
+    read: impl Fn(Encoding) -> Result<Image>,
+) -> Result<(Image, FileColour)> {
+    let space = match space {
+        Space::Other(conversion) if encoding == Encoding::Srgb => {
+            let mut image = read(Encoding::Linear)?;
+            let fits = conversion.fits(image.channels);
+            let conversion = if fits { conversion } else { Conversion::srgb()? };
+            conversion.apply(&mut image)?;
+            return Ok((image, if fits { FileColour::Converted } else { FileColour::Unconverted }));
+        }
+        space => space,
+    };
+    convert((read(encoding)?, space), encoding)
+}
+
+/// Width, height and largest number of channels of a picture file, from its header alone: what decoding it will need.
+/// The sides are those of the stored picture, not of the upright one.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     match Format::of(bytes)? {
-        Format::Exr => {
-            let headers = exr_headers(bytes)?;
-            let size = headers.iter().map(|h| (h.layer_size.0, h.layer_size.1, h.channels.list.len().min(4)));
-            size.max_by_key(|s| s.0 * s.1 * s.2).ok_or_else(|| Error::format("the OpenEXR file has no layers"))
-        }
+        Format::Exr => openexr::probe(bytes),
+        Format::Radiance => radiance::probe(bytes),
         Format::Tiff => tiff::probe(bytes),
         Format::Raster(format) => raster::probe(bytes, format),
     }
 }
 
+/// Refuses sizes beyond the limits of the library, and pictures without pixels.
 pub(super) fn check_size(width: u64, height: u64) -> Result<()> {
-    if width == 0 || height == 0 || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {
-        return Err(Error::format(format!(
-            "the header says {width} x {height} pixels; sides must lie in [1, {MAX_SIDE}] and the area in [1, {MAX_PIXELS}]"
-        )));
+    let is_empty = width == 0 || height == 0;
+    if is_empty || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {
+        return Err(Error::new(
+            if is_empty { ErrorKind::Format } else { ErrorKind::Unsupported },
+            format!(
+                "the header says {width} x {height} pixels; sides must lie in [1, {MAX_SIDE}] and the area in [1, \
+                 {MAX_PIXELS}]"
+            ),
+        ));
     }
     Ok(())
-}
-
-pub(super) fn broken_exr(e: exr::error::Error) -> Error {
-    let is_memory = matches!(&e, exr::error::Error::Io(e) if e.kind() == std::io::ErrorKind::OutOfMemory);
-    let kind = if is_memory { ErrorKind::OutOfMemory } else { ErrorKind::Format };
-    Error::new(kind, format!("the OpenEXR file cannot be decoded: {e}"))
-}
-
-pub(super) fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken_exr)?;
-    for header in &meta.headers {
-        let (width, height) = (header.layer_size.0, header.layer_size.1);
-        check_size(width as u64, height as u64)?;
-        // Memory is taken for all channels before the first of them is read.
-        if (width * height).saturating_mul(header.channels.bytes_per_pixel) > bytes.len().saturating_mul(DENSEST) {
-            return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
-        }
-        // Tiles may be larger than the picture; memory is taken for as much of one as the file says that it stores.
-        let tile = room::block_bytes(header);
-        if tile > bytes.len().saturating_mul(DENSEST).max(LARGEST_TILE) {
-            return Err(Error::format(format!(
-                "the OpenEXR header asks for tiles of {tile} bytes, which so short a file cannot hold"
-            )));
-        }
-    }
-    Ok(meta.headers)
-}
-
-/// The first layer of a file whose headers have been looked at, with all of its channels.
-pub(super) fn first_exr_layer(
-    bytes: &[u8],
-    headers: &exr::meta::Headers,
-) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
-    use ex::{ReadChannels, ReadLayers};
-    room::check_layer(headers)?;
-    let file = exr::image::read::any_channels::ReadAnyChannels { read_samples: Largest }
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes));
-    Ok(file.map_err(broken_exr)?.layer_data)
-}
-
-/// The first layer that has R, G and B (and A), or one with a single channel.
-fn decode_exr(bytes: &[u8]) -> Result<Image> {
-    let layer = first_exr_layer(bytes, &exr_headers(bytes)?)?;
-    let list = &layer.channel_data.list;
-    let find = |name: &str| list.iter().find(|c| c.name.eq_case_insensitive(name));
-    let channels: Vec<_> = match (find("R"), find("G"), find("B"), find("A")) {
-        (Some(r), Some(g), Some(b), Some(a)) => vec![r, g, b, a],
-        (Some(r), Some(g), Some(b), None) => vec![r, g, b],
-        _ if list.len() == 1 => vec![&list[0]],
-        _ => {
-            return Err(Error::new(
-                ErrorKind::Unsupported,
-                "the OpenEXR layer has neither R, G, B nor one single channel",
-            ));
-        }
-    };
-    let mut out = Image::new(layer.size.0, layer.size.1, channels.len())?;
-    for (c, channel) in channels.iter().enumerate() {
-        for (o, v) in out.data.iter_mut().skip(c).step_by(channels.len()).zip(channel.sample_data.values_as_f32()) {
-            *o = v;
-        }
-    }
-    Ok(out)
 }
 
 /// Encodes a linear image as an 8-bit sRGB PNG after multiplying it by `exposure`; 1, 3 or 4 channels.
@@ -195,55 +173,15 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
         ImageFormat::Png,
     )
     .map_err(|e| Error::new(ErrorKind::Internal, format!("the PNG encoder failed: {e}")))?;
-    Ok(out.into_inner())
+    state_srgb(out.into_inner())
 }
 
-/// One named group of channels of an OpenEXR file; an empty name gives plain `R`, `G`, `B`.
-pub struct Layer<'a> {
-    pub name: &'a str,
-    pub image: &'a Image,
-    /// One letter or word per channel: `["R", "G", "B"]`, `["Z"]`, `["X", "Y", "Z"]`.
-    pub channels: &'a [&'a str],
-}
-
-/// Encodes layers of one size into a single-part 32-bit float OpenEXR file, channels named `layer.channel`. `notes` are
-/// texts kept in its header, by name.
-pub fn encode_exr(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
-    use ex::WritableImage;
-    // Texts of OpenEXR files are UTF-8.
-    let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
-    let first = layers.first().ok_or_else(|| Error::argument("an OpenEXR file needs at least one layer"))?.image;
-    let mut list = ex::SmallVec::<[ex::AnyChannel<ex::FlatSamples>; 4]>::new();
-    for layer in layers {
-        first.check_same_size("the first layer", layer.image, layer.name)?;
-        if layer.channels.len() != layer.image.channels {
-            return Err(Error::argument(format!(
-                "layer {} has {} channels and {} channel names",
-                layer.name,
-                layer.image.channels,
-                layer.channels.len()
-            )));
-        }
-        for (c, channel) in layer.channels.iter().enumerate() {
-            let name = if layer.name.is_empty() { channel.to_string() } else { format!("{}.{channel}", layer.name) };
-            let samples = try_collect(layer.image.data.iter().skip(c).step_by(layer.image.channels).copied())?;
-            list.push(ex::AnyChannel::new(text(&name), ex::FlatSamples::F32(samples)));
-        }
-    }
-    let mut file = ex::Image::from_channels((first.width, first.height), ex::AnyChannels::sort(list));
-    for (name, note) in notes {
-        file.layer_data.attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
-    }
-    let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
-    let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 64 * channels;
-    let (width, height) = (first.width, first.height);
-    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
-    room::check_blocks(width, height, channels)?;
-    file.write()
-        .non_parallel()
-        .to_buffered(&mut out)
-        .map_err(|e| Error::new(ErrorKind::Internal, format!("the OpenEXR encoder failed: {e}")))?;
-    Ok(out.into_inner())
+/// Adds the chunk `sRGB` to a PNG: relative colorimetric, as nothing but the exposure was changed.
+fn state_srgb(png: Vec<u8>) -> Result<Vec<u8>> {
+    const CHUNK: [u8; 13] = *b"\0\0\0\x01sRGB\x01\xd9\xc9\x2c\x7f";
+    // Behind the signature and the header.
+    let (head, pixels) = png.split_at(8 + 25);
+    try_collect([head, &CHUNK, pixels].into_iter().flatten().copied())
 }
 
 /// Writes a whole file, or leaves what was there before: the bytes go to a neighbour first, then take its place.
@@ -295,7 +233,7 @@ mod tests {
         // A PNG whose header claims 2^31 - 1 pixels a side.
         let mut bomb = png.clone();
         bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
-        assert_eq!(decode(&bomb, Encoding::Srgb).unwrap_err().kind, ErrorKind::Format);
+        assert_eq!(decode(&bomb, Encoding::Srgb).unwrap_err().kind, ErrorKind::Unsupported);
         // An OpenEXR file both of whose windows claim 16384 pixels a side.
         let mut bomb = exr.clone();
         let window = |width: i32, height: i32| [0, 0, width - 1, height - 1].map(i32::to_le_bytes).concat();
@@ -312,8 +250,8 @@ mod tests {
         let image = Image::from_fn(1, 1, |_, _| [0.5]).unwrap();
         let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
-        // The table with the place of the only tile, which begins with its column, its row and its level in both directions. It has one
-        // pixel at all levels.
+        // The table with the place of the only tile, which begins with its column, its row and its level in both
+        // directions. It has one pixel at all levels.
         let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
         assert_eq!(exr[table + 8..table + 24], [0; 16]);
         exr[table + 16] = 10;

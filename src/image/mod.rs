@@ -7,14 +7,17 @@
 mod buffer;
 pub mod colour;
 mod containers;
+pub mod file_colour;
 mod format;
 pub mod io;
 pub mod numbers;
+mod openexr;
 pub(crate) mod pages;
 pub mod patches;
 pub mod photo;
 mod planes;
 pub mod pyramid;
+mod radiance;
 mod raster;
 mod room;
 mod samples;

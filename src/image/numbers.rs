@@ -1,10 +1,11 @@
 //! Files of exact numbers: windows of a picture as OpenEXR files that keep any count of doubles for each pixel.
 //!
-//! The picture itself is in R, G and B, so that any program can show what there is; the file's data window is where the
-//! window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
-//! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the header.
+//! The picture itself is in R, G and B, so that any program can show what there is; the file's data window is where
+//! the window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
+//! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the
+//! header.
 
-use super::io::{broken_exr, exr_headers, first_exr_layer};
+use super::openexr::{broken, first_layer, headers};
 use super::{Image, room, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
@@ -89,20 +90,20 @@ fn name(number: usize, is_high: bool) -> String {
 /// What the beginning of a file says.
 pub fn read_head(path: &Path) -> Result<Head> {
     let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
-    let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken_exr);
+    let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken);
     meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.within(path.display()))
 }
 
-/// Hands over the numbers of each pixel of a file that is known to have this head: anything else is refused before memory is
-/// taken for it.
+/// Hands over the numbers of each pixel of a file that is known to have this head: anything else is refused before
+/// memory is taken for it.
 pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
-    let headers = exr_headers(bytes)?;
+    let headers = headers(bytes)?;
     let found = Head::of(&headers)?;
     if found != *head {
         return Err(Error::format("its header is not what it was before"));
     }
     let [width, height] = head.size;
-    let layer = first_exr_layer(bytes, &headers)?;
+    let layer = first_layer(bytes, &headers)?;
     let mut halves: Vec<&[u32]> = try_with_capacity(2 * head.numbers)?;
     for channel in layer.channel_data.list.iter().skip(3) {
         match &channel.sample_data {
@@ -196,7 +197,14 @@ mod tests {
         })
         .unwrap();
         assert_eq!(seen, 19 * 13);
-        assert_eq!(decode_picture(&bytes, Encoding::Linear).unwrap(), picture);
+        // The picture lies in the whole where its window does.
+        let whole = decode_picture(&bytes, Encoding::Linear).unwrap();
+        assert_eq!([whole.width, whole.height], head.whole);
+        for (x, y) in (0..13).flat_map(|y| (0..19).map(move |x| (x, y))) {
+            assert_eq!(whole.pixel(head.corner[0] + x, head.corner[1] + y), picture.pixel(x, y));
+        }
+        let lit = |image: &Image| image.data.iter().filter(|v| **v != 0.0).count();
+        assert_eq!(lit(&whole), lit(&picture));
         assert_eq!((head.note("luxfer.one"), head.note("three")), (Some("Ä"), None));
     }
 
@@ -211,10 +219,10 @@ mod tests {
         // A picture of another kind.
         let layer = super::super::io::Layer { name: "", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
-        assert_eq!(Head::of(&exr_headers(&plain).unwrap()).unwrap().numbers, 0);
+        assert_eq!(Head::of(&headers(&plain).unwrap()).unwrap().numbers, 0);
         let layer = super::super::io::Layer { name: "deep", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
-        assert!(Head::of(&exr_headers(&plain).unwrap()).is_err());
+        assert!(Head::of(&headers(&plain).unwrap()).is_err());
         // One that says it is a picture of 16384 x 16384.
         let bomb = Head { whole: [1 << 14, 1 << 14], size: [1 << 14, 1 << 14], corner: [0, 0], ..head.clone() };
         let mut lie = bytes.clone();

@@ -6,7 +6,8 @@ use crate::error::Result;
 /// The 8-connected patches of pixels of which a colour is above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patches {
-    /// Of each pixel one more than the number of its patch, or 0; patches are numbered by their first pixel, row by row.
+    /// Of each pixel one more than the number of its patch, or 0; patches are numbered by their first pixel, row by
+    /// row.
     pub labels: Vec<u32>,
     pub count: usize,
 }

@@ -21,8 +21,8 @@ pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     }
 }
 
-/// The same for a number of channels that is known, of four or more: offsets become constants. What is put on a plane is
-/// `of(channel, four values)`.
+/// The same for a number of channels that is known, of four or more: offsets become constants. What is put on a plane
+/// is `of(channel, four values)`.
 #[inline(always)]
 pub fn deinterleave_of<const C: usize, const N: usize>(
     pixels: &[f32],

@@ -53,8 +53,8 @@ fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
         .collect()
 }
 
-/// The image at half the size, rounded up, each new pixel the mean of two by two; the last column and row count twice where
-/// there is an odd one.
+/// The image at half the size, rounded up, each new pixel the mean of two by two; the last column and row count twice
+/// where there is an odd one.
 pub fn half(image: &Image, job: Job) -> Result<Image> {
     let c = image.channels;
     let mut out = Image::new(image.width.div_ceil(2), image.height.div_ceil(2), c)?;

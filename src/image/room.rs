@@ -1,9 +1,11 @@
 //! Memory that codecs of others take, and without which they would end the process: asked for before they run.
 //!
-//! The bounds are of what the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr` allocate beside what they are given.
+//! The bounds are of what the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr` allocate beside what
+//! they are given.
 
 use super::containers::riff_chunks;
-use super::no_memory;
+use super::file_colour::icc::MAX_BYTES;
+use super::{MAX_SIDE, no_memory};
 use crate::error::Result;
 use crate::reserve;
 use exr::compression::Compression;
@@ -25,13 +27,19 @@ pub(super) fn check_pixels(
     pixel_bytes: usize,
 ) -> Result<()> {
     check(match format {
-        // Of progressive ones the coefficients of four components, two bytes each, in blocks of up to 32 pixels; a row of blocks.
+        // Of progressive ones the coefficients of four components, two bytes each, in blocks of up to 32 pixels; a row
+        // of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
         // The frame, where it is not as wide as the screen; LZW.
         ImageFormat::Gif => 5 * width * height + (1 << 20),
         _ => 16 * width * pixel_bytes + (1 << 20),
     })
+}
+
+/// For the scan lines of a Radiance file on their way.
+pub(super) fn check_scanlines(columns: usize) -> Result<()> {
+    check(16 * columns + (1 << 20))
 }
 
 /// For a WebP's pixels beside the picture itself.
@@ -42,8 +50,8 @@ fn webp(file: &[u8], width: usize, height: usize) -> usize {
     if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {
         return lossy;
     }
-    // RGBA, of moving pictures twice; transforms and the choice of codes for blocks of 4 x 4 pixels; codes, of which the shortest that
-    // have a table of 4 KiB take 12 bytes of the file.
+    // RGBA, of moving pictures twice; transforms and the choice of codes for blocks of 4 x 4 pixels; codes, of which
+    // the shortest that have a table of 4 KiB take 12 bytes of the file.
     11 * width * height + 400 * file.len() + lossy
 }
 
@@ -52,14 +60,26 @@ pub(super) fn check_unpacking() -> Result<()> {
     check(1 << 20)
 }
 
-/// For a chunk of a PNG file beside its pixels. The pixels' are read bit by bit, a colour profile is unpacked, up to the limit
-/// of `image`; nothing that deflate has packed is more than 1032 times as long.
-pub(super) fn check_chunk(name: &[u8], length: usize) -> Result<()> {
+/// For a chunk of a PNG file beside its pixels. The pixels' are read bit by bit, a colour profile is unpacked, up to a
+/// limit; nothing that deflate has packed is more than 1032 times as long.
+pub(super) fn check_chunk(name: &[u8], length: usize, file_bytes: usize) -> Result<()> {
     check(match name {
         b"IDAT" | b"fdAT" => return Ok(()),
-        b"iCCP" => length.saturating_mul(1032).min(512 << 20),
+        b"iCCP" => length.saturating_mul(1032).min(png_limit(file_bytes)),
         _ => length,
     })
+}
+
+/// Bytes that the decoder of PNG may take beside the pixels of a file of so many: chunks, which grow by doubling, a
+/// row of the widest picture, and a colour profile.
+pub(super) fn png_limit(file_bytes: usize) -> usize {
+    file_bytes.saturating_mul(3).saturating_add(8 * MAX_SIDE).saturating_add(MAX_BYTES)
+}
+
+/// For a colour profile: its tables as floating-point numbers, the curves, and the tables of a transform between
+/// profiles (33³ colours, curves of 2^16 values).
+pub(super) fn check_profile(bytes: usize) -> Result<()> {
+    check(bytes.saturating_mul(32).saturating_add(8 << 20))
 }
 
 /// For a PNG file of so many bytes of pixels: what becomes of them, packed and as they are, which grow by doubling.
@@ -81,7 +101,8 @@ pub(super) fn block_bytes(header: &Header) -> usize {
     width.saturating_mul(height).saturating_mul(header.channels.bytes_per_pixel)
 }
 
-/// For the first layer of an OpenEXR file: all of its samples, a block on its way through a decompressor, and lists of blocks.
+/// For the first layer of an OpenEXR file: all of its samples, a block on its way through a decompressor, and lists of
+/// blocks.
 pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
     let Some(header) = headers.first() else { return Ok(()) };
     let (width, height) = (header.layer_size.0, header.layer_size.1);
@@ -111,8 +132,8 @@ pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Resu
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
 }
 
-/// Bytes of an OpenEXR file of such numbers that no compression makes shorter, with so many of names and notes: samples, and for each
-/// block its place and head.
+/// Bytes of an OpenEXR file of such numbers that no compression makes shorter, with so many of names and notes:
+/// samples, and for each block its place and head.
 pub(super) fn longest_file(width: usize, height: usize, channels: usize, texts: usize) -> usize {
     4 * channels * width * height + 32 * tiles(width, height) + 64 * channels + texts + 4096
 }

@@ -1,5 +1,6 @@
-//! The samples of an OpenEXR layer, in memory that is asked for, and each line where a picture has it. (The reader of the crate
-//! itself ends the process where there is no room, and takes the file's word for which resolution a tile is of.)
+//! The samples of an OpenEXR layer, in memory that is asked for, and each line where a picture has it. (The reader of
+//! the crate itself ends the process where there is no room, and takes the file's word for which resolution a tile is
+//! of.)
 
 use crate::image::try_vec;
 use exr::block::chunk::TileCoordinates;

@@ -317,6 +317,7 @@ void photos_say_what_their_cameras_wrote() {
     CHECK(known.white_luminance_low < 240 && known.white_luminance_high > 240);
 
     const luxfer_photo_metadata nothing = ok(new_image(context).metadata());
+    CHECK(known.colour == LUXFER_FILE_COLOUR_ASSUMED && nothing.colour == LUXFER_FILE_COLOUR_NONE);
     CHECK(nothing.orientation == 1 && nothing.focal == 0 && nothing.white_luminance == 0);
 }
 

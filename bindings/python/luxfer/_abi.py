@@ -32,6 +32,12 @@ LUXFER_SAMPLE_F16 = 2
 LUXFER_SAMPLE_F32 = 3
 LUXFER_COLOUR_LINEAR = 0
 LUXFER_COLOUR_SRGB = 1
+LUXFER_FILE_COLOUR_NONE = 0
+LUXFER_FILE_COLOUR_ASSUMED = 1
+LUXFER_FILE_COLOUR_STATED = 2
+LUXFER_FILE_COLOUR_CONVERTED = 3
+LUXFER_FILE_COLOUR_UNCONVERTED = 4
+LUXFER_FILE_COLOUR_DATA = 5
 LUXFER_ALPHA_OPAQUE = 0
 LUXFER_ALPHA_MASK = 1
 LUXFER_ALPHA_BLEND = 2
@@ -356,7 +362,7 @@ class luxfer_image_view(Structure):
 
 
 class luxfer_photo_metadata(Structure):
-    """What a photo's file says of its camera."""
+    """Metadata of the file of a loaded photo."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -369,7 +375,10 @@ class luxfer_photo_metadata(Structure):
         ("white_luminance", c_double),
         ("white_luminance_low", c_double),
         ("white_luminance_high", c_double),
+        ("colour", c_int32),
+        ("reserved", c_uint32),
     ]
+    enumerations: dict[str, type] = {"colour": types.FileColour}
     result = types.PhotoMetadata
 
 

@@ -69,7 +69,7 @@ class Image(Handle):
 
     @property
     def metadata(self) -> PhotoMetadata:
-        """What the file of a loaded photo says of its camera; 0 is unknown."""
+        """Metadata of the file of a loaded photo, and how its colours were understood; 0 is unknown."""
         return cast(PhotoMetadata, self._read("get_metadata", _abi.luxfer_photo_metadata))
 
     @property

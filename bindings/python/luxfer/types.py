@@ -66,6 +66,26 @@ class ColourSpace(IntEnum):
     """Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear."""
 
 
+class FileColour(IntEnum):
+    """How the colours of an image were understood."""
+
+    NONE = 0
+    """The image was not loaded from a file."""
+    ASSUMED = 1
+    """The file states no colour space. Integers were decoded as sRGB, and floating-point samples taken as
+    linear Rec.709."""
+    STATED = 2
+    """The file states sRGB (integers) or linear Rec.709 (floating point)."""
+    CONVERTED = 3
+    """The file states another colour space. The colours were converted to linear Rec.709."""
+    UNCONVERTED = 4
+    """A warning: the file states a colour space that the library cannot convert, such as a profile for CMYK or
+    a damaged profile. The colours were read as if the file stated none, so saturated colours may be wrong.
+    Export the photo as sRGB."""
+    DATA = 5
+    """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
+
+
 class AlphaMode(IntEnum):
     """Meaning of a surface's alpha."""
 
@@ -816,32 +836,34 @@ class ImageView(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class PhotoMetadata:
-    """What a photo's file says of its camera."""
+    """Metadata of the file of a loaded photo."""
 
     orientation: int
-    """How the file stores the photo, a value of EXIF's tag Orientation in [1, 8]; 1 = upright, or not said.
-    Loading has undone it: 2 by mirroring left to right, 3 by a half turn, 4 by both, 6 and 8 by a quarter turn
-    clockwise and counter-clockwise, 5 and 7 by these and mirroring."""
+    """EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied
+    it: 2 mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90
+    degrees, 8 counter-clockwise, 5 and 7 rotate by 90 degrees and mirror."""
     focal: float
-    """Focal length in pixels of the loaded photo; 0 = unknown, also for photos whose sides show that they have
-    been cropped."""
+    """Focal length in pixels of the loaded photo; 0 = unknown. Also 0 if the photo was cropped, which its
+    aspect ratio shows."""
     focal_error: float
-    """Its standard deviation; 0 where it is unknown."""
+    """Standard deviation of focal, in pixels; 0 = unknown."""
     f_number: float
     """F-number N of the aperture; 0 = unknown."""
     exposure_time: float
     """Exposure time t in seconds; 0 = unknown."""
     iso: float
-    """ISO sensitivity S; 0 = unknown."""
+    """ISO speed S; 0 = unknown."""
     white_luminance: float
-    """Luminance in cd/m² that became the value 1, by the saturation-based speed of ISO 12232: 78 N² / (0.65 t
-    S). 0 = unknown. It holds for the photo as the camera developed it: an editor that changes brightness does
-    not change these notes."""
+    """Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), the saturation-
+    based speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change
+    the brightness keep these tags."""
     white_luminance_low: float
-    """Lower end of its range: the sensitivity may be a standard output sensitivity instead, which clips 0.71
-    times as high."""
+    """Lower bound of white_luminance: 0.71 times it, if the camera states its standard output sensitivity
+    instead."""
     white_luminance_high: float
-    """Upper end of its range: a recommended exposure index leaves the headroom to the maker, here one stop."""
+    """Upper bound of white_luminance: one stop above it, if the camera states a recommended exposure index."""
+    colour: FileColour
+    """How the colours of the file were understood."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,9 @@
-//! What cameras write into their pictures: the EXIF notes of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA CP-3451).
+//! What cameras write into their pictures: the EXIF notes of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA
+//! CP-3451).
 
 use super::Orientation;
 use crate::image::containers::{jpeg_segments, png_chunks, riff_chunks};
+use crate::image::file_colour::ExifColour;
 use crate::image::tiff::ifd::{Directory, Ifds};
 
 /// Tags of EXIF; the first two stand in the directory of the picture, the others in one of their own.
@@ -17,12 +19,16 @@ mod tag {
     pub const SHUTTER_SPEED: u16 = 0x9201;
     pub const APERTURE: u16 = 0x9202;
     pub const FOCAL_LENGTH: u16 = 0x920a;
+    pub const COLOUR_SPACE: u16 = 0xa001;
     pub const WIDTH: u16 = 0xa002;
     pub const HEIGHT: u16 = 0xa003;
+    pub const INTEROPERABILITY: u16 = 0xa005;
     pub const PLANE_X_RESOLUTION: u16 = 0xa20e;
     pub const PLANE_Y_RESOLUTION: u16 = 0xa20f;
     pub const PLANE_UNIT: u16 = 0xa210;
     pub const FOCAL_LENGTH_35: u16 = 0xa405;
+    /// In the directory of interoperability.
+    pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
 /// What the sensitivity of 16 bits says where the number is too large for it.
@@ -44,6 +50,7 @@ pub struct Exif {
     /// In seconds.
     pub exposure_time: Option<f64>,
     pub iso: Option<f64>,
+    pub colour: ExifColour,
 }
 
 /// The notes in a file of any format; of files without them nothing is known.
@@ -97,7 +104,22 @@ impl Exif {
             f_number: within(f_number, 0.5, 256.0),
             exposure_time: within(time, 1e-7, 1e5),
             iso: within(iso, 1.0, 1e8),
+            colour: colour(&notes),
         }
+    }
+}
+
+/// The colour space. Files for Adobe RGB say that theirs is uncalibrated, and which file by the rules of DCF it is
+/// (CIPA DC-009).
+fn colour(notes: &Directory) -> ExifColour {
+    let offset = notes.integer(tag::INTEROPERABILITY).and_then(|offset| u32::try_from(offset).ok());
+    let index = offset.and_then(|offset| notes.ifds().directory(offset)?.bytes(tag::INTEROPERABILITY_INDEX));
+    match notes.integer(tag::COLOUR_SPACE) {
+        Some(1) => ExifColour::Srgb,
+        // Beyond the standard, but written.
+        Some(2) => ExifColour::AdobeRgb,
+        _ if index.is_some_and(|index| index.starts_with(b"R03")) => ExifColour::AdobeRgb,
+        _ => ExifColour::Unstated,
     }
 }
 

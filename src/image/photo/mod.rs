@@ -1,22 +1,25 @@
-//! What a photo's file says of its camera: which way up it was held, its focal length and its exposure.
+//! Metadata of a photo's file: orientation, focal length, exposure, and how its colours were understood.
 
 mod exif;
 mod orientation;
 #[cfg(test)]
 mod tests;
 
+use crate::image::file_colour::FileColour;
 pub(super) use exif::{Exif, read};
 pub use orientation::Orientation;
 pub(super) use orientation::Upright;
 
-/// Standard deviation of a focal length from a camera's notes, as a share of it. [convention]: lenses are marked to about 5 %, and
-/// the one for 35 mm film is rounded to a millimetre and taken along the diagonal or the width (4 % apart at 4:3).
+/// Standard deviation of a focal length from a camera's notes, as a share of it. [convention]: lenses are marked to
+/// about 5 %, and the one for 35 mm film is rounded to a millimetre and taken along the diagonal or the width (4 %
+/// apart at 4:3).
 const FOCAL_ERROR: f64 = 0.05;
 
 /// Diagonal of film of 36 x 24 mm, along which CIPA DCG-001 takes equivalent focal lengths.
 const FILM_DIAGONAL: f64 = 43.266_615_305_567_87;
 
-/// Two ways to the focal length that differ by more than this contradict each other. [convention]: twice [`FOCAL_ERROR`].
+/// Two ways to the focal length that differ by more than this contradict each other. [convention]: twice
+/// [`FOCAL_ERROR`].
 const AGREEMENT: f64 = 0.1;
 
 /// A photo whose sides are in another proportion than the camera recorded has been cropped; they are whole numbers, and
@@ -26,12 +29,14 @@ const SAME_SHAPE: f64 = 0.01;
 /// ISO 12232:2019, 6.2: saturation-based speed is 78 lx s over the focal-plane exposure that just saturates.
 const SATURATION: f64 = 78.0;
 
-/// Focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis (ISO 12232:2019, annex A).
+/// Focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis (ISO
+/// 12232:2019, annex A).
 const LENS: f64 = 0.65;
 
-/// How far the luminance of white may lie from the saturation-based one, as factors. Below: the speed may be a standard output
-/// sensitivity (ISO 12232:2019, 6.4), 10 lx s over the exposure that becomes sRGB code 118, whose linear value is 0.181, so white
-/// is 55 lx s instead of 78. Above: a recommended exposure index leaves the headroom to the maker; a stop of it. [convention]
+/// How far the luminance of white may lie from the saturation-based one, as factors. Below: the speed may be a
+/// standard output sensitivity (ISO 12232:2019, 6.4), 10 lx s over the exposure that becomes sRGB code 118, whose
+/// linear value is 0.181, so white is 55 lx s instead of 78. Above: a recommended exposure index leaves the headroom
+/// to the maker; a stop of it. [convention]
 const WHITE_RANGE: [f64; 2] = [10.0 / 0.181 / SATURATION, 2.0];
 
 /// What a photo's file says of its camera, for the photo as it was loaded.
@@ -45,6 +50,8 @@ pub struct PhotoMetadata {
     /// In seconds.
     pub exposure_time: Option<f64>,
     pub iso: Option<f64>,
+    /// How its colours were understood.
+    pub colour: FileColour,
 }
 
 /// A luminance in cd/m², and the range that it lies in.
@@ -57,13 +64,14 @@ pub struct Luminance {
 
 impl PhotoMetadata {
     /// For a photo with such sides, upright or not.
-    pub(super) fn new(exif: &Exif, width: usize, height: usize) -> Self {
+    pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {
             orientation: exif.orientation,
             focal: focal(exif, width as f64, height as f64),
             f_number: exif.f_number,
             exposure_time: exif.exposure_time,
             iso: exif.iso,
+            colour,
         }
     }
 

@@ -3,7 +3,8 @@
 use crate::error::Result;
 use crate::image::Image;
 
-/// How the stored rows and columns lie in the scene: the value of EXIF's tag Orientation, 1 to 8 (JEITA CP-3451, 4.6.4).
+/// How the stored rows and columns lie in the scene: the value of EXIF's tag Orientation, 1 to 8 (JEITA CP-3451,
+/// 4.6.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation(u8);
 
@@ -79,8 +80,8 @@ mod tests {
 
     #[test]
     fn rows_and_columns_go_where_the_standard_says() {
-        // An upright picture of three columns and two rows, and what files of each orientation store of it: the tag names the side
-        // of the scene at which the first row, then the first column lies.
+        // An upright picture of three columns and two rows, and what files of each orientation store of it: the tag
+        // names the side of the scene at which the first row, then the first column lies.
         let stored: [(&[&str], &str); 8] = [
             (&["abc", "def"], "top, left"),
             (&["cba", "fed"], "top, right"),

@@ -80,7 +80,8 @@ fn letter(x: u32, y: u32) -> bool {
     [[1, 1, 1], [1, 0, 0], [1, 1, 0], [1, 0, 0]][y as usize / 16][x as usize / 16] == 1
 }
 
-/// The letter as it is stored for an orientation: the place in the upright picture of each stored pixel, by EXIF's table.
+/// The letter as it is stored for an orientation: the place in the upright picture of each stored pixel, by EXIF's
+/// table.
 fn stored(code: u16) -> image::RgbImage {
     let (width, height) = if code >= 5 { (64, 48) } else { (48, 64) };
     image::RgbImage::from_fn(width, height, |x, y| {

@@ -71,7 +71,8 @@ fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
     to
 }
 
-/// Undoes the predictor on a row, in place; `spare` is as long as the row. Says in which order the bytes of samples are then.
+/// Undoes the predictor on a row, in place; `spare` is as long as the row. Says in which order the bytes of samples
+/// are then.
 pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: Order) -> Order {
     let samples = layout.samples;
     match (layout.predictor, layout.depth.bits() / 8) {

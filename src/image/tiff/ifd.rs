@@ -97,6 +97,11 @@ impl<'a> Directory<'a> {
         self.field(tag)?.integer(0)
     }
 
+    /// The bytes of a tag, as far as they lie within the file.
+    pub fn bytes(&self, tag: u16) -> Option<&'a [u8]> {
+        self.field(tag).map(|field| field.values).filter(|values| !values.is_empty())
+    }
+
     /// The first value of a tag, if it is a finite number.
     pub fn number(&self, tag: u16) -> Option<f64> {
         self.field(tag)?.number(0)

@@ -1,8 +1,9 @@
-//! TIFF files: grey, RGB, palette and CMYK, integers of 1 to 32 bits and floating point of 16 to 64, with or without alpha,
-//! in strips or tiles, as they are or packed with LZW, deflate or PackBits, under any predictor. The first picture is read.
+//! TIFF files: grey, RGB, palette and CMYK, integers of 1 to 32 bits and floating point of 16 to 64, with or without
+//! alpha, in strips or tiles, as they are or packed with LZW, deflate or PackBits, under any predictor. The first
+//! picture is read.
 //!
-//! The crate `tiff` takes memory by the word of the file and prints, so the tags are read here, and checked before memory is
-//! taken. Not read, and said by name: JPEG and fax compression, YCbCr, CIELAB, and the raw data of cameras.
+//! The crate `tiff` takes memory by the word of the file and prints, so the tags are read here, and checked before
+//! memory is taken. Not read, and said by name: JPEG and fax compression, YCbCr, CIELAB, and the raw data of cameras.
 //!
 //! TIFF revision 6.0 (Adobe, 1992); floating-point predictor: Adobe Photoshop TIFF technical note 3 (2005).
 
@@ -31,6 +32,17 @@ fn layout(bytes: &[u8]) -> Result<(Layout<'_>, Order)> {
 pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     let (layout, _) = layout(bytes)?;
     Ok((layout.width, layout.height, layout.channels()))
+}
+
+/// Whether the samples of the first picture are floating-point numbers.
+pub(super) fn is_float(bytes: &[u8]) -> bool {
+    layout(bytes).is_ok_and(|(layout, _)| layout.depth.is_float())
+}
+
+/// The colour profile of the first picture (ICC.1:2022, annex B.3).
+pub(super) fn profile(bytes: &[u8]) -> Option<&[u8]> {
+    const PROFILE: u16 = 34_675;
+    Ifds::new(bytes)?.first()?.bytes(PROFILE)
 }
 
 /// The first picture, as linear values.

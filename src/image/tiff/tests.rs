@@ -313,7 +313,9 @@ fn truncated_and_lying_files_are_errors() {
         let at = (10..200).step_by(12).find(|&at| file[at..at + 2] == u16::to_le_bytes(tag)).unwrap();
         file[at + 2..at + 12].copy_from_slice(&[&[4, 0, 1, 0, 0, 0][..], &u32::to_le_bytes(value)].concat());
         let error = probe(&file).unwrap_err();
-        assert_eq!(error.kind, ErrorKind::Format, "{tag}: {error}");
+        let is_past_limits = error.message.contains("sides must lie in");
+        let kind = if is_past_limits { ErrorKind::Unsupported } else { ErrorKind::Format };
+        assert_eq!(error.kind, kind, "{tag}: {error}");
     }
 }
 

@@ -1,0 +1,36 @@
+//! Colour spaces by their code points (Recommendation ITU-T H.273).
+
+use super::chromaticities::{Chromaticities, is_identity};
+use super::curve::{Curve, bt709, hlg, pq};
+use super::{Conversion, Space};
+use crate::error::Result;
+use crate::image::colour::srgb_to_linear;
+
+pub const PQ: u8 = 16;
+pub const HLG: u8 = 18;
+
+/// Reference white of high dynamic range, which becomes 1: in cd/m² of PQ, and as a code of HLG (Recommendation ITU-R
+/// BT.2408-7, table 1).
+const PQ_WHITE: f64 = 203.0;
+const HLG_WHITE: f64 = 0.75;
+
+/// The space with these primaries and this transfer function; `full` gives the code in `[0, 1]` of a stored one.
+/// Nothing if a code is unknown.
+pub fn space(primaries: u8, transfer: u8, full: impl Fn(f64) -> f64) -> Result<Option<Space>> {
+    let function: fn(f64) -> f64 = match transfer {
+        1 | 6 | 14 | 15 => bt709,
+        4 => |code| code.max(0.0).powf(2.2),
+        5 => |code| code.max(0.0).powf(2.8),
+        8 => |code| code,
+        13 => |code| f64::from(srgb_to_linear(code as f32)),
+        PQ => |code| pq(code) / PQ_WHITE,
+        HLG => |code| hlg(code) / hlg(HLG_WHITE),
+        _ => return Ok(None),
+    };
+    let Some(matrix) = Chromaticities::of_code(primaries).and_then(Chromaticities::to_rec709) else { return Ok(None) };
+    if transfer == 13 && is_identity(matrix) && full(0.0) == 0.0 {
+        return Ok(Some(Space::Native));
+    }
+    let curve = Curve::new(|code| function(full(code)))?;
+    Ok(Some(Space::Other(Conversion::new([curve.clone(), curve.clone(), curve], matrix))))
+}

@@ -1,0 +1,135 @@
+//! Colours of a file to linear Rec.709, in place.
+
+use super::Space;
+use super::chromaticities::is_identity;
+use super::curve::Curve;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::{Image, try_vec};
+use glam::{DMat3, Mat3, Vec3};
+use moxcms::TransformF32Executor;
+use std::sync::Arc;
+
+/// The way from the samples of a file, integers as `[0, 1]`, to linear Rec.709.
+///
+/// Colours that Rec.709 cannot hold lose their negative components, as the stages take negative values for damage;
+/// components above 1 stay.
+#[derive(Clone)]
+pub struct Conversion(Kind);
+
+#[derive(Clone)]
+enum Kind {
+    /// One curve, for any number of channels.
+    Grey(Curve),
+    Rgb {
+        /// None where samples are linear.
+        curves: Option<[Curve; 3]>,
+        matrix: Mat3,
+    },
+    /// By the tables of a profile to sRGB, and by the curve of that.
+    Tables(Arc<TransformF32Executor>, Curve),
+}
+
+impl Conversion {
+    pub fn new(curves: [Curve; 3], matrix: DMat3) -> Self {
+        Self(Kind::Rgb { curves: Some(curves), matrix: matrix.as_mat3() })
+    }
+
+    pub fn grey(curve: Curve) -> Self {
+        Self(Kind::Grey(curve))
+    }
+
+    fn linear(matrix: DMat3) -> Self {
+        Self(Kind::Rgb { curves: None, matrix: matrix.as_mat3() })
+    }
+
+    /// Of integers in sRGB.
+    pub fn srgb() -> Result<Self> {
+        let curve = Curve::srgb()?;
+        Ok(Self::new([curve.clone(), curve.clone(), curve], DMat3::IDENTITY))
+    }
+
+    /// The space whose linear colours a matrix converts.
+    pub fn linear_space(matrix: DMat3) -> Space {
+        if is_identity(matrix) { Space::Native } else { Space::Other(Self::linear(matrix)) }
+    }
+
+    pub fn tables(to_srgb: Arc<TransformF32Executor>) -> Result<Self> {
+        Ok(Self(Kind::Tables(to_srgb, Curve::srgb()?)))
+    }
+
+    /// Whether a picture with so many channels can be converted: a profile for greys says nothing of colours, nor do
+    /// tables for colours of greys.
+    pub fn fits(&self, channels: usize) -> bool {
+        match self.0 {
+            Kind::Grey(_) => channels != 3,
+            Kind::Rgb { .. } => true,
+            Kind::Tables(..) => channels >= 3,
+        }
+    }
+
+    /// Converts a picture of 1, 3 or 4 channels; the fourth is alpha.
+    pub fn apply(&self, image: &mut Image) -> Result<()> {
+        match &self.0 {
+            Kind::Rgb { curves, .. } if image.channels < 3 => {
+                if let Some([_, curve, _]) = curves {
+                    image.data.iter_mut().for_each(|v| *v = curve.at(*v));
+                }
+            }
+            Kind::Rgb { curves: Some([r, g, b]), matrix } => each_colour(image, |colour| {
+                within(*matrix * Vec3::new(r.at(colour.x), g.at(colour.y), b.at(colour.z)), colour)
+            }),
+            Kind::Rgb { curves: None, matrix } => each_colour(image, |colour| within(*matrix * colour, colour)),
+            Kind::Grey(curve) if image.channels < 3 => image.data.iter_mut().for_each(|v| *v = curve.at(*v)),
+            Kind::Grey(curve) => each_colour(image, |colour| Vec3::splat(curve.at(colour.y))),
+            Kind::Tables(to_srgb, curve) => apply_tables(image, to_srgb.as_ref(), curve)?,
+        }
+        Ok(())
+    }
+}
+
+fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
+    for pixel in image.data.chunks_exact_mut(image.channels) {
+        convert(Vec3::from_slice(pixel)).write_to_slice(pixel);
+    }
+}
+
+/// A converted colour without negative components that the file does not have. NaN stays NaN.
+fn within(colour: Vec3, from: Vec3) -> Vec3 {
+    let lowest = Vec3::splat(from.min_element().min(0.0));
+    Vec3::select(colour.cmplt(lowest), lowest, colour)
+}
+
+fn apply_tables(image: &mut Image, to_srgb: &TransformF32Executor, curve: &Curve) -> Result<()> {
+    let (mut stored, mut srgb) = (try_vec(3 * image.width, 0f32)?, try_vec(3 * image.width, 0f32)?);
+    let (row_len, channels) = (image.row_len(), image.channels);
+    for row in image.data.chunks_exact_mut(row_len) {
+        for (stored, pixel) in stored.chunks_exact_mut(3).zip(row.chunks_exact(channels)) {
+            stored.copy_from_slice(&pixel[..3]);
+        }
+        let failed = |e| Error::new(ErrorKind::Internal, format!("the colours could not be converted: {e}"));
+        to_srgb.transform(&stored, &mut srgb).map_err(failed)?;
+        for (srgb, pixel) in srgb.chunks_exact(3).zip(row.chunks_exact_mut(channels)) {
+            pixel.iter_mut().zip(srgb).for_each(|(v, &code)| *v = curve.at(code.max(0.0)));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conversions_add_no_negative_values() {
+        let matrix = DMat3::from_cols_array(&[1.2, -0.1, -0.1, -0.1, 1.2, -0.1, -0.1, -0.1, 1.2]);
+        let mut image = Image::from_fn(4, 1, |x, _| {
+            [[1.0, 0.0, 0.0, 0.5], [0.5; 4], [-1.0, 0.0, 0.0, 1.0], [f32::NAN, 1.0, 1.0, 1.0]][x]
+        })
+        .unwrap();
+        Conversion::linear(matrix).apply(&mut image).unwrap();
+        assert_eq!(image.pixel(0, 0), [1.2, 0.0, 0.0, 0.5]);
+        assert!(image.pixel(1, 0).iter().all(|v| (v - 0.5).abs() < 1e-6));
+        assert_eq!(image.pixel(2, 0), [-1.0, 0.1, 0.1, 1.0]);
+        assert!(image.pixel(3, 0)[..3].iter().all(|v| v.is_nan()));
+    }
+}

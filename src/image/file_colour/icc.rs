@@ -1,0 +1,158 @@
+//! ICC profiles (ICC.1:2022) as picture files hold them, by the crate `moxcms`: three curves and a matrix, one curve
+//! for greys, or tables for RGB.
+
+use super::chromaticities::{is_identity, of_colorants};
+use super::curve::{Curve, is_srgb};
+use super::{Conversion, Space, cicp};
+use crate::error::Result;
+use crate::image::{room, try_push, try_vec};
+use glam::DMat3;
+use miniz_oxide::inflate::decompress_slice_iter_to_slice;
+use moxcms::{
+    CicpProfile, ColorProfile, DataColorSpace, Layout, ParsingOptions, RenderingIntent, ToneReprCurve, TransformOptions,
+};
+use std::borrow::Cow;
+
+/// Largest profile that is used, in bytes. [convention]: profiles of displays and cameras have a few thousand, of
+/// scanners up to a million.
+pub const MAX_BYTES: usize = 3 << 20;
+
+/// The tags of a profile may share data, but no more than this many times. [convention]: three curves, three intents,
+/// and each way.
+const MAX_SHARING: usize = 8;
+
+const HEADER_BYTES: usize = 128;
+
+/// The profile in the segments of a JPEG (ICC.1:2022, annex B.4): pieces with their numbers, which begin with 1.
+pub fn of_segments<'a>(segments: impl Iterator<Item = (u8, &'a [u8])>) -> Result<Option<Cow<'a, [u8]>>> {
+    let mut pieces = Vec::new();
+    for (marker, segment) in segments {
+        if marker == 0xe2
+            && let Some([number, _, piece @ ..]) = segment.strip_prefix(b"ICC_PROFILE\0")
+        {
+            try_push(&mut pieces, (*number, piece))?;
+        }
+    }
+    pieces.sort_by_key(|piece| piece.0);
+    if let [(_, piece)] = pieces[..] {
+        return Ok(Some(piece.into()));
+    }
+    let len = pieces.iter().map(|piece| piece.1.len()).sum();
+    let mut profile = try_vec(len, 0u8)?;
+    let mut rest = &mut profile[..];
+    for (_, piece) in &pieces {
+        rest[..piece.len()].copy_from_slice(piece);
+        rest = &mut rest[piece.len()..];
+    }
+    Ok((len > 0).then_some(profile.into()))
+}
+
+/// The profile in the chunk `iCCP` of a PNG: a name, 0, the method, and what deflate has packed. Nothing if it is
+/// damaged or too long.
+pub fn of_chunk(chunk: &[u8]) -> Result<Option<Vec<u8>>> {
+    let name = chunk.iter().take(80).position(|&b| b == 0);
+    let Some([_, 0, packed @ ..]) = name.map(|end| &chunk[end..]) else { return Ok(None) };
+    let unpack = |out: &mut [u8]| {
+        use miniz_oxide::inflate::TINFLStatus::HasMoreOutput;
+        let needed = out.len();
+        match decompress_slice_iter_to_slice(out, std::iter::once(packed), true, true) {
+            Ok(written) => written == needed,
+            Err(status) => status == HasMoreOutput,
+        }
+    };
+    // A profile begins with its length.
+    let mut head = [0; 4];
+    let len = if unpack(&mut head) { u32::from_be_bytes(head) as usize } else { 0 };
+    if !(HEADER_BYTES..=MAX_BYTES).contains(&len) {
+        return Ok(None);
+    }
+    let mut profile = try_vec(len, 0u8)?;
+    Ok(unpack(&mut profile).then_some(profile))
+}
+
+/// The colour space that a profile describes.
+pub fn space(bytes: &[u8]) -> Result<Space> {
+    if bytes.len() > MAX_BYTES || !shares_little(bytes) {
+        return Ok(Space::Unusable);
+    }
+    room::check_profile(bytes.len())?;
+    let options = ParsingOptions { max_profile_size: MAX_BYTES + 1, ..ParsingOptions::default() };
+    let Ok(profile) = ColorProfile::new_from_slice_with_options(bytes, options) else { return Ok(Space::Unusable) };
+    // Curves of profiles end at 1: high dynamic range is stated beside them.
+    if let Some(codes) = &profile.cicp
+        && let Some(space) = hdr(codes)?
+    {
+        return Ok(space);
+    }
+    match profile.color_space {
+        DataColorSpace::Rgb if intent(&profile).is_some() => tables(&profile),
+        DataColorSpace::Rgb => curves_and_matrix(&profile),
+        DataColorSpace::Gray => grey(&profile),
+        _ => Ok(Space::Unusable),
+    }
+}
+
+/// Whether the lengths of all tags are together not much more than the profile: each is unpacked by itself.
+fn shares_little(bytes: &[u8]) -> bool {
+    let Some((count, tags)) = bytes.get(HEADER_BYTES..).and_then(|rest| rest.split_first_chunk()) else { return false };
+    let tags = tags.as_chunks::<12>().0.iter().take(u32::from_be_bytes(*count) as usize);
+    let total: u64 = tags.map(|&[.., a, b, c, d]| u64::from(u32::from_be_bytes([a, b, c, d]))).sum();
+    total <= (MAX_SHARING * bytes.len()) as u64
+}
+
+/// The space of a profile for PQ or HLG.
+fn hdr(codes: &CicpProfile) -> Result<Option<Space>> {
+    let transfer = codes.transfer_characteristics as u8;
+    if !matches!(transfer, cicp::PQ | cicp::HLG) {
+        return Ok(None);
+    }
+    cicp::space(codes.color_primaries as u8, transfer, |code| code)
+}
+
+fn curves_and_matrix(profile: &ColorProfile) -> Result<Space> {
+    let (Some(r), Some(g), Some(b)) = (&profile.red_trc, &profile.green_trc, &profile.blue_trc) else {
+        return Ok(Space::Unusable);
+    };
+    let columns = DMat3::from_cols_array_2d(&profile.rgb_to_xyz_matrix().v).transpose();
+    let matrix = if profile.pcs == DataColorSpace::Xyz { of_colorants(columns) } else { None };
+    let (Some(matrix), Some(red)) = (matrix, function(r)) else { return Ok(Space::Unusable) };
+    // All three are equal in most profiles.
+    let is_equal = g == r && b == r;
+    if is_equal && is_identity(matrix) && is_srgb(&red) {
+        return Ok(Space::Native);
+    }
+    let red = Curve::new(red)?;
+    let other = |trc| if is_equal { Ok(Some(red.clone())) } else { function(trc).map(Curve::new).transpose() };
+    let (Some(green), Some(blue)) = (other(g)?, other(b)?) else { return Ok(Space::Unusable) };
+    Ok(Space::Other(Conversion::new([red, green, blue], matrix)))
+}
+
+fn grey(profile: &ColorProfile) -> Result<Space> {
+    match profile.gray_trc.as_ref().and_then(function) {
+        Some(function) if is_srgb(&function) => Ok(Space::Native),
+        Some(function) => Ok(Space::Other(Conversion::grey(Curve::new(function)?))),
+        None => Ok(Space::Unusable),
+    }
+}
+
+fn function(trc: &ToneReprCurve) -> Option<impl Fn(f64) -> f64 + use<>> {
+    let evaluator = trc.make_linear_evaluator().ok()?;
+    Some(move |code| f64::from(evaluator.evaluate_value(code as f32)))
+}
+
+/// The intent whose tables are used: colours relative to the medium's white, and others where there are no such tables.
+fn intent(profile: &ColorProfile) -> Option<RenderingIntent> {
+    let has = |tables: &Option<_>, intent| tables.is_some().then_some(intent);
+    has(&profile.lut_a_to_b_colorimetric, RenderingIntent::RelativeColorimetric)
+        .or(has(&profile.lut_a_to_b_perceptual, RenderingIntent::Perceptual))
+        .or(has(&profile.lut_a_to_b_saturation, RenderingIntent::Saturation))
+}
+
+fn tables(profile: &ColorProfile) -> Result<Space> {
+    let Some(rendering_intent) = intent(profile) else { return Ok(Space::Unusable) };
+    let options = TransformOptions { rendering_intent, prefer_fixed_point: false, ..TransformOptions::default() };
+    match profile.create_transform_f32(Layout::Rgb, &ColorProfile::new_srgb(), Layout::Rgb, options) {
+        Ok(to_srgb) => Ok(Space::Other(Conversion::tables(to_srgb)?)),
+        Err(_) => Ok(Space::Unusable),
+    }
+}

@@ -1,0 +1,114 @@
+//! The colour space that a picture file states, and the conversion of its samples to linear Rec.709.
+//!
+//! | file | statement, the first that can be used |
+//! |---|---|
+//! | PNG | `cICP`, `iCCP`, `sRGB`, `gAMA` with `cHRM` (PNG specification, third edition, 4.3) |
+//! | JPEG, WebP, TIFF | ICC profile, then the colour space of the EXIF notes (sRGB, Adobe RGB) |
+//! | OpenEXR | `chromaticities`, `adoptedNeutral` |
+//! | Radiance HDR | `PRIMARIES`, `EXPOSURE`, `COLORCORR`, `FORMAT` (RGB or XYZ) |
+//!
+//! Without a statement, integers are sRGB and floating-point numbers linear Rec.709. White becomes white: whites other
+//! than D65 are adapted with the Bradford matrix, as ICC profiles are.
+//!
+//! Not modelled: rendering intents other than relative colorimetric, gain maps, profiles of GIF and BMP files,
+//! profiles for the inks of CMYK files. A file with a statement that cannot be used is read as one without, and
+//! [`FileColour`] says so.
+
+mod chromaticities;
+mod cicp;
+mod conversion;
+mod curve;
+pub(super) mod icc;
+mod png;
+#[cfg(test)]
+mod tests;
+
+pub(super) use chromaticities::Chromaticities;
+pub(super) use conversion::Conversion;
+
+use super::containers::{jpeg_segments, riff_chunks};
+use super::format::Format;
+use super::photo::Exif;
+use super::tiff;
+use crate::error::Result;
+use curve::Curve;
+use image::ImageFormat;
+
+/// How the colours of a picture were understood.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FileColour {
+    /// The picture is not from a file.
+    #[default]
+    None = 0,
+    /// The file states no colour space: integers are taken as sRGB, floating-point numbers as linear Rec.709.
+    Assumed = 1,
+    /// The file states this space.
+    Stated = 2,
+    /// The file states another space, and its colours were converted.
+    Converted = 3,
+    /// The file states a space that cannot be converted. It was read as if it stated none.
+    Unconverted = 4,
+    /// The caller asked for the numbers as they are.
+    Data = 5,
+}
+
+/// The colour space that a file states.
+pub(super) enum Space {
+    Unstated,
+    /// sRGB for integers, linear Rec.709 for floating-point numbers.
+    Native,
+    Other(Conversion),
+    /// One that cannot be converted.
+    Unusable,
+}
+
+impl Space {
+    /// The space of a picture of integers.
+    pub fn of(bytes: &[u8], format: Format, exif: &Exif) -> Result<Self> {
+        let profile = match format {
+            Format::Raster(ImageFormat::Png) => return png::space(bytes),
+            Format::Raster(ImageFormat::Jpeg) => icc::of_segments(jpeg_segments(bytes))?,
+            Format::Raster(ImageFormat::WebP) => {
+                riff_chunks(bytes).find(|c| c.0 == b"ICCP").map(|(_, profile)| profile.into())
+            }
+            Format::Tiff => tiff::profile(bytes).map(Into::into),
+            Format::Raster(_) | Format::Exr | Format::Radiance => return Ok(Self::Unstated),
+        };
+        // Floating-point numbers are encoded only if a profile says so.
+        let is_float = format == Format::Tiff && tiff::is_float(bytes);
+        match profile.map(|profile| icc::space(&profile)).transpose()? {
+            Some(Self::Native) if is_float => Ok(Self::Other(Conversion::srgb()?)),
+            Some(space) => Ok(space),
+            None if is_float => Ok(Self::Unstated),
+            None => exif.colour.space(),
+        }
+    }
+}
+
+/// The colour space by the EXIF notes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExifColour {
+    #[default]
+    Unstated,
+    Srgb,
+    AdobeRgb,
+}
+
+impl ExifColour {
+    fn space(self) -> Result<Space> {
+        match self {
+            Self::Unstated => Ok(Space::Unstated),
+            Self::Srgb => Ok(Space::Native),
+            Self::AdobeRgb => {
+                let curve = Curve::new(|v| v.powf(ADOBE_GAMMA))?;
+                Ok(Chromaticities::ADOBE_RGB.to_rec709().map_or(Space::Unusable, |matrix| {
+                    Space::Other(Conversion::new([curve.clone(), curve.clone(), curve], matrix))
+                }))
+            }
+        }
+    }
+}
+
+/// Adobe RGB (1998), 4.3.1.2: 2 + 51/256.
+const ADOBE_GAMMA: f64 = 563.0 / 256.0;

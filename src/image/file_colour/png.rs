@@ -1,0 +1,79 @@
+//! The colour space of a PNG, by its chunks before the pixels in their order of precedence (PNG specification, third
+//! edition, 4.3).
+
+use super::chromaticities::{Chromaticities, is_identity};
+use super::curve::Curve;
+use super::{Conversion, Space, cicp, icc};
+use crate::error::Result;
+use crate::image::containers::png_chunks;
+
+/// Numbers of `gAMA` and `cHRM` are stored as 100,000 times their value.
+const UNIT: f64 = 100_000.0;
+
+/// Exponents of `gAMA` that a picture can mean. [convention]
+const EXPONENTS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
+
+pub fn space(bytes: &[u8]) -> Result<Space> {
+    let find = |wanted: &[u8; 4]| {
+        let mut chunks = png_chunks(bytes).take_while(|c| c.0 != b"IDAT");
+        chunks.find(|c| c.0 == wanted).map(|(.., content)| content)
+    };
+    let mut is_stated = false;
+    if let Some(&[primaries, transfer, 0, range, ..]) = find(b"cICP") {
+        is_stated = true;
+        let bits = find(b"IHDR").and_then(|header| header.get(8).copied()).unwrap_or(8);
+        let full = move |code| if range == 0 { narrow(code, bits) } else { code };
+        if let Some(space) = cicp::space(primaries, transfer, full)? {
+            return Ok(space);
+        }
+    }
+    if let Some(chunk) = find(b"iCCP") {
+        is_stated = true;
+        let space = icc::of_chunk(chunk)?.map(|profile| icc::space(&profile)).transpose()?;
+        match space {
+            None | Some(Space::Unusable) => {}
+            Some(space) => return Ok(space),
+        }
+    }
+    if find(b"sRGB").is_some() {
+        return Ok(Space::Native);
+    }
+    let exponent = find(b"gAMA").and_then(|gamma| number(gamma, 0)).map(|gamma| 1.0 / gamma);
+    let exponent = exponent.filter(|exponent| EXPONENTS.contains(exponent));
+    let chromaticities = find(b"cHRM").and_then(chromaticities);
+    match (exponent, chromaticities) {
+        (None, None) if is_stated => Ok(Space::Unusable),
+        (None, None) => Ok(Space::Unstated),
+        (exponent, chromaticities) => by_numbers(exponent, chromaticities),
+    }
+}
+
+/// A code of 8 or 16 bits, of which only a range is for video, from its black to its white (Recommendation ITU-T
+/// H.273, 8.3).
+fn narrow(code: f64, bits: u8) -> f64 {
+    let max = f64::from(if bits == 16 { u16::MAX } else { 255 });
+    let unit = (max + 1.0) / 256.0;
+    ((code * max / unit - 16.0) / 219.0).max(0.0)
+}
+
+fn number(chunk: &[u8], index: usize) -> Option<f64> {
+    let (numbers, _) = chunk.as_chunks::<4>();
+    numbers.get(index).map(|&bytes| f64::from(u32::from_be_bytes(bytes)) / UNIT)
+}
+
+/// White, red, green and blue.
+fn chromaticities(chunk: &[u8]) -> Option<Chromaticities> {
+    let point = |index: usize| Some([number(chunk, 2 * index)?, number(chunk, 2 * index + 1)?]);
+    Some(Chromaticities { white: point(0)?, primaries: [point(1)?, point(2)?, point(3)?] })
+}
+
+/// Each of the two that is missing is that of sRGB.
+fn by_numbers(exponent: Option<f64>, chromaticities: Option<Chromaticities>) -> Result<Space> {
+    let Some(matrix) = chromaticities.unwrap_or(Chromaticities::REC709).to_rec709() else { return Ok(Space::Unusable) };
+    let curve = match exponent {
+        Some(exponent) => Curve::new(|code| code.powf(exponent))?,
+        None if is_identity(matrix) => return Ok(Space::Native),
+        None => Curve::srgb()?,
+    };
+    Ok(Space::Other(Conversion::new([curve.clone(), curve.clone(), curve], matrix)))
+}

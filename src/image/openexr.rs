@@ -1,0 +1,330 @@
+//! OpenEXR files: flat layers of R, G, B (and A) or of one channel in, any layers out. With `samples` and `numbers`
+//! the only user of `exr`.
+//!
+//! A picture is as large as the display window of its file. Pixels outside the data window are 0, those outside the
+//! display window are left out. Colours are converted from the chromaticities that the file states to linear Rec.709.
+//!
+//! Not read, and said by name: deep data, luminance with chroma of fewer pixels. Of a pyramid the largest resolution
+//! is read, of several parts the first.
+
+use super::file_colour::{Chromaticities, Conversion, Space};
+use super::io::{DENSEST, check_size};
+use super::samples::Largest;
+use super::{Image, room, try_collect, try_with_capacity};
+use crate::error::{Error, ErrorKind, Result};
+use exr::meta::attribute;
+use exr::prelude as ex;
+use std::io::Cursor;
+
+pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// Bytes of a tile that any file may have.
+const LARGEST_TILE: usize = 64 << 20;
+
+pub(super) fn broken(e: exr::error::Error) -> Error {
+    use exr::error::Error as Cause;
+    match &e {
+        Cause::Io(io) if io.kind() == std::io::ErrorKind::OutOfMemory => {
+            Error::new(ErrorKind::OutOfMemory, format!("the OpenEXR file cannot be decoded: {e}"))
+        }
+        Cause::NotSupported(kind) => Error::new(
+            ErrorKind::Unsupported,
+            format!("the OpenEXR file is of a kind that is not read ({kind}): save it as flat R, G, B"),
+        ),
+        _ => Error::format(format!("the OpenEXR file cannot be decoded: {e}")),
+    }
+}
+
+pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
+    for header in &meta.headers {
+        let (width, height) = (header.layer_size.0, header.layer_size.1);
+        check_size(width as u64, height as u64)?;
+        // Memory is taken for all channels before the first of them is read.
+        if (width * height).saturating_mul(header.channels.bytes_per_pixel) > bytes.len().saturating_mul(DENSEST) {
+            return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
+        }
+        // Tiles may be larger than the picture; memory is taken for as much of one as the file says that it stores.
+        let tile = room::block_bytes(header);
+        if tile > bytes.len().saturating_mul(DENSEST).max(LARGEST_TILE) {
+            return Err(Error::format(format!(
+                "the OpenEXR header asks for tiles of {tile} bytes, which so short a file cannot hold"
+            )));
+        }
+    }
+    Ok(meta.headers)
+}
+
+/// The first layer of a file whose headers have been looked at, with all of its channels.
+pub(super) fn first_layer(
+    bytes: &[u8],
+    headers: &exr::meta::Headers,
+) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
+    use ex::{ReadChannels, ReadLayers};
+    room::check_layer(headers)?;
+    let file = exr::image::read::any_channels::ReadAnyChannels { read_samples: Largest }
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes));
+    Ok(file.map_err(broken)?.layer_data)
+}
+
+/// The window of the picture, which all layers share.
+fn display(headers: &exr::meta::Headers) -> Result<ex::IntegerBounds> {
+    let header = headers.first().ok_or_else(|| Error::format("the OpenEXR file has no layers"))?;
+    let window = header.shared_attributes.display_window;
+    check_size(window.size.0 as u64, window.size.1 as u64)?;
+    Ok(window)
+}
+
+/// Width, height and largest number of channels.
+pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
+    let headers = headers(bytes)?;
+    let size = display(&headers)?.size;
+    let channels = headers.iter().map(|h| h.channels.list.len().min(4)).max().unwrap_or(1);
+    Ok((size.0, size.1, channels))
+}
+
+/// The first layer with R, G and B (and A), or one with a single channel, and the colour space that the file states.
+pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
+    let headers = headers(bytes)?;
+    let window = display(&headers)?;
+    let layer = first_layer(bytes, &headers)?;
+    let list = &layer.channel_data.list;
+    let find = |name: &str| list.iter().find(|c| c.name.eq_case_insensitive(name));
+    let channels: Vec<_> = match (find("R"), find("G"), find("B"), find("A")) {
+        (Some(r), Some(g), Some(b), Some(a)) => vec![r, g, b, a],
+        (Some(r), Some(g), Some(b), None) => vec![r, g, b],
+        _ if list.len() == 1 => vec![&list[0]],
+        _ => {
+            return Err(Error::new(
+                ErrorKind::Unsupported,
+                "the OpenEXR layer has neither R, G, B nor one single channel",
+            ));
+        }
+    };
+    let mut out = Image::new(window.size.0, window.size.1, channels.len())?;
+    let place = Place::new(&layer, window);
+    for (c, channel) in channels.iter().enumerate() {
+        place.put(&mut out, c, &channel.sample_data);
+    }
+    let space = headers.first().map_or(Space::Unstated, |header| {
+        space(header.shared_attributes.chromaticities, layer.attributes.adopted_neutral)
+    });
+    Ok((out, space))
+}
+
+/// The part of a layer that lies within the picture.
+struct Place {
+    /// Width of the layer.
+    width: usize,
+    /// First column and row of that part in the layer, and in the picture.
+    from: [usize; 2],
+    to: [usize; 2],
+    size: [usize; 2],
+}
+
+impl Place {
+    fn new<C>(layer: &ex::Layer<C>, window: ex::IntegerBounds) -> Self {
+        let corner = layer.attributes.layer_position;
+        // Where the layer begins, seen from the picture.
+        let start =
+            [(corner.0, window.position.0), (corner.1, window.position.1)].map(|(a, b)| i64::from(a) - i64::from(b));
+        let stored = [layer.size.0, layer.size.1];
+        let shown = [window.size.0, window.size.1];
+        let from = start.map(|s| (-s).max(0) as usize);
+        let to = start.map(|s| s.max(0) as usize);
+        let size = [0, 1].map(|k| stored[k].saturating_sub(from[k]).min(shown[k].saturating_sub(to[k])));
+        Self { width: stored[0], from, to, size }
+    }
+
+    fn put(&self, out: &mut Image, channel: usize, samples: &ex::FlatSamples) {
+        let mut copy = |value: &dyn Fn(usize) -> f32| {
+            for y in 0..self.size[1] {
+                let from = (self.from[1] + y) * self.width + self.from[0];
+                let to = ((self.to[1] + y) * out.width + self.to[0]) * out.channels + channel;
+                let row = out.data[to..].iter_mut().step_by(out.channels).take(self.size[0]);
+                row.enumerate().for_each(|(x, v)| *v = value(from + x));
+            }
+        };
+        if self.size.contains(&0) {
+            return;
+        }
+        match samples {
+            ex::FlatSamples::F16(samples) => copy(&|i| samples[i].to_f32()),
+            ex::FlatSamples::F32(samples) => copy(&|i| samples[i]),
+            ex::FlatSamples::U32(samples) => copy(&|i| samples[i] as f32),
+        }
+    }
+}
+
+/// The space with these chromaticities, of which `neutral` becomes white if it is stated.
+fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32>>) -> Space {
+    let point = |v: ex::Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
+    let chromaticities = match stated {
+        Some(c) => Chromaticities { primaries: [c.red, c.green, c.blue].map(point), white: point(c.white) },
+        None if neutral.is_some() => Chromaticities::REC709,
+        None => return Space::Unstated,
+    };
+    let white = neutral.map_or(chromaticities.white, point);
+    chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Conversion::linear_space)
+}
+
+/// One named group of channels of an OpenEXR file; an empty name gives plain `R`, `G`, `B`.
+pub struct Layer<'a> {
+    pub name: &'a str,
+    pub image: &'a Image,
+    /// One letter or word per channel: `["R", "G", "B"]`, `["Z"]`, `["X", "Y", "Z"]`.
+    pub channels: &'a [&'a str],
+}
+
+/// Encodes layers of one size into a single-part 32-bit float OpenEXR file, channels named `layer.channel`, colours
+/// stated as linear Rec.709. `notes` are texts kept in its header, by name.
+pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
+    use ex::WritableImage;
+    // Texts of OpenEXR files are UTF-8.
+    let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
+    let first = layers.first().ok_or_else(|| Error::argument("an OpenEXR file needs at least one layer"))?.image;
+    let mut list = ex::SmallVec::<[ex::AnyChannel<ex::FlatSamples>; 4]>::new();
+    for layer in layers {
+        first.check_same_size("the first layer", layer.image, layer.name)?;
+        if layer.channels.len() != layer.image.channels {
+            return Err(Error::argument(format!(
+                "layer {} has {} channels and {} channel names",
+                layer.name,
+                layer.image.channels,
+                layer.channels.len()
+            )));
+        }
+        for (c, channel) in layer.channels.iter().enumerate() {
+            let name = if layer.name.is_empty() { channel.to_string() } else { format!("{}.{channel}", layer.name) };
+            let samples = try_collect(layer.image.data.iter().skip(c).step_by(layer.image.channels).copied())?;
+            list.push(ex::AnyChannel::new(text(&name), ex::FlatSamples::F32(samples)));
+        }
+    }
+    let mut file = ex::Image::from_channels((first.width, first.height), ex::AnyChannels::sort(list));
+    if layers.iter().any(|layer| layer.channels.contains(&"R")) {
+        file.attributes.chromaticities = Some(rec709());
+    }
+    for (name, note) in notes {
+        file.layer_data.attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
+    }
+    let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
+    let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 64 * channels;
+    let (width, height) = (first.width, first.height);
+    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
+    room::check_blocks(width, height, channels)?;
+    file.write()
+        .non_parallel()
+        .to_buffered(&mut out)
+        .map_err(|e| Error::new(ErrorKind::Internal, format!("the OpenEXR encoder failed: {e}")))?;
+    Ok(out.into_inner())
+}
+
+/// The chromaticities that written files state.
+fn rec709() -> attribute::Chromaticities {
+    let point = |[x, y]: [f64; 2]| ex::Vec2(x as f32, y as f32);
+    let [red, green, blue] = Chromaticities::REC709.primaries.map(point);
+    attribute::Chromaticities { red, green, blue, white: point(Chromaticities::REC709.white) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::file_colour::FileColour;
+    use crate::image::io::{Encoding, decode, decode_photo, probe};
+
+    /// A file of red pixels, counted from 1, whose data window has this corner and size within this display window.
+    fn file(corner: [i32; 2], size: [usize; 2], display: ([i32; 2], [usize; 2])) -> Vec<u8> {
+        colourful(corner, size, display, |_| ())
+    }
+
+    fn colourful(
+        [x, y]: [i32; 2],
+        [width, height]: [usize; 2],
+        (origin, shown): ([i32; 2], [usize; 2]),
+        change: impl FnOnce(&mut ex::Image<ex::Layer<ex::AnyChannels<ex::FlatSamples>>>),
+    ) -> Vec<u8> {
+        use ex::WritableImage;
+        let samples = |factor: f32| ex::FlatSamples::F32((1..=width * height).map(|i| factor * i as f32).collect());
+        let channels = [("B", 0.0), ("G", 0.0), ("R", 1.0)].map(|(name, v)| ex::AnyChannel::new(name, samples(v)));
+        let mut file = ex::Image::from_channels((width, height), ex::AnyChannels::sort(channels.into_iter().collect()));
+        file.layer_data.attributes.layer_position = ex::Vec2(x, y);
+        file.attributes.display_window =
+            ex::IntegerBounds::new(ex::Vec2(origin[0], origin[1]), ex::Vec2(shown[0], shown[1]));
+        change(&mut file);
+        let mut out = Cursor::new(Vec::new());
+        file.write().non_parallel().to_buffered(&mut out).unwrap();
+        out.into_inner()
+    }
+
+    fn red(file: &[u8]) -> Vec<i32> {
+        let image = decode(file, Encoding::Srgb).unwrap();
+        let (width, height, _) = probe(file).unwrap();
+        assert_eq!((image.width, image.height), (width, height));
+        image.data.chunks(3).map(|pixel| pixel[0] as i32).collect()
+    }
+
+    #[test]
+    fn the_data_window_lies_in_the_display_window() {
+        let display = ([10, 20], [4, 3]);
+        // The whole, a part inside, one that sticks out at the start and at the end, and one beside it.
+        assert_eq!(red(&file([10, 20], [4, 3], display)), (1..=12).collect::<Vec<i32>>());
+        assert_eq!(red(&file([11, 21], [2, 1], display)), [0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 0]);
+        assert_eq!(red(&file([9, 19], [3, 2], display)), [5, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(red(&file([12, 22], [5, 5], display)), [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2]);
+        assert_eq!(red(&file([9, 19], [6, 6], display)), [8, 9, 10, 11, 14, 15, 16, 17, 20, 21, 22, 23]);
+        for corner in [[0, 0], [14, 20], [10, 23], [-1_000_000, -1_000_000]] {
+            assert_eq!(red(&file(corner, [2, 2], display)), [0; 12]);
+        }
+    }
+
+    #[test]
+    fn windows_past_the_limits_are_unsupported() {
+        let bomb = file([0, 0], [1, 1], ([0, 0], [1 << 15, 1 << 14]));
+        assert_eq!(probe(&bomb).unwrap_err().kind, ErrorKind::Unsupported);
+    }
+
+    #[test]
+    fn chromaticities_are_converted_and_data_are_not() {
+        let point = |x, y| ex::Vec2(x, y);
+        // ACEScg (S-2014-004) and ACES2065-1 (SMPTE ST 2065-1).
+        let acescg = attribute::Chromaticities {
+            red: point(0.713, 0.293),
+            green: point(0.165, 0.830),
+            blue: point(0.128, 0.044),
+            white: point(0.32168, 0.33767),
+        };
+        let aces = attribute::Chromaticities {
+            red: point(0.7347, 0.2653),
+            green: point(0.0, 1.0),
+            blue: point(0.0001, -0.077),
+            ..acescg
+        };
+        // By the matrices of the ACES system to linear Rec.709 with Bradford adaptation; negative components are 0.
+        for (chromaticities, wanted) in [(acescg, 1.705_05), (aces, 2.521_69)] {
+            let bytes = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
+                f.attributes.chromaticities = Some(chromaticities);
+            });
+            let photo = decode_photo(&bytes, Encoding::Srgb).unwrap();
+            let pixel = photo.image.pixel(0, 0);
+            assert!((pixel[0] - wanted).abs() < 2e-3 && pixel[1..] == [0.0, 0.0], "{pixel:?}");
+            assert_eq!(photo.metadata.colour, FileColour::Converted);
+            let data = decode_photo(&bytes, Encoding::Linear).unwrap();
+            assert_eq!((data.image.pixel(0, 0), data.metadata.colour), (&[1.0, 0.0, 0.0][..], FileColour::Data));
+        }
+        // XYZ whose neutral is D65: its X.
+        let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
+            f.attributes.chromaticities = Some(attribute::Chromaticities {
+                red: point(1.0, 0.0),
+                green: point(0.0, 1.0),
+                blue: point(0.0, 0.0),
+                white: point(1.0 / 3.0, 1.0 / 3.0),
+            });
+            f.layer_data.attributes.adopted_neutral = Some(point(0.3127, 0.3290));
+        });
+        let photo = decode_photo(&xyz, Encoding::Srgb).unwrap();
+        assert!((photo.image.pixel(0, 0)[0] - 3.240_97).abs() < 1e-3);
+    }
+}
