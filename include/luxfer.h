@@ -151,7 +151,11 @@ typedef struct luxfer_context luxfer_context;
 typedef struct luxfer_context_params {
     /** sizeof(luxfer_context_params), set by luxfer_context_params_init. */
     uint32_t struct_size;
-    /** Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. */
+    /**
+     * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
+     * these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
+     * or on as many further threads, which the context starts for the first of them.
+     */
     uint32_t num_threads;
     /**
      * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
@@ -392,6 +396,9 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
  * as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
  * refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
  * succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
+ *
+ * Jobs of one context share its threads, so a job may have to wait until another ends; cancelling it then ends it at
+ * once. All other calls run at once, whatever the jobs do, also from a progress function.
  * ==================================================================================================================== */
 
 /** Work in progress. See luxfer_job_wait. */
