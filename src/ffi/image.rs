@@ -342,13 +342,14 @@ pub unsafe extern "C" fn luxfer_image_save(
     enter(image, |object| {
         let path = Path::new(text(path, "path")?);
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        let target = io::Target::new(path)?;
         let encoded = match extension.as_str() {
             "png" if exposure > 0.0 && exposure.is_finite() => io::encode_png(object.image(), exposure)?,
             "png" => return Err(Error::argument(format!("exposure is {exposure}; it must be positive and finite"))),
             "exr" => encode_exr(object.image())?,
             _ => return Err(Error::argument(format!("{} ends neither in .png nor in .exr", path.display()))),
         };
-        io::write_file(path, &encoded)
+        target.write(&encoded)
     })
 }
 

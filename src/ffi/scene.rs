@@ -273,7 +273,7 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
         if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
             return Err(Error::argument(format!("path is {}; it must end in .glb", path.display())));
         }
-        io::write_file(path, &gltf::export(&object.snapshot())?)
+        io::Target::new(path)?.write(&gltf::export(&object.snapshot())?)
     })
 }
 

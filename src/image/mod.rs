@@ -7,6 +7,7 @@
 mod buffer;
 pub mod colour;
 mod containers;
+mod files;
 mod format;
 pub mod io;
 pub mod numbers;

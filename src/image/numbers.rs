@@ -4,7 +4,7 @@
 //! window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
 //! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the header.
 
-use super::io::{broken_exr, exr_headers, first_exr_layer};
+use super::io::{broken_exr, check_regular, exr_headers, first_exr_layer};
 use super::{Image, room, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
@@ -88,6 +88,7 @@ fn name(number: usize, is_high: bool) -> String {
 
 /// What the beginning of a file says.
 pub fn read_head(path: &Path) -> Result<Head> {
+    check_regular(path)?;
     let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
     let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken_exr);
     meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.within(path.display()))
