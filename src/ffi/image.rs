@@ -331,7 +331,8 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
 /// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
 /// (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels,
 /// unchanged, in 32-bit floating point; exposure is not used. An existing file is replaced only once the new one is
-/// complete. Any thread.
+/// complete, and keeps its mode and owner. Symbolic links are followed; devices, FIFOs and files with several names are
+/// written in place. All functions of this library save files in this way. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_save(
