@@ -151,7 +151,11 @@ typedef struct luxfer_context luxfer_context;
 typedef struct luxfer_context_params {
     /** sizeof(luxfer_context_params), set by luxfer_context_params_init. */
     uint32_t struct_size;
-    /** Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. */
+    /**
+     * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
+     * these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
+     * or on as many further threads, which the context starts for the first of them.
+     */
     uint32_t num_threads;
     /**
      * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
@@ -309,7 +313,9 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
  * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by
  * exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the file
  * states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709; exposure
- * is not used. An existing file is replaced only once the new one is complete. Any thread.
+ * is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner. Symbolic
+ * links are followed; devices, FIFOs and files with several names are written in place. All functions of this library
+ * save files in this way. Any thread.
  * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
@@ -431,6 +437,9 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
  * as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
  * refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
  * succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
+ *
+ * Jobs of one context share its threads, so a job may have to wait until another ends; cancelling it then ends it at
+ * once. All other calls run at once, whatever the jobs do, also from a progress function.
  * ==================================================================================================================== */
 
 /** Work in progress. See luxfer_job_wait. */

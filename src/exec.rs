@@ -8,9 +8,10 @@ use crate::job::Job;
 use crate::reserve;
 use rayon::prelude::*;
 use std::io;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 pub struct Pool {
     threads: Option<rayon::ThreadPool>,
@@ -27,7 +28,7 @@ impl Pool {
             .num_threads(count)
             .spawn_handler(|thread| {
                 let handle = spawn(&format!("luxfer-{}", thread.index()), || thread.run())?;
-                handles.lock().unwrap_or_else(|e| e.into_inner()).push(handle);
+                lock(&handles).push(handle);
                 Ok(())
             })
             .build()
@@ -43,6 +44,97 @@ impl Pool {
             None => work(),
         }
     }
+
+    /// Like [`run`](Self::run), but gives the work up, and returns `None`, if `is_cancelled` becomes true while all
+    /// threads are busy with other work. `work` must not panic. It is always dropped before this returns.
+    pub fn run_unless<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+        is_cancelled: impl Fn() -> bool,
+    ) -> Option<T> {
+        let Some(threads) = &self.threads else { return Some(work()) };
+        let queued = Arc::new(Queued { state: Mutex::new(Progress::Waiting(work)), changed: Condvar::new() });
+        let of_worker = queued.clone();
+        threads.spawn(move || of_worker.run());
+        queued.result(is_cancelled)
+    }
+}
+
+/// Work on its way through the queue of a pool.
+struct Queued<W, T> {
+    state: Mutex<Progress<W, T>>,
+    changed: Condvar,
+}
+
+enum Progress<W, T> {
+    Waiting(W),
+    /// Taken out, by a worker or because it was given up.
+    Begun,
+    Finished(T),
+}
+
+impl<W: FnOnce() -> T, T> Queued<W, T> {
+    /// Runs the work, unless it was given up.
+    fn run(&self) {
+        let begun = std::mem::replace(&mut *lock(&self.state), Progress::Begun);
+        let Progress::Waiting(work) = begun else { return };
+        let result = work();
+        *lock(&self.state) = Progress::Finished(result);
+        self.changed.notify_all();
+    }
+
+    /// Waits for the result; gives the work up if `is_cancelled` becomes true before it runs.
+    fn result(&self, is_cancelled: impl Fn() -> bool) -> Option<T> {
+        let mut state = lock(&self.state);
+        loop {
+            match std::mem::replace(&mut *state, Progress::Begun) {
+                Progress::Finished(result) => return Some(result),
+                Progress::Waiting(_) if is_cancelled() => return None,
+                other => *state = other,
+            }
+            let time = if matches!(*state, Progress::Waiting(_)) { CANCEL_INTERVAL } else { Duration::MAX };
+            let waited = self.changed.wait_timeout(state, time);
+            state = waited.unwrap_or_else(|e| e.into_inner()).0;
+        }
+    }
+}
+
+/// How often queued work looks for cancellation: a fifth of the 100 ms in which a cancel request is answered.
+const CANCEL_INTERVAL: Duration = Duration::from_millis(20);
+
+/// Pools for short work that must not wait for the long work of another pool. Each run has a pool of its own, with as
+/// many threads as the other pool.
+pub struct QuickPools {
+    num_threads: usize,
+    idle: Mutex<Vec<Pool>>,
+}
+
+/// Number of pools that stay for the next run: for the few threads of a host that call at the same time.
+const MAX_IDLE: usize = 4;
+
+impl QuickPools {
+    pub fn new(num_threads: usize) -> Self {
+        Self { num_threads, idle: Mutex::default() }
+    }
+
+    /// Runs `work` in an idle pool, or in a new one. Must not be called from a thread of a pool.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+        let idle = lock(&self.idle).pop();
+        let pool = idle.map_or_else(|| Pool::new(self.num_threads), Ok)?;
+        let result = pool.run(work);
+        // End the pool only after the lock is free again.
+        let mut surplus = Some(pool);
+        let mut idle = lock(&self.idle);
+        if idle.len() < MAX_IDLE {
+            idle.extend(surplus.take());
+        }
+        drop(idle);
+        result
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 /// Starts a thread.
@@ -165,6 +257,7 @@ pub fn sort<T: Ord + Send>(data: &mut [T], job: Job) -> Result<()> {
 mod tests {
     use super::*;
     use crate::job::Monitor;
+    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn the_pool_ends_with_its_owner_and_results_keep_their_order() {
@@ -174,6 +267,46 @@ mod tests {
             let squares = pool.run(|| map(1000, monitor.job(), |i| i * i)).unwrap();
             assert!(squares.iter().enumerate().all(|(i, &s)| s == i * i));
         }
+    }
+
+    #[test]
+    fn queued_work_is_given_up_when_cancelled_and_dropped_by_its_owner() {
+        let (pool, gate, token) = (Pool::new(1).unwrap(), Arc::new(Mutex::new(())), Arc::new(()));
+        let closed = lock(&gate);
+        let (begun, cancelled) = (Arc::new(std::sync::Barrier::new(2)), AtomicBool::new(false));
+        thread::scope(|scope| {
+            let (gate, at_begin, kept) = (gate.clone(), begun.clone(), token.clone());
+            let blocked = move || {
+                at_begin.wait();
+                drop(lock(&gate));
+            };
+            let first = scope.spawn(|| pool.run_unless(blocked, || cancelled.load(Ordering::Relaxed)));
+            begun.wait();
+            cancelled.store(true, Ordering::Relaxed);
+            assert_eq!(pool.run_unless(move || drop(kept), || true), None);
+            assert_eq!(Arc::strong_count(&token), 1, "the work is gone with its captures");
+            drop(closed);
+            assert_eq!(first.join().unwrap(), Some(()), "work that has begun is finished");
+        });
+        assert_eq!(pool.run_unless(|| 7, || false), Some(7));
+    }
+
+    #[test]
+    fn quick_runs_have_a_pool_each_and_few_pools_stay() {
+        let pools = QuickPools::new(2);
+        let together = std::sync::Barrier::new(MAX_IDLE + 2);
+        thread::scope(|scope| {
+            let runs = [(); MAX_IDLE + 2].map(|()| {
+                scope.spawn(|| {
+                    pools.run(|| {
+                        together.wait();
+                        map(100, Monitor::default().job(), |i| i)
+                    })
+                })
+            });
+            runs.into_iter().for_each(|run| assert_eq!(run.join().unwrap().unwrap(), (0..100).collect::<Vec<_>>()));
+        });
+        assert_eq!(lock(&pools.idle).len(), MAX_IDLE);
     }
 
     #[test]

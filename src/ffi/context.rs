@@ -27,7 +27,7 @@ use super::params::{self, Versioned};
 use super::pointer::{Out, copy_text};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
-use crate::exec::Pool;
+use crate::exec::{Pool, QuickPools};
 use std::collections::HashMap;
 use std::ffi::c_char;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -45,7 +45,9 @@ pub struct luxfer_context {
 pub struct luxfer_context_params {
     /// sizeof(luxfer_context_params), set by luxfer_context_params_init.
     pub struct_size: u32,
-    /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use.
+    /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
+    /// these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
+    /// or on as many further threads, which the context starts for the first of them.
     pub num_threads: u32,
     /// Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
     /// that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. The working memory of jobs and
@@ -67,7 +69,10 @@ const MAX_MESSAGES: usize = 256;
 
 /// What a `luxfer_context` refers to.
 pub(super) struct Context {
+    /// Runs the jobs.
     pub(super) pool: Pool,
+    /// Run the calls that return when their work is done, so that they never wait for a job.
+    pub(super) quick: QuickPools,
     budget: u64,
     used: AtomicU64,
     messages: Mutex<Messages>,
@@ -163,6 +168,7 @@ pub unsafe extern "C" fn luxfer_context_create(
         crate::error::check_range("num_threads", params.num_threads, 0, 1024)?;
         let context = Arc::new(Context {
             pool: Pool::new(params.num_threads as usize)?,
+            quick: QuickPools::new(params.num_threads as usize),
             budget: params.memory_budget_mib.saturating_mul(1 << 20),
             used: AtomicU64::new(0),
             messages: Mutex::default(),

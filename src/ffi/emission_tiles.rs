@@ -112,7 +112,7 @@ pub unsafe extern "C" fn luxfer_emission_render_tile(
         let image = Pixels::counted(context, part.width, part.height, 4, || {
             let job = Monitor::default();
             let render = || inputs.with(|input, styles| plan.tile(input, styles, part, job.job()));
-            let (texture, mask) = context.pool.run(render)?;
+            let (texture, mask) = context.quick.run(render)?;
             let mut image = Image::new(part.width, part.height, 4)?;
             let texels = texture.data.chunks_exact(3).zip(&mask.data);
             for (out, (rgb, mask)) in image.data.chunks_exact_mut(4).zip(texels) {

@@ -106,7 +106,7 @@ pub unsafe extern "C" fn luxfer_image_false_colour(
         let source = object.image();
         let width = source.width + false_colour::bar_width(source, &params)?;
         let shown = Pixels::counted(object.context(), width, source.height, 3, || {
-            object.context().pool.run(|| false_colour::render(source, &params))
+            object.context().quick.run(|| false_colour::render(source, &params))
         })?;
         out.set(handle::give(shown));
         Ok(())

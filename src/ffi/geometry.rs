@@ -60,7 +60,7 @@ pub unsafe extern "C" fn luxfer_image_warp(
         let source = object.image();
         let image = Pixels::counted(object.context(), width, height, source.channels, || {
             let monitor = Monitor::default();
-            object.context().pool.run(|| rectify::warp(source, &map, width, height, monitor.job()))
+            object.context().quick.run(|| rectify::warp(source, &map, width, height, monitor.job()))
         })?;
         out.set(handle::give(image));
         Ok(())

@@ -334,7 +334,9 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
 /// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by
 /// exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the file
 /// states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709; exposure
-/// is not used. An existing file is replaced only once the new one is complete. Any thread.
+/// is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner. Symbolic
+/// links are followed; devices, FIFOs and files with several names are written in place. All functions of this library
+/// save files in this way. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_save(
@@ -345,13 +347,14 @@ pub unsafe extern "C" fn luxfer_image_save(
     enter(image, |object| {
         let path = Path::new(text(path, "path")?);
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        let target = io::Target::new(path)?;
         let encoded = match extension.as_str() {
             "png" if exposure > 0.0 && exposure.is_finite() => io::encode_png(object.image(), exposure)?,
             "png" => return Err(Error::argument(format!("exposure is {exposure}; it must be positive and finite"))),
             "exr" => encode_exr(object.image())?,
             _ => return Err(Error::argument(format!("{} ends neither in .png nor in .exr", path.display()))),
         };
-        io::write_file(path, &encoded)
+        target.write(&encoded)
     })
 }
 

@@ -278,7 +278,7 @@ fn respond(
     };
     let texture = Texture::new("texture", image.image().clone());
     let monitor = Monitor::default();
-    let response = stage.context().pool.run(|| map.respond(&texture, &placement, monitor.job()))?;
+    let response = stage.context().quick.run(|| map.respond(&texture, &placement, monitor.job()))?;
     Ok((map, response))
 }
 

@@ -4,6 +4,9 @@
 //! as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
 //! refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
 //! succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
+//!
+//! Jobs of one context share its threads, so a job may have to wait until another ends; cancelling it then ends it at
+//! once. All other calls run at once, whatever the jobs do, also from a progress function.
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};
@@ -60,7 +63,8 @@ impl Handle for luxfer_job {
 }
 
 impl Job {
-    /// Runs `work` in the context's pool, from a thread of its own.
+    /// Runs `work` in the context's pool, from a thread of its own. A job that is cancelled before the pool begins it
+    /// ends at once.
     pub(super) fn start(
         context: &Arc<Context>,
         work: impl FnOnce(crate::job::Job) -> Result<()> + Send + 'static,
@@ -70,8 +74,10 @@ impl Job {
         let run = {
             let (context, shared) = (context.clone(), shared.clone());
             move || {
-                let result = catch(|| context.pool.run(|| work(shared.monitor.job())));
-                *lock(&shared.result) = Some(result);
+                let in_pool = shared.clone();
+                let work = move || catch(|| work(in_pool.monitor.job()));
+                let result = context.pool.run_unless(work, || shared.monitor.is_cancelled());
+                *lock(&shared.result) = Some(result.unwrap_or_else(|| Err(Error::cancelled())));
                 shared.finished.notify_all();
             }
         };

@@ -66,15 +66,18 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
         }
         let rays = bytes(rays.cast(), size_of_all::<luxfer_ray>(count)?, "rays")?;
         let hits = bytes_mut(hits.cast(), size_of_all::<luxfer_hit>(count)?, "hits")?;
-        let snapshot = object.snapshot();
-        let monitor = Monitor::default();
-        let blocks = object.context().pool.run(|| {
-            let world = object.world(&snapshot, monitor.job().part(0.0, 0.5))?;
-            exec::map(count.div_ceil(BLOCK), monitor.job().part(0.5, 1.0), |i| {
-                let block = rays.chunks(BLOCK * size_of::<luxfer_ray>()).nth(i).unwrap_or_default();
-                block.chunks_exact(size_of::<luxfer_ray>()).map(|ray| nearest(&world, ray)).collect::<Vec<_>>()
-            })
-        })?;
+        let world = object.ready_world()?;
+        let block = |i: usize| {
+            let block = rays.chunks(BLOCK * size_of::<luxfer_ray>()).nth(i).unwrap_or_default();
+            block.chunks_exact(size_of::<luxfer_ray>()).map(|ray| nearest(&world, ray)).collect::<Vec<_>>()
+        };
+        // Few rays take less time than it takes to wake another thread.
+        let blocks = if count <= BLOCK {
+            vec![block(0)]
+        } else {
+            let monitor = Monitor::default();
+            object.context().quick.run(|| exec::map(count.div_ceil(BLOCK), monitor.job(), block))?
+        };
         for (place, hit) in hits.chunks_exact_mut(size_of::<luxfer_hit>()).zip(blocks.into_iter().flatten()) {
             place.copy_from_slice(bytemuck::cast_slice(&hit));
         }

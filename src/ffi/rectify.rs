@@ -436,8 +436,8 @@ pub unsafe extern "C" fn luxfer_rectify_warp(
         output.found_in.image().check_same_size("the photo", source.image(), "source")?;
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let monitor = Monitor::default();
-        let pool = &stage.context().pool;
-        let image = pool.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
+        let quick = &stage.context().quick;
+        let image = quick.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
         out.set(handle::give(Pixels::part(stage.context(), Arc::new(image), |image| image)));
         Ok(())
     })

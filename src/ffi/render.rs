@@ -332,7 +332,7 @@ pub unsafe extern "C" fn luxfer_render_get_image(
             LUXFER_RENDER_INTERVAL => {
                 let (context, film) = (stage.context(), stage.output()?);
                 let (width, height) = (film.beauty.width, film.beauty.height);
-                let make = || context.pool.run(|| film.interval(Monitor::default().job()));
+                let make = || context.quick.run(|| film.interval(Monitor::default().job()));
                 out.set(handle::give(Pixels::counted(context, width, height, 3, make)?));
                 return Ok(());
             }

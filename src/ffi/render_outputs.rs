@@ -205,7 +205,7 @@ pub unsafe extern "C" fn luxfer_render_get_layer(
 pub unsafe extern "C" fn luxfer_render_write_exr(render: *mut luxfer_render, path: *const c_char) -> luxfer_status {
     enter(render, |stage| {
         let path = text(path, "path")?;
-        io::write_file(Path::new(path), &encode(&*stage.output()?)?)
+        io::Target::new(Path::new(path))?.write(&encode(&*stage.output()?)?)
     })
 }
 

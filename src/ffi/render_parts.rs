@@ -17,6 +17,7 @@ use super::pointer::text;
 use super::render::{luxfer_render, luxfer_render_params};
 use super::status::luxfer_status;
 use crate::error::Result;
+use crate::image::io;
 use crate::render::parts::{self, Part};
 use crate::render::{Film, Params};
 use std::ffi::c_char;
@@ -122,6 +123,8 @@ pub unsafe extern "C" fn luxfer_render_start_part(
         let shot = stage.inputs().shot(params)?;
         let part = params::read(part)?.part(&shot.params);
         let path = PathBuf::from(text(path, "path")?);
+        // Find out now whether the file can be written, not after hours of rendering.
+        io::Target::new(&path)?;
         stage.start(job, move |_, _, job| {
             let world = shot.world(job.part(0.0, 0.05))?;
             let rendered = parts::run(&world, &shot.camera, &shot.params, &part, job.part(0.05, 0.99))?;

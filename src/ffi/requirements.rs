@@ -5,17 +5,13 @@
 //! image. You need not call these functions: they only report what the renderer does by itself.
 
 use super::guard::enter;
-use super::handle::Owned;
 use super::params::{Report, Versioned};
 use super::pointer::copy_text;
 use super::query::LUXFER_NONE;
-use super::scene::{SceneObject, luxfer_scene};
+use super::scene::luxfer_scene;
 use super::status::luxfer_status;
-use crate::error::{Error, Result};
-use crate::job::Monitor;
-use crate::render::World;
+use crate::error::Error;
 use std::ffi::c_char;
-use std::sync::Arc;
 
 /// At least one surface scatters diffusely.
 pub const LUXFER_SCATTERING_DIFFUSE: u32 = 1;
@@ -98,7 +94,7 @@ pub unsafe extern "C" fn luxfer_scene_requirements(
         if !(0.0..1.0).contains(&error) {
             return Err(Error::argument(format!("error is {error}; it must lie in [0, 1)")));
         }
-        let world = ready(object)?;
+        let world = object.ready_world()?;
         let found = world.requirements();
         let flags = |bits: &[bool]| bits.iter().zip(0..).map(|(&bit, i)| u32::from(bit) << i).sum();
         out.set(luxfer_requirements {
@@ -133,11 +129,7 @@ pub unsafe extern "C" fn luxfer_scene_requirements_text(
     capacity: usize,
     needed: *mut usize,
 ) -> luxfer_status {
-    enter(scene, |object| copy_text(&ready(object)?.requirements().left_out().join("\n"), buffer, capacity, needed))
-}
-
-/// The scene as it is, ready for tracing.
-fn ready(object: &SceneObject) -> Result<Arc<World>> {
-    let (snapshot, monitor) = (object.snapshot(), Monitor::default());
-    object.context().pool.run(|| object.world(&snapshot, monitor.job()))
+    enter(scene, |object| {
+        copy_text(&object.ready_world()?.requirements().left_out().join("\n"), buffer, capacity, needed)
+    })
 }

@@ -14,7 +14,7 @@ use super::pointer::{Out, bytes, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io;
-use crate::job::Job;
+use crate::job::{Job, Monitor};
 use crate::render::World;
 use crate::scene::{Environment, Scene, gltf, surface};
 use glam::Vec3;
@@ -173,11 +173,23 @@ impl SceneObject {
         Ok(result)
     }
 
+    /// The scene `scene` ready for tracing, if an earlier call has made it so.
+    fn kept_world(&self, scene: &Arc<Scene>) -> Option<Arc<World>> {
+        lock(&self.state).world.clone().filter(|world| Arc::ptr_eq(world.scene(), scene))
+    }
+
+    /// The scene as it is, ready for tracing, for calls that return when their work is done.
+    pub(super) fn ready_world(&self) -> Result<Arc<World>> {
+        let scene = self.snapshot();
+        match self.kept_world(&scene) {
+            Some(world) => Ok(world),
+            None => self.context.quick.run(|| self.world(&scene, Monitor::default().job())),
+        }
+    }
+
     /// The scene `scene` made ready for tracing; kept until the scene changes.
     pub(super) fn world(&self, scene: &Arc<Scene>, job: Job) -> Result<Arc<World>> {
-        if let Some(world) = lock(&self.state).world.clone()
-            && Arc::ptr_eq(world.scene(), scene)
-        {
+        if let Some(world) = self.kept_world(scene) {
             job.report(1.0);
             return Ok(world);
         }
@@ -261,7 +273,7 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
         if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
             return Err(Error::argument(format!("path is {}; it must end in .glb", path.display())));
         }
-        io::write_file(path, &gltf::export(&object.snapshot())?)
+        io::Target::new(path)?.write(&gltf::export(&object.snapshot())?)
     })
 }
 

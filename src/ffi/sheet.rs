@@ -118,7 +118,7 @@ pub unsafe extern "C" fn luxfer_sheet_print(
         let (context, picture) = (object.context(), object.image());
         let (width, height) = sheet::size(&params)?;
         let image = Pixels::counted(context, width, height, 3, || {
-            context.pool.run(|| sheet::print(picture, &params, Monitor::default().job()))
+            context.quick.run(|| sheet::print(picture, &params, Monitor::default().job()))
         })?;
         out.set(handle::give(image));
         Ok(())
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn luxfer_sheet_align(
         let mut numbers = luxfer_sheet_report::defaults();
         let image = Pixels::counted(context, width, height, 3, || {
             let job = Monitor::default();
-            let aligned = context.pool.run(|| sheet::align(photo, width, height, &params, job.job()))?;
+            let aligned = context.quick.run(|| sheet::align(photo, width, height, &params, job.job()))?;
             numbers.marks = aligned.marks as u32;
             (numbers.residual, numbers.error) = (aligned.residual, aligned.error);
             numbers.to_photo = aligned.to_photo.0.transpose().to_cols_array();

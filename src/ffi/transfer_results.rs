@@ -360,6 +360,6 @@ pub unsafe extern "C" fn luxfer_transfer_save_fixtures(
             "json" => to_json,
             _ => return Err(Error::argument(format!("{} ends neither in .csv nor in .json", path.display()))),
         };
-        io::write_file(path, encode(&stage.output()?.fixtures()?).as_bytes())
+        io::Target::new(path)?.write(encode(&stage.output()?.fixtures()?).as_bytes())
     })
 }

@@ -5,6 +5,7 @@
 //! converted from the colour space that their file states to linear Rec.709 ([`super::file_colour`]); textures are
 //! not, as glTF asks (2.0, 3.8.3), nor are data.
 
+pub use super::files::{Target, check_regular, read_file, write_file};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::linear_to_srgb;
 use crate::image::file_colour::{Conversion, FileColour, Space};
@@ -43,15 +44,6 @@ pub struct Photo {
 /// Reads a file with 1, 3 or 4 channels, as linear values, upright.
 pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
     decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.within(path.display()))
-}
-
-/// Reads a whole file.
-pub fn read_file(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|e| {
-        let is_memory = e.kind() == std::io::ErrorKind::OutOfMemory;
-        let kind = if is_memory { ErrorKind::OutOfMemory } else { ErrorKind::Io };
-        Error::new(kind, format!("{}: {e}", path.display()))
-    })
 }
 
 /// Reads a picture file held in memory, its rows and columns and its colours as they are stored.
@@ -182,17 +174,6 @@ fn state_srgb(png: Vec<u8>) -> Result<Vec<u8>> {
     // Behind the signature and the header.
     let (head, pixels) = png.split_at(8 + 25);
     try_collect([head, &CHUNK, pixels].into_iter().flatten().copied())
-}
-
-/// Writes a whole file, or leaves what was there before: the bytes go to a neighbour first, then take its place.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    let failed = |e: std::io::Error| Error::new(ErrorKind::Io, format!("{}: {e}", path.display()));
-    let mut neighbour = path.as_os_str().to_owned();
-    neighbour.push(format!(".{}.part", std::process::id()));
-    std::fs::write(&neighbour, bytes).and_then(|()| std::fs::rename(&neighbour, path)).map_err(|e| {
-        let _ = std::fs::remove_file(&neighbour);
-        failed(e)
-    })
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ mod buffer;
 pub mod colour;
 mod containers;
 pub mod file_colour;
+mod files;
 mod format;
 pub mod io;
 pub mod numbers;

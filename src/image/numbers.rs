@@ -5,6 +5,7 @@
 //! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the
 //! header.
 
+use super::io::check_regular;
 use super::openexr::{broken, first_layer, headers};
 use super::{Image, room, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
@@ -89,6 +90,7 @@ fn name(number: usize, is_high: bool) -> String {
 
 /// What the beginning of a file says.
 pub fn read_head(path: &Path) -> Result<Head> {
+    check_regular(path)?;
     let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
     let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken);
     meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.within(path.display()))

@@ -802,7 +802,9 @@ class ContextParams(TypedDict, total=False):
     """Settings of a context."""
 
     num_threads: int
-    """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use."""
+    """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs
+    share these threads. Calls that return when their work is done never wait for a job: they run on the calling
+    thread, or on as many further threads, which the context starts for the first of them."""
     memory_budget_mib: int
     """Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context;
     a call that would exceed it returns Status.OUT_OF_MEMORY. 0, the default: no limit. The working memory of

@@ -2,6 +2,7 @@
 //! files.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::io::read_file;
 use crate::image::try_with_capacity;
 use gltf::json::{Index, Root, buffer};
 use std::borrow::Cow;
@@ -80,12 +81,7 @@ impl<'a> File<'a> {
             ))
         })?;
         let path = base.join(relative);
-        let failed = |e: std::io::Error| Error::new(ErrorKind::Io, format!("{}: {e}", path.display()));
-        // Refuse devices and pipes, which might never end.
-        if !std::fs::metadata(&path).map_err(failed)?.is_file() {
-            return Err(Error::new(ErrorKind::Io, format!("{} is not a regular file", path.display())));
-        }
-        std::fs::read(&path).map_err(failed)
+        read_file(&path)
     }
 }
 

@@ -1,0 +1,244 @@
+//! Calls that return when their work is done never wait for a job, and a job that waits for another can be cancelled.
+
+mod host;
+
+use host::{context, image, made, message, scene};
+use luxfer::ffi::*;
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+use std::time::{Duration, Instant};
+
+/// Longest time by which a running job may delay a call.
+const MAX_DELAY: Duration = Duration::from_millis(50);
+
+/// Rounds of calls, of which the best counts: other programs may keep the processors busy for a while.
+const ROUNDS: usize = 5;
+
+/// A rendering in a scene of its own.
+fn start_render(context: *mut luxfer_context, samples: u32) -> (*mut luxfer_render, *mut luxfer_job) {
+    let (render, scene) = (made(|out| unsafe { luxfer_render_create(context, out) }), scene(context));
+    let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
+    unsafe {
+        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+    }
+    let params = luxfer_render_params { width: 64, height: 64, samples, ..params };
+    (render, made(|out| unsafe { luxfer_render_start(render, &params, out) }))
+}
+
+/// A job that lasts until it is cancelled.
+struct Endless {
+    render: *mut luxfer_render,
+    job: *mut luxfer_job,
+}
+
+impl Endless {
+    /// Starts it and waits until it runs.
+    fn start(context: *mut luxfer_context) -> Self {
+        let (render, job) = start_render(context, 1 << 20);
+        let mut fraction = 0.0;
+        while fraction == 0.0 {
+            assert_eq!(unsafe { luxfer_job_poll(job, &mut fraction, null_mut()) }, LUXFER_OK);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Self { render, job }
+    }
+
+    fn end(self) {
+        unsafe {
+            assert_eq!(luxfer_job_cancel(self.job), LUXFER_OK);
+            assert_eq!(luxfer_job_wait(self.job, -1, None, null_mut()), LUXFER_CANCELLED);
+            assert_eq!(luxfer_job_release(self.job), LUXFER_OK);
+            assert_eq!(luxfer_render_release(self.render), LUXFER_OK);
+        }
+    }
+}
+
+/// What quick calls work on.
+struct Objects {
+    context: *mut luxfer_context,
+    image: *mut luxfer_image,
+    scene: *mut luxfer_scene,
+    sheet: *mut luxfer_image,
+    sheet_params: luxfer_sheet_params,
+    render: *mut luxfer_render,
+}
+
+impl Objects {
+    fn new(context: *mut luxfer_context) -> Self {
+        let image = image(context, 32, 24, 0.5);
+        let mut params = unsafe { std::mem::zeroed::<luxfer_sheet_params>() };
+        assert_eq!(unsafe { luxfer_sheet_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
+        let sheet_params = luxfer_sheet_params { paper_width: 100.0, paper_height: 80.0, dpi: 50.0, ..params };
+        let sheet = made(|out| unsafe { luxfer_sheet_print(image, &sheet_params, out) });
+        let (render, job) = start_render(context, 16);
+        unsafe {
+            assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK);
+            assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        }
+        Self { context, image, scene: scene(context), sheet, sheet_params, render }
+    }
+
+    fn release(self) {
+        unsafe {
+            assert_eq!(luxfer_image_release(self.image), LUXFER_OK);
+            assert_eq!(luxfer_image_release(self.sheet), LUXFER_OK);
+            assert_eq!(luxfer_scene_release(self.scene), LUXFER_OK);
+            assert_eq!(luxfer_render_release(self.render), LUXFER_OK);
+        }
+    }
+}
+
+/// Traces `count` rays up from the middle of the room; the distance of the first hit.
+fn trace(scene: *mut luxfer_scene, count: usize) -> f32 {
+    let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
+    let mut hits = vec![luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 }; count];
+    let rays = vec![ray; count];
+    assert_eq!(unsafe { luxfer_scene_intersect(scene, rays.as_ptr(), count, hits.as_mut_ptr()) }, LUXFER_OK);
+    assert!(hits.iter().all(|hit| hit.t == hits[0].t));
+    hits[0].t
+}
+
+fn new_image(context: *mut luxfer_context, make: impl FnOnce(*mut *mut luxfer_image) -> luxfer_status) {
+    let mut image = null_mut();
+    assert_eq!(make(&mut image), LUXFER_OK, "{}", message(context));
+    assert_eq!(unsafe { luxfer_image_release(image) }, LUXFER_OK);
+}
+
+fn requirements(scene: *mut luxfer_scene) {
+    let mut found = unsafe { std::mem::zeroed::<luxfer_requirements>() };
+    found.struct_size = size_of_val(&found) as u32;
+    assert_eq!(unsafe { luxfer_scene_requirements(scene, 0.1, &mut found) }, LUXFER_OK);
+}
+
+/// Every quick call that works in parallel and needs no long preparation, by name.
+const CALLS: [(&str, fn(&Objects)); 9] = [
+    ("luxfer_scene_intersect, 1 ray", |o| assert_eq!(trace(o.scene, 1), 2.0)),
+    ("luxfer_scene_intersect, 10000 rays", |o| assert_eq!(trace(o.scene, 10_000), 2.0)),
+    ("luxfer_scene_requirements", |o| requirements(o.scene)),
+    ("luxfer_scene_requirements of a new scene", |o| {
+        let scene = scene(o.context);
+        requirements(scene);
+        assert_eq!(unsafe { luxfer_scene_release(scene) }, LUXFER_OK);
+    }),
+    ("luxfer_image_warp", |o| {
+        let same = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        new_image(o.context, |out| unsafe { luxfer_image_warp(o.image, same.as_ptr(), 8, 8, out) });
+    }),
+    ("luxfer_image_false_colour", |o| {
+        new_image(o.context, |out| unsafe { luxfer_image_false_colour(o.image, null(), out) });
+    }),
+    ("luxfer_sheet_print", |o| {
+        new_image(o.context, |out| unsafe { luxfer_sheet_print(o.image, &o.sheet_params, out) });
+    }),
+    ("luxfer_sheet_align", |o| {
+        new_image(o.context, |out| unsafe { luxfer_sheet_align(o.sheet, 32, 24, &o.sheet_params, out, null_mut()) });
+    }),
+    ("luxfer_render_get_image", |o| {
+        new_image(o.context, |out| unsafe { luxfer_render_get_image(o.render, LUXFER_RENDER_INTERVAL, out) });
+    }),
+];
+
+fn time(work: impl FnOnce()) -> Duration {
+    let clock = Instant::now();
+    work();
+    clock.elapsed()
+}
+
+#[test]
+fn quick_calls_never_wait_for_a_job() {
+    for num_threads in [1, 2] {
+        let context = context(num_threads);
+        let objects = Objects::new(context);
+        let times = || CALLS.map(|(_, call)| time(|| call(&objects)));
+        // The first calls start threads.
+        times();
+        let idle = times();
+        let endless = Endless::start(context);
+        let slowest = (0..ROUNDS).map(|_| {
+            let delays = times().into_iter().zip(idle).map(|(busy, idle)| busy.saturating_sub(idle));
+            delays.zip(CALLS).map(|(delay, (name, _))| (delay, name)).max().unwrap()
+        });
+        let (delay, name) = slowest.min().unwrap();
+        println!("{num_threads} threads: the slowest quick call, {name}, is {delay:?} later than without the job");
+        assert!(delay <= MAX_DELAY, "{num_threads} threads: {name} is delayed by {delay:?}");
+        endless.end();
+        objects.release();
+        assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+    }
+}
+
+#[test]
+fn a_quick_call_never_waits_for_another() {
+    let context = context(1);
+    let objects = Objects::new(context);
+    // A warp of many pixels, which takes a while.
+    let (image, of) = (objects.image as usize, context as usize);
+    let other = std::thread::spawn(move || {
+        let enlarge = [1e-3, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 1.0];
+        let (image, context) = (image as *mut luxfer_image, of as *mut luxfer_context);
+        time(|| new_image(context, |out| unsafe { luxfer_image_warp(image, enlarge.as_ptr(), 6000, 6000, out) }))
+    });
+    let mut traced = Vec::new();
+    while !other.is_finished() {
+        traced.push(time(|| assert_eq!(trace(objects.scene, 10_000), 2.0)));
+    }
+    let (long, quickest) = (other.join().unwrap(), traced.iter().min().unwrap());
+    assert!(traced.len() > 3 && *quickest < long / 4, "{} calls while another took {long:?}", traced.len());
+    objects.release();
+    assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+}
+
+/// What a progress function does: it traces a ray.
+unsafe extern "C" fn trace_one(scene: *mut c_void, _: f64) -> i32 {
+    i32::from(trace(scene.cast(), 1) != 2.0)
+}
+
+#[test]
+fn a_cancel_is_answered_while_a_progress_function_calls_the_library() {
+    let context = context(1);
+    let scene = scene(context);
+    for _ in 0..3 {
+        let endless = Endless::start(context);
+        let job = endless.job as usize;
+        let canceller = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(100));
+            assert_eq!(unsafe { luxfer_job_cancel(job as *mut luxfer_job) }, LUXFER_OK);
+            Instant::now()
+        });
+        let status = unsafe { luxfer_job_wait(endless.job, -1, Some(trace_one), scene.cast()) };
+        let answered = Instant::now();
+        assert_eq!(status, LUXFER_CANCELLED);
+        // 100 ms are promised; a crowded machine gets more before this is called a failure.
+        let late = answered - canceller.join().unwrap();
+        assert!(late < Duration::from_millis(500), "{late:?}");
+        endless.end();
+    }
+    unsafe {
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn a_job_that_waits_for_another_is_cancelled_at_once() {
+    let context = context(1);
+    let endless = Endless::start(context);
+    let (render, job) = start_render(context, 4);
+    unsafe {
+        assert_eq!(luxfer_job_wait(job, 50, None, null_mut()), LUXFER_NOT_READY);
+        assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
+        let clock = Instant::now();
+        assert_eq!(luxfer_job_wait(job, 2000, None, null_mut()), LUXFER_CANCELLED);
+        assert!(clock.elapsed() < Duration::from_millis(500), "{:?}", clock.elapsed());
+        // Its object is free for the next job, which runs when the first has ended.
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        let next = made(|out| luxfer_render_start(render, null(), out));
+        endless.end();
+        assert_eq!(luxfer_job_cancel(next), LUXFER_OK);
+        assert_eq!(luxfer_job_release(next), LUXFER_OK);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
