@@ -18,6 +18,9 @@ use std::io::Cursor;
 
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
+/// Primaries with which R, G and B are CIE X, Y and Z.
+const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
+
 /// Bytes of a tile that any file may have.
 const LARGEST_TILE: usize = 64 << 20;
 
@@ -167,7 +170,10 @@ fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32
         None if neutral.is_some() => Chromaticities::REC709,
         None => return Space::Unstated,
     };
-    let white = neutral.map_or(chromaticities.white, point);
+    // CIE XYZ measures colours; its white is that of the equations, of no scene.
+    let is_xyz = chromaticities.primaries == XYZ;
+    let white = if is_xyz { Chromaticities::REC709.white } else { chromaticities.white };
+    let white = neutral.map_or(white, point);
     chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Conversion::linear_space)
 }
 
@@ -314,17 +320,19 @@ mod tests {
             let data = decode_photo(&bytes, Encoding::Linear).unwrap();
             assert_eq!((data.image.pixel(0, 0), data.metadata.colour), (&[1.0, 0.0, 0.0][..], FileColour::Data));
         }
-        // XYZ whose neutral is D65: its X.
-        let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
-            f.attributes.chromaticities = Some(attribute::Chromaticities {
-                red: point(1.0, 0.0),
-                green: point(0.0, 1.0),
-                blue: point(0.0, 0.0),
-                white: point(1.0 / 3.0, 1.0 / 3.0),
+        // XYZ is colorimetry under D65, whether a neutral is stated or not: its X.
+        for neutral in [None, Some(point(0.3127, 0.3290))] {
+            let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
+                f.attributes.chromaticities = Some(attribute::Chromaticities {
+                    red: point(1.0, 0.0),
+                    green: point(0.0, 1.0),
+                    blue: point(0.0, 0.0),
+                    white: point(1.0 / 3.0, 1.0 / 3.0),
+                });
+                f.layer_data.attributes.adopted_neutral = neutral;
             });
-            f.layer_data.attributes.adopted_neutral = Some(point(0.3127, 0.3290));
-        });
-        let photo = decode_photo(&xyz, Encoding::Srgb).unwrap();
-        assert!((photo.image.pixel(0, 0)[0] - 3.240_97).abs() < 1e-3);
+            let photo = decode_photo(&xyz, Encoding::Srgb).unwrap();
+            assert!((photo.image.pixel(0, 0)[0] - 3.240_97).abs() < 1e-3);
+        }
     }
 }
