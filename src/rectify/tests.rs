@@ -121,7 +121,10 @@ fn the_files_focal_length_decides_where_lines_do_not() {
         (view.perspective.focal, view.perspective.focal_source, flat.aspect_confidence)
     };
     let (focal, source, confidence) = unwarped(&Params::default());
-    assert!((focal - 680.0).abs() < 1e-6 && source == FocalSource::Assumed && confidence < 0.2, "{focal} {source:?} {confidence}");
+    assert!(
+        (focal - 680.0).abs() < 1e-6 && source == FocalSource::Assumed && confidence < 0.2,
+        "{focal} {source:?} {confidence}"
+    );
     let (focal, source, confidence) = unwarped(&expected(1000.0));
     assert!((focal - 1000.0).abs() < 1e-6 && source == FocalSource::Metadata && confidence > 0.7, "{confidence}");
     let (focal, source, _) = unwarped(&Params { focal: Some(900.0), ..expected(1000.0) });
