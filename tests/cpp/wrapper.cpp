@@ -291,7 +291,7 @@ std::vector<std::uint8_t> turned_photo() {
                                         {273, 4, 200}, {274, 3, 6}, {279, 4, 2}, {0x8769, 4, 120}};
     const std::uint32_t camera[][3] = {{0x829a, 5, 184}, {0x829d, 5, 192}, {0x8827, 3, 100}, {0xa405, 3, 36}};
     const auto directory = [&](const auto &entries) {
-        put(std::size(entries), 2);
+        put(static_cast<std::uint32_t>(std::size(entries)), 2);
         for (const auto &entry : entries) {
             put(entry[0], 2), put(entry[1], 2), put(1, 4), put(entry[2], 4);
         }
