@@ -5,7 +5,7 @@ import unittest
 
 from support import Case, context, luxfer, np
 
-from luxfer import _arrays
+from luxfer import _arrays, errors
 
 
 def tiff(picture, pixels, camera=()):
@@ -119,7 +119,7 @@ class Images(Case):
                 pixels = luxfer.Image.load(context(), self.folder / f"a.{ending}").numpy()
                 np.testing.assert_array_equal(pixels[0, :, :3], [[1, 0, 0], [0, 0, 1]])
         for data, name in ((b"\0\0\0\x1cftypavif", "AVIF"), (b"\0\0\0\x18ftypheic", "HEIC"), (b"\xff\x0a", "JPEG XL")):
-            with self.assertRaisesRegex(luxfer.Unsupported, f"{name}.*convert it to JPEG"):
+            with self.assertRaisesRegex(errors.Unsupported, f"{name}.*convert it to JPEG"):
                 luxfer.Image.from_bytes(context(), data)
 
     def test_metadata(self):

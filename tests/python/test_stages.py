@@ -234,8 +234,11 @@ class Rendering(Case):
             part = render.split(3, 1, 2, index, **size)
             render.start_part(paths[-1], part, **size).wait()
             self.assertEqual(render.image().size, (part["width"], part["height"], 3))
-        # Anyone can look at a part.
-        np.testing.assert_array_equal(luxfer.Image.load(context(), paths[-1]).numpy(), render.image().numpy())
+        # Anyone can look at a part, in its place in the whole picture.
+        picture = luxfer.Image.load(context(), paths[-1]).numpy()
+        self.assertEqual(picture.shape, (24, 40, 3))
+        rows, columns = slice(part["y"], part["y"] + part["height"]), slice(part["x"], part["x"] + part["width"])
+        np.testing.assert_array_equal(picture[rows, columns], render.image().numpy())
         merged = render.start_merge(paths, **size).wait()
         beauty, direct = merged.image().numpy(), merged.layer("direct").numpy()
         render.start_part(self.folder / "whole.exr", {}, **size).wait()
