@@ -15,7 +15,9 @@
 //! # Verdicts
 //! They are computed (`photos/judge.rs`); no list of opinions is read.
 //! - *Precision* is the share of the mask of lights that lies on a true lamp or within 6 pixels of one; *found* the share of the
-//!   true lamps whose centre lies in the mask.
+//!   true lamps of at least 4 pixels across half of whose pixels lie in the mask.
+//! - A lamp that the corpus lists by hand reaches as far as its luminance is above half way from its surroundings' to its own
+//!   (`photos/outline.rs`); one that was measured in the ceiling seen straight on has the median size of that ceiling's lamps.
 //! - The *texture* is held against the true lamps in their plane where the camera is known, both in units of the camera's
 //!   distance from the plane, so that a wrong focal length or unwarping counts too: median area of the whole lamps, median
 //!   aspect ratio, median distance to the nearest lamp, and lit share of the plane. Lamps longer than six times their width are
@@ -60,6 +62,8 @@ mod made;
 mod masks;
 #[path = "photos/outcome.rs"]
 mod outcome;
+#[path = "photos/outline.rs"]
+mod outline;
 #[path = "photos/perfect.rs"]
 mod perfect;
 #[path = "photos/real.rs"]

@@ -1,11 +1,13 @@
 //! Real photographs with strokes: the corpus and the photos of the test data, and what is known of their lamps.
 
 use super::masks::Mask;
+use super::outline;
 use super::shapes::{Lamps, Shape};
 use super::truth::{Lamp, Photo, Truth};
 use crate::harness::scenes::data;
 use glam::{DMat3, DVec2};
-use luxfer::geometry::Homography;
+use luxfer::geometry::{Homography, polygon};
+use luxfer::image::Image;
 use luxfer::image::io::{self, Encoding};
 use luxfer::segment::strokes;
 use serde_json::Value;
@@ -26,11 +28,15 @@ pub const HELD: [&str; 10] = [
     "still_corridor_lowres",
 ];
 
-/// Photos that hold no pattern of lamps: a single hanging lamp, a single small downlight.
-const TRAPS: [&str; 2] = ["cmtc_discs", "foyer_sconces"];
+/// Photos that hold no pattern of lamps: a single hanging lamp, a single small downlight, a single panel of which the border of
+/// the photo leaves a corner or an end.
+const TRAPS: [&str; 4] = ["alma_glassroom", "alma_racks", "cmtc_discs", "foyer_sconces"];
 
 /// Pixels between a lamp's polygon and the border of its photo below which the border may cut the lamp. [rounding]
 const BORDER: f64 = 2.0;
+
+/// Least thickness in photo pixels of a lamp that is looked for. [convention: two pixels and their blurred borders]
+const MIN_THICKNESS: f64 = 4.0;
 
 /// Where the files of a photo are.
 pub struct Source {
@@ -77,24 +83,40 @@ pub fn load(source: &Source) -> Result<Photo, String> {
     let image = io::load(&source.picture, Encoding::Srgb).and_then(|i| i.to_rgb()).map_err(|e| e.to_string())?;
     let strokes = strokes::parse(&read(&source.strokes)?, image.width, image.height).map_err(|e| e.to_string())?;
     let record: Value = serde_json::from_str(&read(&source.truth)?).map_err(|e| format!("{}: {e}", source.name))?;
-    let truth = truth(&source.name, &record, [image.width, image.height]);
+    let truth = truth(&source.name, &record, &image);
     Ok(Photo { name: source.name.clone(), image: Arc::new(image), strokes, truth })
 }
 
-fn truth(name: &str, record: &Value, [width, height]: [usize; 2]) -> Truth {
+fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
+    let [width, height] = [photo.width, photo.height];
     let listed = items(&record["luminaires"]);
-    let lamps: Vec<Lamp> = listed.iter().filter_map(lamp).collect();
+    let mut lamps: Vec<Lamp> = listed.iter().filter_map(lamp).collect();
     let mut lights = Mask::new(width, height);
     lamps.iter().flat_map(|lamp| &lamp.polygons).for_each(|polygon| lights.fill(polygon));
     // Lamps measured in the ceiling seen straight on, some of which the list by hand leaves out.
     let measured = items(&record["luminaires_from_ceiling"]);
-    measured.iter().filter_map(|item| polygon(&item["px_polygon"])).for_each(|polygon| lights.fill(&polygon));
+    measured.iter().filter_map(|item| drawn_polygon(&item["px_polygon"])).for_each(|polygon| lights.fill(&polygon));
 
+    let mut parts = Vec::new();
+    for lamp in &mut lamps {
+        let shown: Vec<Vec<u32>> =
+            lamp.polygons.iter().flat_map(|polygon| outline::parts(photo, polygon, &lights)).collect();
+        lamp.pixels = shown.concat();
+        parts.extend(shown);
+    }
     let unlisted = unlisted(name, [width, height]);
     let to_photo = matrix(&record["H_image_from_ceiling"]);
-    let size = DVec2::new(width as f64, height as f64);
-    let layout = to_photo.and_then(|map| layout(record, &listed, &measured, &lamps, &map, size));
+    let layout = to_photo.and_then(|map| {
+        let measured = measured_layout(record, &measured).or_else(|| listed_layout(&listed));
+        measured.or_else(|| shown_layout(&parts, &map, photo))
+    });
+    lamps.retain(|lamp| lamp.polygons.iter().any(|polygon| thickness(polygon) >= MIN_THICKNESS));
     Truth { lights, unlisted, plane: None, either: None, lamps, layout, to_photo, is_trap: TRAPS.contains(&name) }
+}
+
+/// The shorter side of the smallest rectangle around a polygon of pixels.
+fn thickness(polygon: &[DVec2]) -> f64 {
+    Shape::of(polygon, None).map_or(0.0, |shape| shape.sides.y + 1.0)
 }
 
 /// Lamps that the lists leave out.
@@ -111,38 +133,46 @@ fn unlisted(name: &str, [width, height]: [usize; 2]) -> Option<Mask> {
     (mask.count() > 0).then_some(mask)
 }
 
-/// The lamps in their plane: as measured there, else as the photo shows the whole ones.
-fn layout(
-    record: &Value,
-    listed: &[Value],
-    measured: &[Value],
-    lamps: &[Lamp],
-    to_photo: &Homography,
-    size: DVec2,
-) -> Option<Lamps> {
-    let on_plane = |items: &[Value]| -> Vec<Shape> {
-        let corners = items.iter().filter_map(|item| plane_corners(&item["ceiling_uv"]));
-        corners.filter_map(|corners| Shape::of(&corners, None)).collect()
-    };
-    let exact = [on_plane(measured), on_plane(listed)].concat();
-    if !exact.is_empty() {
-        return Some(Lamps {
-            whole: exact,
-            kinds: Vec::new(),
-            cut: Vec::new(),
-            others: Vec::new(),
-            lit: lit(&record["luminaires_from_ceiling"]),
-        });
-    }
+/// The lamps as measured in the ceiling seen straight on: each where it lies, with the median size of all of that ceiling. A single
+/// lamp's own size is less sure: the panorama's stitching and the threshold make it smaller by up to a half.
+fn measured_layout(record: &Value, measured: &[Value]) -> Option<Lamps> {
+    let all = &record["luminaires_from_ceiling"];
+    let half = point(&all["size_uv_median"])? / 2.0;
+    let corners = measured.iter().filter_map(|item| plane_corners(&item["ceiling_uv"]));
+    let whole: Vec<Shape> = corners
+        .filter_map(|corners| {
+            let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
+            let signs = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+            Shape::of(&signs.map(|sign| middle + sign * half), None)
+        })
+        .collect();
+    (!whole.is_empty()).then(|| Lamps { whole, lit: lit(all), ..Lamps::default() })
+}
+
+/// The lamps as listed in their plane.
+fn listed_layout(listed: &[Value]) -> Option<Lamps> {
+    let corners = listed.iter().filter_map(|item| plane_corners(&item["ceiling_uv"]));
+    let whole: Vec<Shape> = corners.filter_map(|corners| Shape::of(&corners, None)).collect();
+    (!whole.is_empty()).then(|| Lamps { whole, ..Lamps::default() })
+}
+
+/// The lamps that the photo shows whole, from their pixels.
+fn shown_layout(parts: &[Vec<u32>], to_photo: &Homography, photo: &Image) -> Option<Lamps> {
+    let size = DVec2::new(photo.width as f64, photo.height as f64);
     let from_photo = to_photo.inverse();
-    let is_whole = |p: &DVec2| p.min_element() > BORDER && (size - *p).min_element() > BORDER;
-    let whole = lamps.iter().flat_map(|lamp| &lamp.polygons).filter(|polygon| polygon.iter().all(is_whole));
-    let shape = |polygon: &Vec<DVec2>| {
-        let corners: Vec<DVec2> = polygon.iter().map(|p| from_photo.apply(*p)).collect();
-        corners.iter().all(|p| p.is_finite()).then(|| Shape::of(&corners, None)).flatten()
+    let shape = |part: &Vec<u32>| {
+        let pixels: Vec<[DVec2; 4]> = part.iter().map(|&pixel| outline::corners(pixel, photo.width)).collect();
+        let is_whole = |p: &DVec2| p.min_element() > BORDER && (size - *p).min_element() > BORDER;
+        if !pixels.iter().flatten().all(is_whole) {
+            return None;
+        }
+        let pixels: Vec<[DVec2; 4]> = pixels.into_iter().map(|corners| corners.map(|p| from_photo.apply(p))).collect();
+        let area: f64 = pixels.iter().map(|corners| polygon::area(corners).abs()).sum();
+        let corners = pixels.concat();
+        corners.iter().all(|p| p.is_finite()).then(|| Shape::of(&corners, Some(area))).flatten()
     };
-    let whole: Vec<Shape> = whole.filter_map(shape).collect();
-    (!whole.is_empty()).then(|| Lamps { whole, kinds: Vec::new(), cut: Vec::new(), others: Vec::new(), lit: None })
+    let whole: Vec<Shape> = parts.iter().filter_map(shape).collect();
+    (!whole.is_empty()).then(|| Lamps { whole, ..Lamps::default() })
 }
 
 /// The share of a lattice that is lit.
@@ -160,7 +190,8 @@ fn items(list: &Value) -> Vec<Value> {
 /// A lamp of the list by hand, unless only its centre is known.
 fn lamp(item: &Value) -> Option<Lamp> {
     let drawn = item["polygons"].as_array().into_iter().flatten();
-    let polygons: Vec<Vec<DVec2>> = drawn.chain([&item["px_polygon_clipped_to_image"]]).filter_map(polygon).collect();
+    let polygons: Vec<Vec<DVec2>> =
+        drawn.chain([&item["px_polygon_clipped_to_image"]]).filter_map(drawn_polygon).collect();
     let first = polygons.first()?;
     let middle = first.iter().sum::<DVec2>() / first.len() as f64;
     Some(Lamp { centre: point(&item["centre_px"]).unwrap_or(middle), polygons, pixels: Vec::new() })
@@ -173,11 +204,11 @@ fn plane_corners(value: &Value) -> Option<Vec<DVec2>> {
         Some(&[u0, u1, v0, v1]) => {
             Some(vec![DVec2::new(u0, v0), DVec2::new(u1, v0), DVec2::new(u1, v1), DVec2::new(u0, v1)])
         }
-        _ => polygon(value),
+        _ => drawn_polygon(value),
     }
 }
 
-fn polygon(value: &Value) -> Option<Vec<DVec2>> {
+fn drawn_polygon(value: &Value) -> Option<Vec<DVec2>> {
     let corners: Option<Vec<DVec2>> = value.as_array()?.iter().map(point).collect();
     corners.filter(|corners| corners.len() > 2)
 }

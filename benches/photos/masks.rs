@@ -82,4 +82,30 @@ impl Mask {
         }
         Self { on: distance.into_iter().map(|d| d <= steps).collect(), ..*self }
     }
+
+    /// The pixels of each part that hangs together by sides.
+    pub fn parts(&self) -> Vec<Vec<usize>> {
+        let (w, h) = (self.width, self.height);
+        let mut open = self.on.clone();
+        let mut parts = Vec::new();
+        for start in 0..w * h {
+            if !std::mem::take(&mut open[start]) {
+                continue;
+            }
+            let mut part = vec![start];
+            let mut next = 0;
+            while let Some(&i) = part.get(next) {
+                next += 1;
+                let beside = [(i % w > 0, i.wrapping_sub(1)), (i % w + 1 < w, i + 1)];
+                let above = [(i >= w, i.wrapping_sub(w)), (i + w < w * h, i + w)];
+                for (_, j) in beside.into_iter().chain(above).filter(|(is_inside, _)| *is_inside) {
+                    if std::mem::take(&mut open[j]) {
+                        part.push(j);
+                    }
+                }
+            }
+            parts.push(part);
+        }
+        parts
+    }
 }
