@@ -28,7 +28,7 @@ static const char *path(const options *o, const char *name) {
 }
 
 static options parse(int argc, char **argv) {
-    options o = {NULL, NULL, "Ceiling", NULL, ".", 1.2, 640, 360, 12};
+    options o = {NULL, NULL, "Ceiling", NULL, ".", 0, 640, 360, 12};
     int i;
     for (i = 1; i < argc; i++) {
         const char *arg = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;

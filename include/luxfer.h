@@ -3778,7 +3778,10 @@ typedef struct luxfer_pattern_params {
     double margin;
 } luxfer_pattern_params;
 
-/** The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params. */
+/**
+ * The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or the
+ * estimate from the lamps where that is 0.
+ */
 #define LUXFER_PATTERN_DISTANCE 0
 
 /** The length of a lamp: the median of the longer sides of the photo's lamps. */
@@ -3823,8 +3826,9 @@ typedef struct luxfer_transfer_params {
     /** Maximum side of the emissive texture in texels, in [1, 16384]; default 2048. */
     uint32_t max_texels;
     /**
-     * Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It sets
-     * the scale of the pattern.
+     * Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]. It sets the scale of
+     * the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit ceiling tiles;
+     * plane_distance and plane_distance_error of luxfer_transfer_report state it.
      */
     double plane_distance;
     /** Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100. */
@@ -4074,6 +4078,16 @@ typedef struct luxfer_transfer_report {
     float target[3];
     /** 0. */
     uint32_t reserved;
+    /**
+     * Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN before the
+     * stage EMISSION has ended, and for a given texture.
+     */
+    double plane_distance;
+    /**
+     * Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.1 for
+     * lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
+     */
+    double plane_distance_error;
 } luxfer_transfer_report;
 
 /** One lamp of the lit scene. Set struct_size before the call. */

@@ -401,7 +401,7 @@ layouts! {
         emission relight render pattern;
     luxfer_pattern_params: struct_size scale length texel_size rotation offset margin;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
-        unwarp_error emission_error relight_error render_error texel_size target reserved;
+        unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error;
     luxfer_warning: struct_size code stage has_place severity limit place;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;

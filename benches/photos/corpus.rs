@@ -111,7 +111,17 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
         measured.or_else(|| shown_layout(&parts, &map, photo))
     });
     lamps.retain(|lamp| lamp.polygons.iter().any(|polygon| thickness(polygon) >= MIN_THICKNESS));
-    Truth { lights, unlisted, plane: None, either: None, lamps, layout, to_photo, is_trap: TRAPS.contains(&name) }
+    Truth {
+        lights,
+        unlisted,
+        plane: None,
+        either: None,
+        lamps,
+        layout,
+        distance: None,
+        to_photo,
+        is_trap: TRAPS.contains(&name),
+    }
 }
 
 /// The shorter side of the smallest rectangle around a polygon of pixels.

@@ -79,6 +79,7 @@ fn run(section: &str, first: u64, count: usize) -> (Tally, Tally) {
     sheets.finish();
     tally.table("Generated photos by strokes; × is the factor from the true lamps to the texture's");
     tally.by_pattern();
+    tally.distances(section);
     (tally, ten)
 }
 

@@ -168,6 +168,7 @@ fn truth(room: &Room, shot: &Shot, look: &Look, scenery: &Scenery) -> Truth {
         either: Some(either),
         lamps,
         layout,
+        distance: Some(shot.distance.into()),
         to_photo: Some(to_photo),
         is_trap: false,
     }

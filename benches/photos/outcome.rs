@@ -84,7 +84,11 @@ impl Outcome {
     /// The lamps of the texture, where 1 is the distance of the photo's camera from its plane.
     pub fn lamps(&self) -> Option<Lamps> {
         let (emission, lit) = (self.emission()?, self.results().unsolved.as_ref()?);
-        Some(lamps(emission, lit.texel_size / self.transfer.params.plane_distance))
+        let unit = match (self.results().distance, self.transfer.params.plane_distance) {
+            (Some(distance), _) => distance.metres,
+            (None, given) => given,
+        };
+        Some(lamps(emission, lit.texel_size / unit))
     }
 }
 

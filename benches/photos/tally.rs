@@ -10,6 +10,8 @@ pub struct Line {
     pub name: String,
     pub megapixels: f64,
     pub judgement: Judgement,
+    /// Logarithm of the ratio of the estimated distance from the plane to the true one, and the stated error.
+    pub distance: Option<[f64; 2]>,
     /// The texture's own stated error.
     pub error: Option<f64>,
     pub seconds: f64,
@@ -23,6 +25,7 @@ impl Line {
             name: photo.name.clone(),
             megapixels: photo.image.width as f64 * photo.image.height as f64 * 1e-6,
             judgement: Judgement::of(photo, outcome),
+            distance: distance(photo, outcome),
             error: outcome.emission().map(|emission| emission.error),
             seconds: outcome.seconds,
             cpu_seconds: outcome.cpu_seconds,
@@ -120,7 +123,7 @@ impl Tally {
     }
 
     /// Values that a run may have, of all that have one.
-    pub fn values(&self, of: impl Fn(&Line) -> Option<f64>) -> Vec<f64> {
+    pub fn values<T>(&self, of: impl Fn(&Line) -> Option<T>) -> Vec<T> {
         self.lines.iter().filter_map(of).collect()
     }
 
@@ -155,6 +158,27 @@ impl Tally {
     }
 
     /// The stated errors of the textures.
+    /// Figures on the estimated distance of the camera from the plane: of textures that are not wrong, since a wrong lamp tells
+    /// nothing.
+    pub fn distances(&self, section: &str) {
+        let judged = |line: &Line| line.distance.filter(|_| line.judgement.verdict < Verdict::Wrong);
+        let found = self.values(judged);
+        let covered = found.iter().filter(|[off, stated]| off.abs() < 1.96 * stated).count();
+        let off =
+            |sure: f64| found.iter().filter(|d| d[1] <= sure).map(|d| 100.0 * d[0].abs().exp_m1()).collect::<Vec<_>>();
+        figure(&format!("photos.{section}.distance"), median(&off(f64::INFINITY)), "% of error, median");
+        figure(
+            &format!("photos.{section}.distance_sure"),
+            median(&off(0.3)),
+            "% of error where at most 0.3 is stated, median",
+        );
+        figure(
+            &format!("photos.{section}.distance_covered"),
+            100.0 * covered as f64 / found.len() as f64,
+            "% within 1.96 stated errors",
+        );
+    }
+
     pub fn stated_errors(&self, section: &str) {
         let errors = self.values(|line| line.error);
         let at = |p: f64| format!("{:.2}", quantile(&errors, p));
@@ -165,4 +189,9 @@ impl Tally {
         );
         figure(&format!("photos.{section}.stated_error"), median(&errors), "median");
     }
+}
+
+fn distance(photo: &Photo, outcome: &Outcome) -> Option<[f64; 2]> {
+    let found = outcome.results().distance?;
+    Some([(found.metres / photo.truth.distance?).ln(), found.error])
 }

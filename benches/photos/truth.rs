@@ -41,6 +41,8 @@ pub struct Truth {
     pub lamps: Vec<Lamp>,
     /// The lamps in their plane, where the camera is known; 1 is the distance of the camera from the plane.
     pub layout: Option<Lamps>,
+    /// That distance in metres, where known.
+    pub distance: Option<f64>,
     /// From that plane to photo pixels.
     pub to_photo: Option<Homography>,
     /// Whether the photo holds no answer, so that a run should decline or warn.

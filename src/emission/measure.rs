@@ -13,8 +13,11 @@ use glam::DVec2;
 
 /// What an exemplar shows, in unwarped pixels.
 pub struct Measure {
-    /// Median over its whole lamps of the longer side; 0 without one.
-    pub lamp_length: f64,
+    /// Medians over its whole lamps of the longer and of the shorter side; 0 without one.
+    pub lamp_sides: [f64; 2],
+    /// Median over its whole lamps of the share of the box around it that a lamp covers: 1 of rectangles along the axes, π/4 of
+    /// discs; 0 without one.
+    pub lamp_fill: f64,
     /// The shorter period of the lattice of the lamps; without one the median distance from a whole lamp to the
     /// nearest other, 0 if there are less than two.
     pub spacing: f64,
@@ -44,13 +47,18 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
         false => Designs::default(),
     };
     let whole = exemplar.components.list.iter().enumerate().filter(|(k, _)| exemplar.roles[*k].is_whole());
-    let length = |(k, lamp): (usize, &Component)| match designs.of(k) {
-        Some((design, _)) => 2.0 * design.half_box().max_element(),
-        None => lamp.size()[0].max(lamp.size()[1]) as f64,
+    let size = |(k, lamp): (usize, &Component)| match designs.of(k) {
+        Some((design, _)) => (2.0 * design.half_box(), design.area()),
+        None => (DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64), lamp.area as f64),
     };
-    let mut lengths: Vec<f64> = whole.map(length).collect();
-    lengths.sort_by(f64::total_cmp);
+    let sizes: Vec<(DVec2, f64)> = whole.map(size).collect();
+    let median = |of: fn(&(DVec2, f64)) -> f64| {
+        let mut values: Vec<f64> = sizes.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    };
+    let lamp_sides = [median(|(size, _)| size.max_element()), median(|(size, _)| size.min_element())];
+    let lamp_fill = median(|(size, area)| area / size.element_product());
     let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
-    let (lamp_length, width) = (lengths.get(lengths.len() / 2).copied().unwrap_or(0.0), columns.count() as f64);
-    Ok(Measure { lamp_length, spacing, width, reading })
+    Ok(Measure { lamp_sides, lamp_fill, spacing, width: columns.count() as f64, reading })
 }

@@ -448,13 +448,14 @@ fn an_exemplar_is_measured_in_its_own_pixels() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
     let of = |exemplar: &Design| measure(&exemplar.input(), &Params::default(), Monitor::default().job()).unwrap();
     let measured = of(&exemplar);
-    assert_eq!((measured.lamp_length, measured.width), (14.0, 200.0));
+    assert_eq!((measured.lamp_sides, measured.width), ([14.0, 10.0], 200.0));
+    assert_eq!(measured.lamp_fill, 1.0);
     assert!((measured.spacing - 36.0).abs() < 0.1, "{}", measured.spacing);
     // Without a lattice, from lamp to lamp: at least the gap that these keep.
     let scattered = of(&blobs(256, 256, 26.0).0).spacing;
     assert!(scattered > 24.0 && scattered < 32.0, "{scattered}");
     let alone = of(&Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0));
-    assert_eq!((alone.lamp_length, alone.spacing), (20.0, 0.0));
+    assert_eq!((alone.lamp_sides, alone.spacing), ([20.0, 16.0], 0.0));
 }
 
 #[test]

@@ -11,7 +11,8 @@ use glam::DVec2;
 
 /// The length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
 pub type luxfer_pattern_scale = i32;
-/// The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params.
+/// The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or the
+/// estimate from the lamps where that is 0.
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
 /// The length of a lamp: the median of the longer sides of the photo's lamps.
 pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;

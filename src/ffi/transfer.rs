@@ -74,8 +74,9 @@ pub struct luxfer_transfer_params {
     pub struct_size: u32,
     /// Maximum side of the emissive texture in texels, in [1, 16384]; default 2048.
     pub max_texels: u32,
-    /// Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It sets
-    /// the scale of the pattern.
+    /// Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]. It sets the scale of
+    /// the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit ceiling tiles;
+    /// plane_distance and plane_distance_error of luxfer_transfer_report state it.
     pub plane_distance: f64,
     /// Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100.
     pub white_luminance: f32,

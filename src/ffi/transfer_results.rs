@@ -91,9 +91,15 @@ pub struct luxfer_transfer_report {
     pub target: [f32; 3],
     /// 0.
     pub reserved: u32,
+    /// Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN before the
+    /// stage EMISSION has ended, and for a given texture.
+    pub plane_distance: f64,
+    /// Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.25
+    /// for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
+    pub plane_distance_error: f64,
 }
 
-const REPORT_SIZE: usize = 8 + 64 + 72 + 16;
+const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16;
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_transfer_report {
@@ -115,6 +121,8 @@ unsafe impl Versioned for luxfer_transfer_report {
             texel_size: f64::NAN,
             target: [f32::NAN; 3],
             reserved: 0,
+            plane_distance: f64::NAN,
+            plane_distance_error: f64::NAN,
         }
     }
 }
@@ -143,6 +151,8 @@ impl luxfer_transfer_report {
             render_error: or_nan(results.film.as_ref().map(|f| f.error)),
             texel_size: or_nan(lit.or(results.unsolved.as_ref()).map(|l| l.texel_size)),
             target: results.target.map_or([f32::NAN; 3], |t| t.to_array()),
+            plane_distance: or_nan(results.distance.map(|d| d.metres)),
+            plane_distance_error: or_nan(results.distance.map(|d| d.error)),
             ..Self::defaults()
         }
     }

@@ -100,7 +100,9 @@ impl Params {
             Stage::Lights => self.lights.check(),
             Stage::Unwarp => self.unwarp.check(),
             Stage::Emission => {
-                check_range("plane_distance", self.plane_distance, 0.01, 1e4)?;
+                if self.plane_distance != 0.0 {
+                    check_range("plane_distance", self.plane_distance, 0.01, 1e4)?;
+                }
                 self.pattern.check()?;
                 check_range("max_texels", self.max_texels, 1, 16_384)?;
                 check_range("white_luminance", self.white_luminance, 1e-6, 1e9)?;

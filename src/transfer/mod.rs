@@ -8,6 +8,7 @@
 mod check;
 mod clipping;
 mod colour;
+mod distance;
 mod ground;
 mod pattern;
 mod schedule;
@@ -18,6 +19,7 @@ mod warnings;
 
 pub use check::check_zones;
 pub use colour::TargetColour;
+pub use distance::Distance;
 pub use pattern::{Pattern, Scale};
 pub use schedule::Fixture;
 pub use schedule_file::{to_csv, to_json};
@@ -109,7 +111,7 @@ pub struct Params {
     /// How the pattern lies on the surface.
     pub pattern: Pattern,
     /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`: it sets the scale of the pattern, where
-    /// nothing else does.
+    /// nothing else does. 0: estimated from the size of the lamps.
     pub plane_distance: f64,
     /// Longest side of the emissive texture in texels, in `[1, 16384]`.
     pub max_texels: usize,
@@ -130,7 +132,7 @@ impl Default for Params {
             lights: segment::Params::for_lights(),
             emission: emission::Params::default(),
             pattern: Pattern::default(),
-            plane_distance: 1.2,
+            plane_distance: 0.0,
             max_texels: 2048,
             target: TargetColour::Surface,
             white_luminance: 100.0,
@@ -159,6 +161,8 @@ pub struct Results {
     pub lights: Option<Arc<Segmentation>>,
     pub unwarped: Option<Arc<Unwarped>>,
     pub emission: Option<Arc<Emission>>,
+    /// The distance of the photo's camera from its plane that the pattern's size amounts to; none of a given texture.
+    pub distance: Option<Distance>,
     /// The texture on the surface at the photo's own strength: `white_luminance` times its linear values.
     pub unsolved: Option<Arc<LitScene>>,
     /// Mean colour the surface is to have, relative to the photo's white.

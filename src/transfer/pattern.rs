@@ -1,5 +1,6 @@
 //! How the pattern of lights lies on the surface: how large, how turned, from where on, and where not.
 
+use super::distance::Distance;
 use crate::emission::{self, Measure};
 use crate::error::{Error, Result, check_range};
 use crate::job::Job;
@@ -10,7 +11,7 @@ use std::f64::consts::TAU;
 /// What sets the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// The distance of the photo's camera from the lit plane, [`super::Params::plane_distance`].
+    /// The distance of the photo's camera from the lit plane, [`super::Params::plane_distance`], or as its lamps tell it.
     Distance,
     /// The longer side of a lamp, the median of the photo's, is this long.
     Lamp(f64),
@@ -19,6 +20,9 @@ pub enum Scale {
     /// The surface is as many lamps wide as the photo's plane.
     Across,
 }
+
+/// Share of the box around a lamp from which it is a rectangle: half way from a disc's. [convention]
+const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
 /// How the pattern lies on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +43,16 @@ impl Default for Pattern {
     fn default() -> Self {
         Self { scale: Scale::Distance, texel_size: 0.0, rotation: 0.0, offset: DVec2::ZERO, margin: -1.0 }
     }
+}
+
+/// The size of an unwarped pixel on the surface.
+pub(super) struct Sizing {
+    /// Metres per unwarped pixel.
+    pub pixel: f64,
+    /// The distance of the photo's camera from its plane at which the pattern has that size.
+    pub distance: Distance,
+    /// The exemplar, where it was measured for that.
+    pub measured: Option<Measure>,
 }
 
 pub(super) struct TexelGrid {
@@ -65,32 +79,37 @@ impl Pattern {
         Ok(())
     }
 
-    /// Metres per unwarped pixel, where the photo's camera is so many metres from its plane that a pixel is `at_distance`; and what
-    /// was measured for that.
-    pub(super) fn pixel_size(
+    /// The size of an unwarped pixel, which is `pixel` where the photo's camera is 1 from its plane. `plane_distance` is its
+    /// distance in metres; 0: as the lamps tell it.
+    pub(super) fn sizing(
         &self,
-        at_distance: f64,
+        (pixel, plane_distance): (f64, f64),
         (exemplar, params): (&emission::Input, &emission::Params),
         surface: &Surface,
         job: Job,
-    ) -> Result<(f64, Option<Measure>)> {
-        let length = |metres: f64, pixels: f64, what: &str| match pixels > 0.0 {
-            true => Ok(metres / pixels),
-            false => Err(Error::degenerate(format!(
-                "the pattern cannot be scaled by {what}: the photo shows too few whole ones; scale it by the distance"
-            ))),
-        };
-        if self.scale == Scale::Distance {
-            return Ok((at_distance, None));
+    ) -> Result<Sizing> {
+        if self.scale == Scale::Distance && plane_distance > 0.0 {
+            let distance = Distance::given(plane_distance);
+            return Ok(Sizing { pixel: pixel * plane_distance, distance, measured: None });
         }
         let measured = emission::measure(exemplar, params, job)?;
-        let pixel = match self.scale {
-            Scale::Distance => at_distance,
-            Scale::Lamp(metres) => length(metres, measured.lamp_length, "its lamps")?,
-            Scale::Spacing(metres) => length(metres, measured.spacing, "the spacing of its lamps")?,
-            Scale::Across => length(surface.size.x.into(), measured.width, "its width")?,
+        let per_length = |metres: f64, pixels: f64, name: &str| match pixels > 0.0 {
+            true => Ok(Distance::given(metres / pixels / pixel)),
+            false => Err(Error::degenerate(format!(
+                "the pattern cannot be scaled by {name}: the photo shows too few whole ones; scale it by the distance"
+            ))),
         };
-        Ok((pixel, Some(measured)))
+        let distance = match self.scale {
+            Scale::Distance => {
+                // Discs come in every size.
+                let is_rectangle = measured.lamp_fill > MIN_FILL;
+                Distance::of_lamps(measured.lamp_sides.map(|side| if is_rectangle { side * pixel } else { 0.0 }))
+            }
+            Scale::Lamp(metres) => per_length(metres, measured.lamp_sides[0], "its lamps")?,
+            Scale::Spacing(metres) => per_length(metres, measured.spacing, "the spacing of its lamps")?,
+            Scale::Across => per_length(surface.size.x.into(), measured.width, "its width")?,
+        };
+        Ok(Sizing { pixel: pixel * distance.metres, distance, measured: Some(measured) })
     }
 
     /// Texels of the given size, or as fine as unwarped pixels, but no more than `max_texels` along the longer side.

@@ -1,6 +1,8 @@
 //! Each stage of the transfer: gathers its input from the results before it, runs it, keeps its result.
 
 use super::check::need;
+use super::distance::Distance;
+use super::pattern::Sizing;
 use super::{LitScene, Results, Transfer, colour, ground, viewpoint};
 use crate::emission::Emission;
 use crate::error::{Error, ErrorKind, Result};
@@ -74,9 +76,12 @@ impl Transfer {
         let found = self.find_surface(scene)?;
         let pattern = &self.params.pattern;
         let surface = if pattern.rotation == 0.0 { found.clone() } else { found.turned(scene, pattern.rotation)? };
-        let mut emission = match &self.input.texture {
-            Some(texture) => emission::given(texture, job.part(0.0, 0.9))?,
-            None => self.texture_from_photo(&surface, job.part(0.0, 0.9))?,
+        let (mut emission, distance) = match &self.input.texture {
+            Some(texture) => (emission::given(texture, job.part(0.0, 0.9))?, None),
+            None => {
+                let (emission, distance) = self.texture_from_photo(&surface, job.part(0.0, 0.9))?;
+                (emission, Some(distance))
+            }
         };
 
         // Only where there is surface, and room for lamps.
@@ -92,13 +97,14 @@ impl Transfer {
         let strength = Vec3::splat(self.params.white_luminance);
         let texel_size = f64::from(surface.size.x) / emission.texture.width as f64;
         let placed = surface::place(&mut lit, &surface, emission.texture.clone(), strength)?;
+        self.results.distance = distance;
         self.results.unsolved = Some(Arc::new(LitScene { scene: Arc::new(lit), surface, placed, texel_size }));
         self.results.emission = Some(Arc::new(emission));
         Ok(())
     }
 
     /// As many texels as the surface needs, continued from the unwarped lights.
-    fn texture_from_photo(&self, surface: &Surface, job: Job) -> Result<Emission> {
+    fn texture_from_photo(&self, surface: &Surface, job: Job) -> Result<(Emission, Distance)> {
         let photo = need(&self.input.photo, "set the photo")?;
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
@@ -115,9 +121,9 @@ impl Transfer {
             photo: Some((photo, unwarped.to_photo)),
         };
         let pattern = &self.params.pattern;
-        let at_distance = unwarped.pixel_size * self.params.plane_distance;
+        let at = (unwarped.pixel_size, self.params.plane_distance);
         let exemplar = (&input, &self.params.emission);
-        let (pixel, measured) = pattern.pixel_size(at_distance, exemplar, surface, job.part(0.1, 0.15))?;
+        let Sizing { pixel, distance, measured } = pattern.sizing(at, exemplar, surface, job.part(0.1, 0.15))?;
         let grid = pattern.texel_grid(surface, pixel, self.params.max_texels)?;
         let params = emission::Params {
             width: grid.width,
@@ -127,10 +133,11 @@ impl Transfer {
             ..self.params.emission.clone()
         };
         let job = job.part(0.15, 1.0);
-        match measured {
+        let emission = match measured {
             Some(measured) => emission::blend_measured(measured, &input, &[], &params, job),
             None => emission::run(&input, &params, job),
-        }
+        };
+        Ok((emission?, distance))
     }
 
     pub(super) fn relight(&mut self, job: Job) -> Result<()> {

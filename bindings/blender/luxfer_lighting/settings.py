@@ -53,12 +53,13 @@ class LuxferSettings(bpy.types.PropertyGroup):
     )
     distance: FloatProperty(
         name="Distance",
-        default=1.2,
-        min=0.01,
+        default=0,
+        min=0,
         max=1e4,
         subtype="DISTANCE",
         unit="LENGTH",
-        description="Distance of the photo's camera from the plane of the lights, which sets the scale of the pattern",
+        description="Distance of the photo's camera from the plane of the lights, which sets the scale of the "
+        "pattern; 0: estimated from the size of the lamps",
     )
     white: FloatProperty(
         name="White", default=100.0, min=1e-3, max=1e6, description="Luminance of the photo's white in cd/m²"

@@ -1138,6 +1138,8 @@ class luxfer_transfer_report(Structure):
         ("texel_size", c_double),
         ("target", c_float * 3),
         ("reserved", c_uint32),
+        ("plane_distance", c_double),
+        ("plane_distance_error", c_double),
     ]
     result = types.TransferReport
 

@@ -445,7 +445,8 @@ class PatternScale(IntEnum):
     """The length that sets the size of the pattern on the surface."""
 
     DISTANCE = 0
-    """The distance of the photo's camera from the plane with the lights: plane_distance of TransferParams."""
+    """The distance of the photo's camera from the plane with the lights: plane_distance of TransferParams, or
+    the estimate from the lamps where that is 0."""
     LAMP = 1
     """The length of a lamp: the median of the longer sides of the photo's lamps."""
     SPACING = 2
@@ -1812,8 +1813,9 @@ class TransferParams(TypedDict, total=False):
     max_texels: int
     """Maximum side of the emissive texture in texels, in [1, 16384]; default 2048."""
     plane_distance: float
-    """Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It
-    sets the scale of the pattern."""
+    """Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]. It sets the
+    scale of the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit
+    ceiling tiles; plane_distance and plane_distance_error of TransferReport state it."""
     white_luminance: float
     """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100."""
     target: Target | str | int
@@ -1867,6 +1869,12 @@ class TransferReport:
     """Size of a texel of the emission in metres."""
     target: tuple[float, float, float]
     """Mean colour that the surface should have, relative to the photo's white."""
+    plane_distance: float
+    """Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN
+    before the stage EMISSION has ended, and for a given texture."""
+    plane_distance_error: float
+    """Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.1
+    for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance."""
 
 
 @dataclass(frozen=True)
