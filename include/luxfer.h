@@ -134,10 +134,16 @@ const char *luxfer_status_name(luxfer_status status);
  * use different objects at the same time, and also the same object: calls that change an object wait for each other.
  * Only the release of the last reference must not overlap with another use of the object.
  *
- * The library prints nothing, reads no environment variables, does not end the process on an error and installs no
- * handlers. All state belongs to a context, with one exception: an emergency reserve of memory, shared by all contexts
- * of the process. The library uses it for small allocations when the system has no memory left; all running jobs of
- * the process then end with LUXFER_OUT_OF_MEMORY.
+ * The library prints nothing, not even the message of a defect (LUXFER_INTERNAL), reads no environment variables, does
+ * not end the process on an error and installs no handlers of the system. All state belongs to a context, with one
+ * exception: an emergency reserve of memory, shared by all contexts of the process. The library uses it for small
+ * allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
+ *
+ * Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
+ * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and X_release returns
+ * LUXFER_OK and frees nothing. A child may create contexts of its own.
+ *
+ * Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
  *
  * With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
  * any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
@@ -159,8 +165,8 @@ typedef struct luxfer_context_params {
     uint32_t num_threads;
     /**
      * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
-     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. The working memory of jobs and
-     * their results do not count.
+     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a picture file
+     * takes counts while the file is read. The working memory of jobs and their results do not count.
      */
     uint64_t memory_budget_mib;
 } luxfer_context_params;
