@@ -15,6 +15,7 @@ use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io;
 use crate::job::{Job, Monitor};
+use crate::quiet;
 use crate::render::World;
 use crate::scene::{Environment, Scene, gltf, surface};
 use glam::Vec3;
@@ -139,13 +140,10 @@ impl SceneObject {
     }
 
     /// A scene from a file, each part of which is counted in the budget before it is made.
-    fn read(context: &Arc<Context>, read: impl FnOnce(gltf::Budget) -> Result<Scene>) -> Result<Arc<Self>> {
-        let charges = RefCell::new(Vec::new());
-        let scene = Arc::new(read(&|bytes| {
-            charges.borrow_mut().push(context.charge(bytes)?);
-            Ok(())
-        })?);
-        let state = State { scene, world: None, charges: charges.into_inner() };
+    fn read(context: &Arc<Context>, read: impl FnOnce(&dyn gltf::Budget) -> Result<Scene>) -> Result<Arc<Self>> {
+        let charges = Charges { context, kept: RefCell::default() };
+        let scene = Arc::new(read(&charges)?);
+        let state = State { scene, world: None, charges: charges.kept.into_inner() };
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
     }
 
@@ -200,6 +198,24 @@ impl SceneObject {
             state.world = Some(world.clone());
         }
         Ok(world)
+    }
+}
+
+/// The budget of a context for a scene that is read.
+struct Charges<'a> {
+    context: &'a Arc<Context>,
+    kept: RefCell<Vec<Charge>>,
+}
+
+impl gltf::Budget for Charges<'_> {
+    fn keep(&self, bytes: u64) -> Result<()> {
+        self.kept.borrow_mut().push(self.context.charge(bytes)?);
+        Ok(())
+    }
+
+    fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()> {
+        let _lent = self.context.charge(bytes)?;
+        work()
     }
 }
 
@@ -290,7 +306,7 @@ pub unsafe extern "C" fn luxfer_scene_export_memory(
             write.ok_or_else(|| Error::argument("write is NULL; it must be a function that takes the bytes"))?;
         let bytes = gltf::export(&object.snapshot())?;
         // SAFETY: the caller's function, with the caller's pointer.
-        let answer = unsafe { write(user, bytes.as_ptr().cast(), bytes.len()) };
+        let answer = quiet::outside(|| unsafe { write(user, bytes.as_ptr().cast(), bytes.len()) });
         if answer != 0 {
             return Err(Error::new(ErrorKind::Io, format!("the caller's write function returned {answer}")));
         }

@@ -39,7 +39,7 @@ const EXTENSIONS: [&str; 8] = [
 ///
 /// Errors: `Format` for broken, truncated or inconsistent files, `Unsupported` for features this library lacks, `Io`
 /// for unreadable external files, and errors of the budget.
-pub fn import(bytes: &[u8], base: Option<&Path>, budget: Budget) -> Result<Scene> {
+pub fn import(bytes: &[u8], base: Option<&Path>, budget: &dyn Budget) -> Result<Scene> {
     let file = File::parse(bytes, base)?;
     if let Some(unknown) = file.root.extensions_required.iter().find(|e| !EXTENSIONS.contains(&e.as_str())) {
         let message = format!("the file requires the extension {unknown}; save it without that extension");
@@ -68,7 +68,7 @@ pub fn import(bytes: &[u8], base: Option<&Path>, budget: Budget) -> Result<Scene
 
 struct Importer<'a> {
     file: &'a File<'a>,
-    budget: Budget<'a>,
+    budget: &'a dyn Budget,
     scene: Scene,
     /// Created for the first primitive without a material.
     default_material: Option<usize>,
@@ -262,7 +262,7 @@ impl Importer<'_> {
         self.vertices = self.vertices.saturating_add(vertices);
         self.triangles = self.triangles.saturating_add(triangles);
         if self.vertices.max(self.triangles) <= MAX_ELEMENTS {
-            return (self.budget)(vertices * vertex_bytes + 12 * triangles);
+            return self.budget.keep(vertices * vertex_bytes + 12 * triangles);
         }
         Err(Error::new(
             ErrorKind::Unsupported,

@@ -23,14 +23,14 @@ type Key = (Source, Encoding, [Wrap; 2]);
 /// Reads materials in order and collects their textures.
 pub struct Materials<'a> {
     file: &'a File<'a>,
-    budget: Budget<'a>,
+    budget: &'a dyn Budget,
     pub textures: Vec<Texture>,
     keys: Vec<Key>,
     pixels: u64,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(file: &'a File<'a>, budget: Budget<'a>) -> Self {
+    pub fn new(file: &'a File<'a>, budget: &'a dyn Budget) -> Self {
         Self { file, budget, textures: Vec::new(), keys: Vec::new(), pixels: 0 }
     }
 
@@ -126,6 +126,15 @@ impl<'a> Materials<'a> {
 
     /// Decodes an image after checking the size in its header against the budget.
     fn decode(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
+        let mut image = None;
+        self.budget.lend(io::working_bytes(bytes)?, &mut || {
+            image = Some(self.decode_within(bytes, encoding)?);
+            Ok(())
+        })?;
+        image.ok_or_else(|| Error::new(ErrorKind::Internal, "the budget ran no work"))
+    }
+
+    fn decode_within(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
         let (width, height, channels) = io::probe(bytes)?;
         let pixels = width as u64 * height as u64;
         self.pixels += pixels;
@@ -133,7 +142,7 @@ impl<'a> Materials<'a> {
             let message = format!("the textures have more than {MAX_PIXELS} pixels in all");
             return Err(Error::new(ErrorKind::Unsupported, message));
         }
-        (self.budget)(pixels * (channels * size_of::<f32>()) as u64)?;
+        self.budget.keep(pixels * (channels * size_of::<f32>()) as u64)?;
         io::decode(bytes, encoding)
     }
 }

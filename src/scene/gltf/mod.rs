@@ -33,13 +33,31 @@ use crate::error::Result;
 use crate::image::io;
 use std::path::Path;
 
-/// Called with the size in bytes of each mesh and texture before allocation; an error aborts the import.
-pub type Budget<'a> = &'a dyn Fn(u64) -> Result<()>;
+/// The memory that an import may take; an error aborts it.
+pub trait Budget {
+    /// Called with the size in bytes of each mesh and texture before allocation.
+    fn keep(&self, bytes: u64) -> Result<()>;
+
+    /// Runs work that takes so many bytes until it is done.
+    fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()>;
+}
 
 /// A budget without limit.
-pub const UNLIMITED: Budget<'static> = &|_| Ok(());
+pub const UNLIMITED: &dyn Budget = &Unlimited;
+
+struct Unlimited;
+
+impl Budget for Unlimited {
+    fn keep(&self, _: u64) -> Result<()> {
+        Ok(())
+    }
+
+    fn lend(&self, _: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()> {
+        work()
+    }
+}
 
 /// Reads a `.glb` or `.gltf` file; external files are resolved relative to its folder.
-pub fn load(path: &Path, budget: Budget) -> Result<Scene> {
+pub fn load(path: &Path, budget: &dyn Budget) -> Result<Scene> {
     import(&io::read_file(path)?, path.parent(), budget).map_err(|e| e.within(path.display()))
 }
