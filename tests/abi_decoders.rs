@@ -241,7 +241,7 @@ fn quick_calls(context: *mut luxfer_context) {
     unsafe {
         assert_eq!(luxfer_scene_intersect(scene, vec![ray; 10_000].as_ptr(), 10_000, hits.as_mut_ptr()), LUXFER_OK);
         assert_eq!(luxfer_scene_requirements(scene, 0.1, &mut needs), LUXFER_OK);
-        let mut made = |make: &dyn Fn(*mut *mut luxfer_image) -> luxfer_status| {
+        let made = |make: &dyn Fn(*mut *mut luxfer_image) -> luxfer_status| {
             assert_eq!(luxfer_image_release(host::made(make)), LUXFER_OK);
         };
         made(&|out| luxfer_image_warp(image, same.as_ptr(), 300, 200, out));

@@ -17,7 +17,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("geometry", &["error", "rng"]),
     ("network", &["error", "job", "exec", "simd", "image"]),
     ("photometry", &["error", "image"]),
-    ("scene", &["simd", "error", "job", "exec", "rng", "image", "geometry", "photometry"]),
+    ("scene", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "photometry"]),
     ("render", &["error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
     ("patch", &["simd", "error", "job", "exec", "rng", "image"]),
     // Stages: never each other. Segmentation knows how many channels the features have.

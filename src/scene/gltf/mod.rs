@@ -1,14 +1,15 @@
 //! glTF 2.0 import and export: GLB, or JSON with embedded or external buffers and images.
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
-//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material),
-//! `KHR_mesh_quantization` and `EXT_lights_ies` (type C).
+//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants` (the
+//! default one), `KHR_mesh_quantization`, `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
 //!
-//! Import: every node × primitive becomes one mesh in world space, named after its node. Not imported: animation,
-//! skins and morph targets (the rest pose is used), vertex colours, tangents (the renderer derives them), occlusion
-//! textures, points and lines, orthographic cameras, more than two sets of texture coordinates, and material
-//! properties of other extensions such as `KHR_materials_specular`, `_clearcoat`, `_sheen` and `_volume`. A required
-//! extension not listed above is an error; an optional one is ignored.
+//! Import: every node × instance × primitive becomes one mesh in world space, named after its node. A vertex colour
+//! that all vertices share becomes part of the material. Not imported: animation, skins and morph targets (the rest
+//! pose is used), other vertex colours, tangents (the renderer derives them), occlusion textures, points and lines,
+//! orthographic cameras, more than two sets of texture coordinates, and material properties of other extensions such
+//! as `KHR_materials_specular`, `_clearcoat`, `_sheen` and `_volume`. A required extension not listed above is an
+//! error; an optional one is ignored. All that is left out and would be seen is listed in [`Scene::unrendered`].
 //!
 //! Export: a flat list of nodes, one per mesh, camera and light. The environment is left out, because glTF cannot hold
 //! it.
@@ -19,8 +20,11 @@
 
 mod accessor;
 mod container;
+mod document;
 mod export;
+mod features;
 mod import;
+mod instances;
 mod material;
 #[cfg(test)]
 mod tests;
@@ -43,7 +47,7 @@ pub trait Budget {
 }
 
 /// A budget without limit.
-pub const UNLIMITED: &dyn Budget = &Unlimited;
+const UNLIMITED: &dyn Budget = &Unlimited;
 
 struct Unlimited;
 
@@ -57,7 +61,23 @@ impl Budget for Unlimited {
     }
 }
 
+/// How a file is read.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    pub budget: &'a dyn Budget,
+    /// Length in metres of a unit of the file's coordinates, positive and finite.
+    pub unit: f64,
+    /// Whether the file may name files outside its folder.
+    pub is_open: bool,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { budget: UNLIMITED, unit: 1.0, is_open: false }
+    }
+}
+
 /// Reads a `.glb` or `.gltf` file; external files are resolved relative to its folder.
-pub fn load(path: &Path, budget: &dyn Budget) -> Result<Scene> {
-    import(&io::read_file(path)?, path.parent(), budget).map_err(|e| e.within(path.display()))
+pub fn load(path: &Path, options: Options) -> Result<Scene> {
+    import(&io::read_file(path)?, path.parent(), options).map_err(|e| e.within(path.display()))
 }

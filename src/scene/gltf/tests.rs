@@ -9,8 +9,10 @@ use serde_json::{Value, json};
 use std::cell::Cell;
 use std::sync::Arc;
 
+mod features;
+
 fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
-    super::import(bytes, base, UNLIMITED)
+    super::import(bytes, base, Options::default())
 }
 
 /// One of each object that the format can hold.
@@ -82,6 +84,7 @@ fn scene() -> Scene {
         distributions: Vec::new(),
         environment: None,
         cameras: vec![Camera { name: "View".into(), ..camera }],
+        unrendered: Vec::new(),
     }
 }
 
@@ -296,7 +299,7 @@ fn lying_files_are_errors_that_say_why() {
         ("KHR_draco", |f| f["extensionsRequired"] = json!(["KHR_draco_mesh_compression"])),
         ("at most", |f| f["accessors"][0] = json!({ "componentType": 5126, "count": 60_000_000, "type": "VEC3" })),
         ("beside it", |f| f["buffers"][0]["uri"] = "mesh.bin".into()),
-        ("own folder", |f| f["buffers"][0]["uri"] = "../mesh.bin".into()),
+        ("outside the folder", |f| f["buffers"][0]["uri"] = "../mesh.bin".into()),
     ];
     for (i, (message, edit)) in cases.into_iter().enumerate() {
         let error = import(&triangle_file(edit), None).expect_err(&format!("case {i}: {message}"));
@@ -338,7 +341,8 @@ fn a_budget_is_asked_for_all_that_will_be_made() {
     }
     let read = |limit: u64| {
         let budget = Limited { limit, kept: Cell::new(0), lent: Cell::new(0) };
-        super::import(&glb, None, &budget).map(|scene| (scene, budget.kept.get(), budget.lent.get()))
+        super::import(&glb, None, Options { budget: &budget, ..Options::default() })
+            .map(|scene| (scene, budget.kept.get(), budget.lent.get()))
     };
     let (whole, kept, lent) = read(u64::MAX).unwrap();
     assert!(lent > 0, "decoding a texture takes memory");
