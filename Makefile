@@ -18,6 +18,11 @@ VERSION := $(shell sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
 # What the SONAME ends in, as build.rs has it: before 1.0 libraries of one minor version are compatible.
 ABI     := $(shell echo $(VERSION) | sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/')
 SONAME  := $(PROFILE)/libluxfer.so.$(ABI)
+# No folder of the machine that built the library stands in it. Dependencies state their files with the folder of cargo.
+CARGO_HOME ?= $(HOME)/.cargo
+ifeq (,$(findstring --remap-path-prefix,$(RUSTFLAGS)))
+export RUSTFLAGS := $(strip $(RUSTFLAGS) --remap-path-prefix=$(CARGO_HOME)=cargo --remap-path-prefix=$(CURDIR)=luxfer)
+endif
 PACKAGES := cmake g++ clang binutils libopencv-dev libembree-dev libtbb-dev python3-venv pkg-config valgrind
 
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
