@@ -18,11 +18,6 @@ VERSION := $(shell sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
 # What the SONAME ends in, as build.rs has it: before 1.0 libraries of one minor version are compatible.
 ABI     := $(shell echo $(VERSION) | sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/')
 SONAME  := $(PROFILE)/libluxfer.so.$(ABI)
-# No folder of the machine that built the library stands in it. Dependencies state their files with the folder of cargo.
-CARGO_HOME ?= $(HOME)/.cargo
-ifeq (,$(findstring --remap-path-prefix,$(RUSTFLAGS)))
-export RUSTFLAGS := $(strip $(RUSTFLAGS) --remap-path-prefix=$(CARGO_HOME)=cargo --remap-path-prefix=$(CURDIR)=luxfer)
-endif
 PACKAGES := cmake g++ clang binutils libopencv-dev libembree-dev libtbb-dev python3-venv pkg-config valgrind
 
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
@@ -35,6 +30,11 @@ TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
+# No folder of the machine that built the library stands in it: dependencies state their files with the folder of cargo.
+CARGO_HOME ?= $(HOME)/.cargo
+ifeq (,$(findstring --remap-path-prefix,$(RUSTFLAGS)))
+lib: export RUSTFLAGS := $(strip $(RUSTFLAGS) --remap-path-prefix=$(CARGO_HOME)=cargo --remap-path-prefix=$(CURDIR)=luxfer)
+endif
 lib:
 	$(CARGO) build --release --lib
 	@ln -sf libluxfer.so $(SONAME)

@@ -20,7 +20,7 @@ pub struct Unrendered {
 
 impl fmt::Display for Unrendered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} is not rendered: {} ({}", self.feature, self.effect, self.named.join(", "))?;
+        write!(f, "{}: not rendered, {} ({}", self.feature, self.effect, self.named.join(", "))?;
         match self.count - self.named.len() {
             0 => write!(f, ")"),
             more => write!(f, " and {more} more)"),
@@ -53,7 +53,7 @@ mod tests {
         }
         note(&mut list, "morph targets", "no shape", || "mesh \"Face\"".into());
         let texts: Vec<String> = list.iter().map(ToString::to_string).collect();
-        assert_eq!(texts[0], "skins is not rendered: no pose (node 0, node 1, node 2 and 2 more)");
-        assert_eq!(texts[1], "morph targets is not rendered: no shape (mesh \"Face\")");
+        assert_eq!(texts[0], "skins: not rendered, no pose (node 0, node 1, node 2 and 2 more)");
+        assert_eq!(texts[1], "morph targets: not rendered, no shape (mesh \"Face\")");
     }
 }

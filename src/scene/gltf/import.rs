@@ -23,6 +23,9 @@ use std::sync::Arc;
 /// Maximum number of vertices, and of triangles, of all meshes including instances.
 const MAX_ELEMENTS: u64 = 1 << 26;
 
+/// Maximum number of meshes: of primitives of all nodes and instances.
+const MAX_MESHES: usize = 1 << 20;
+
 /// Reads a GLB or glTF file held in memory; external files it refers to are resolved relative to `base`.
 ///
 /// Errors: `Format` for broken, truncated or inconsistent files, `Unsupported` for features this library lacks, `Io`
@@ -260,6 +263,10 @@ impl Importer<'_> {
         let vertices = accessor::count(self.file, positions)?;
         let corners = indices.map_or(Ok(vertices), |index| accessor::count(self.file, index))?;
         let triangles = if mode == Mode::Triangles { corners / 3 } else { corners.saturating_sub(2) };
+        if self.scene.meshes.len() >= MAX_MESHES {
+            let message = format!("the file has more than {MAX_MESHES} meshes, counting every instance");
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
         self.vertices = self.vertices.saturating_add(vertices);
         self.triangles = self.triangles.saturating_add(triangles);
         if self.vertices.max(self.triangles) <= MAX_ELEMENTS {

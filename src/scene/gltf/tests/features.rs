@@ -206,6 +206,18 @@ fn instances_are_meshes_of_their_own() {
     }
     let error = import(&file(true), None).unwrap_err();
     assert!(error.message.contains("different counts"), "{error}");
+    // Millions of instances from a small file, whose accessor has no data.
+    let bomb = triangle_file(|f| {
+        let accessor = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
+        f["accessors"].as_array_mut().unwrap().push(accessor);
+        f["meshes"][0]["primitives"][0]["indices"] = Value::Null;
+        f["accessors"][0]["count"] = json!(1);
+        let instances = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": 2 } } });
+        f["nodes"] = json!([{ "mesh": 0, "extensions": instances }, { "mesh": 0, "extensions": instances }]);
+        f["scenes"][0]["nodes"] = json!([0, 1]);
+    });
+    let error = import(&bomb, None).unwrap_err();
+    assert!(error.kind == ErrorKind::Unsupported && error.message.contains("1048576 meshes"), "{error}");
 }
 
 #[test]
