@@ -30,6 +30,11 @@ TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
+# No folder of the machine that built the library stands in it: dependencies state their files with the folder of cargo.
+CARGO_HOME ?= $(HOME)/.cargo
+ifeq (,$(findstring --remap-path-prefix,$(RUSTFLAGS)))
+lib: export RUSTFLAGS := $(strip $(RUSTFLAGS) --remap-path-prefix=$(CARGO_HOME)=cargo --remap-path-prefix=$(CURDIR)=luxfer)
+endif
 lib:
 	$(CARGO) build --release --lib
 	@ln -sf libluxfer.so $(SONAME)

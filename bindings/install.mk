@@ -1,13 +1,13 @@
 # Installing and handing on, part of the Makefile: `make`, then
 #
-# make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences
-# make split-debug  takes the debug symbols out of the installed library, into .debug/ beside it, where gdb looks for them
+# make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences; the debug symbols
+#                   of the shared library go into .debug/ beside it, where gdb looks for them
 # make uninstall    removes what install has put there
 # make dist         out/luxfer-VERSION.tar.gz of the last commit
 #
 # PREFIX=/usr/local   where it will be used; LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu), INCLUDEDIR and DOCDIR below it
 # DESTDIR=            a folder to stage it in, for packages
-# The library is installed as built, with its symbols, because Debian and Fedora split those themselves.
+# DEBUG=split         keep: the libraries are installed as built, with their symbols, for packagers whose tools split them
 
 PREFIX     ?= /usr/local
 LIBDIR     ?= $(PREFIX)/lib
@@ -15,12 +15,13 @@ INCLUDEDIR ?= $(PREFIX)/include
 DOCDIR     ?= $(PREFIX)/share/doc/luxfer
 INSTALL    ?= install
 OBJCOPY    ?= objcopy
+DEBUG      ?= split
 
 HEADERS     := luxfer.h luxfer.hpp $(patsubst bindings/cpp/%,%,$(wildcard bindings/cpp/luxfer/*.hpp))
 DOCUMENTS   := LICENSE-APACHE LICENSE-MIT README.md $(PROFILE)/THIRD-PARTY.txt
 FOLDERS      = $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR)
 INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer.so.$(VERSION) libluxfer.a pkgconfig/luxfer.pc \
-                 .debug/libluxfer.so.$(VERSION).debug cmake/luxfer/luxferConfig.cmake cmake/luxfer/luxferConfigVersion.cmake) \
+                 $(SYMBOLS) cmake/luxfer/luxferConfig.cmake cmake/luxfer/luxferConfigVersion.cmake) \
                $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS)))
 
 # The path from one folder to another, which need not exist.
@@ -29,7 +30,11 @@ relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
 fill = sed -e 's|@VERSION@|$(VERSION)|g' -e 's|@ABI@|$(ABI)|g' -e 's|@INCLUDEDIR@|$(call relative,$(2),$(INCLUDEDIR))|g' \
          $(1) | $(INSTALL) -m 644 /dev/stdin '$(DESTDIR)$(2)/$(basename $(notdir $(1)))'
 
-.PHONY: install split-debug uninstall dist
+# The installed shared library, and the file for its debug symbols.
+SHARED    = $(DESTDIR)$(LIBDIR)/libluxfer.so.$(VERSION)
+SYMBOLS   = .debug/libluxfer.so.$(VERSION).debug
+
+.PHONY: install uninstall dist
 
 # Only where it is missing: `make` as oneself, then `sudo make install`, which needs no cargo.
 $(LIB) $(PROFILE)/libluxfer.a:
@@ -45,17 +50,19 @@ install: $(LIB) $(PROFILE)/libluxfer.a $(PROFILE)/THIRD-PARTY.txt
 	ln -sf libluxfer.so.$(VERSION) '$(DESTDIR)$(LIBDIR)/libluxfer.so.$(ABI)'
 	ln -sf libluxfer.so.$(ABI) '$(DESTDIR)$(LIBDIR)/libluxfer.so'
 	$(INSTALL) -m 644 $(PROFILE)/libluxfer.a '$(DESTDIR)$(LIBDIR)'
+ifeq ($(DEBUG),split)
+	$(INSTALL) -d '$(DESTDIR)$(LIBDIR)/.debug'
+	$(OBJCOPY) --only-keep-debug '$(SHARED)' '$(DESTDIR)$(LIBDIR)/$(SYMBOLS)'
+	chmod 644 '$(DESTDIR)$(LIBDIR)/$(SYMBOLS)'
+	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --strip-debug --add-gnu-debuglink=$(SYMBOLS) libluxfer.so.$(VERSION)
+	$(OBJCOPY) --strip-debug '$(DESTDIR)$(LIBDIR)/libluxfer.a'
+endif
 	$(INSTALL) -m 644 include/luxfer.h bindings/cpp/luxfer.hpp '$(DESTDIR)$(INCLUDEDIR)'
 	$(INSTALL) -m 644 bindings/cpp/luxfer/*.hpp '$(DESTDIR)$(INCLUDEDIR)/luxfer'
 	$(INSTALL) -m 644 $(DOCUMENTS) '$(DESTDIR)$(DOCDIR)'
 	$(call fill,bindings/pkgconfig/luxfer.pc.in,$(LIBDIR)/pkgconfig)
 	$(call fill,bindings/cmake/luxferConfig.cmake.in,$(LIBDIR)/cmake/luxfer)
 	$(call fill,bindings/cmake/luxferConfigVersion.cmake.in,$(LIBDIR)/cmake/luxfer)
-
-split-debug:
-	$(INSTALL) -d '$(DESTDIR)$(LIBDIR)/.debug'
-	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --only-keep-debug libluxfer.so.$(VERSION) .debug/libluxfer.so.$(VERSION).debug
-	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --strip-debug --add-gnu-debuglink=.debug/libluxfer.so.$(VERSION).debug libluxfer.so.$(VERSION)
 
 # Only what install has put there by name, and its folders if they are empty then.
 uninstall:

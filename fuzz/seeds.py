@@ -240,7 +240,8 @@ def networks() -> list[bytes]:
 # --------------------------------------------------------------------------------------------------------------------- texts
 
 #: What a glTF file may say and ours does not.
-MORE = {"sparse", "matrix", "children", "KHR_materials_unlit", "EXT_lights_ies", "byteStride", "normalized"}
+MORE = {"sparse", "matrix", "children", "KHR_materials_unlit", "EXT_lights_ies", "byteStride", "normalized", "extras", "minVersion", "COLOR_0"}
+MORE |= {"EXT_mesh_gpu_instancing", "TRANSLATION", "ROTATION", "SCALE", "EXT_texture_webp", "KHR_materials_clearcoat", "weights", "skin"}
 #: 1, infinity and not a number, in 32 and 64 bits.
 NUMBERS = [rf"\x00\x00{end}" for end in (r"\x80\x3f", r"\x80\x7f", r"\xc0\x7f", r"\xf0\x3f", r"\xf0\x7f", r"\xf8\x7f")]
 

@@ -134,10 +134,16 @@ const char *luxfer_status_name(luxfer_status status);
  * use different objects at the same time, and also the same object: calls that change an object wait for each other.
  * Only the release of the last reference must not overlap with another use of the object.
  *
- * The library prints nothing, reads no environment variables, does not end the process on an error and installs no
- * handlers. All state belongs to a context, with one exception: an emergency reserve of memory, shared by all contexts
- * of the process. The library uses it for small allocations when the system has no memory left; all running jobs of
- * the process then end with LUXFER_OUT_OF_MEMORY.
+ * The library prints nothing, not even the message of a defect (LUXFER_INTERNAL), reads no environment variables, does
+ * not end the process on an error and installs no handlers of the system. All state belongs to a context, with one
+ * exception: an emergency reserve of memory, shared by all contexts of the process. The library uses it for small
+ * allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
+ *
+ * Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
+ * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and X_release returns
+ * LUXFER_OK and frees nothing. A child may create contexts of its own.
+ *
+ * Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
  *
  * With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
  * any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
@@ -159,8 +165,8 @@ typedef struct luxfer_context_params {
     uint32_t num_threads;
     /**
      * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
-     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. The working memory of jobs and
-     * their results do not count.
+     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a picture file
+     * takes counts while the file is read. The working memory of jobs and their results do not count.
      */
     uint64_t memory_budget_mib;
 } luxfer_context_params;
@@ -557,26 +563,6 @@ typedef struct luxfer_surface {
 luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene);
 
 /**
- * Loads a glTF 2.0 file, .glb or .gltf with the files it names; path is UTF-8. The caller releases *scene. Any thread.
- * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
- * LUXFER_UNSUPPORTED for a required extension that this library does not know, LUXFER_OUT_OF_MEMORY beyond the memory
- * budget.
- */
-luxfer_status luxfer_scene_load(luxfer_context *context,
-                                const char *path,
-                                luxfer_scene **scene);
-
-/**
- * Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
- * base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
- */
-luxfer_status luxfer_scene_load_memory(luxfer_context *context,
-                                       const void *data,
-                                       size_t size,
-                                       const char *base_path,
-                                       luxfer_scene **scene);
-
-/**
  * Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is replaced
  * only once the new one is complete. Any thread.
  * LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
@@ -658,6 +644,78 @@ luxfer_status luxfer_scene_retain(luxfer_scene *scene);
 
 /** Removes a reference. Any thread. */
 luxfer_status luxfer_scene_release(luxfer_scene *scene);
+
+/* ====================================================================================================================
+ * Scene files
+ *
+ * Loads glTF 2.0 files. luxfer_scene_get_warnings and luxfer_scene_requirements_text name the features of a file that
+ * are not rendered.
+ * ==================================================================================================================== */
+
+/** Settings of reading a scene's file. Fill it with luxfer_scene_load_params_init. */
+typedef struct luxfer_scene_load_params {
+    /** sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init. */
+    uint32_t struct_size;
+    /**
+     * 1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the default:
+     * this gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices or
+     * addresses on a network.
+     */
+    uint32_t outside;
+    /**
+     * Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
+     * leaves intensities and luminances as they are. 0.001: the file is in millimetres.
+     */
+    double unit;
+} luxfer_scene_load_params;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
+ * the struct has this size.
+ */
+luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_params *params,
+                                            size_t size);
+
+/**
+ * Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
+ * The caller releases *scene. Any thread.
+ * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
+ * LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
+ * file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_scene_load(luxfer_context *context,
+                                const char *path,
+                                luxfer_scene **scene);
+
+/**
+ * Loads a scene as luxfer_scene_load does, with settings; params may be NULL for the defaults.
+ * LUXFER_INVALID_ARGUMENT also if a setting is out of range.
+ */
+luxfer_status luxfer_scene_load_with(luxfer_context *context,
+                                     const char *path,
+                                     const luxfer_scene_load_params *params,
+                                     luxfer_scene **scene);
+
+/**
+ * Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
+ * base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
+ */
+luxfer_status luxfer_scene_load_memory(luxfer_context *context,
+                                       const void *data,
+                                       size_t size,
+                                       const char *base_path,
+                                       luxfer_scene **scene);
+
+/**
+ * Loads a scene as luxfer_scene_load_memory does, with settings; params may be NULL for the defaults.
+ * LUXFER_INVALID_ARGUMENT also if a setting is out of range.
+ */
+luxfer_status luxfer_scene_load_memory_with(luxfer_context *context,
+                                            const void *data,
+                                            size_t size,
+                                            const char *base_path,
+                                            const luxfer_scene_load_params *params,
+                                            luxfer_scene **scene);
 
 /* ====================================================================================================================
  * Materials
@@ -1241,8 +1299,9 @@ luxfer_status luxfer_scene_requirements(luxfer_scene *scene,
                                         luxfer_requirements *requirements);
 
 /**
- * Describes in words what the renderer skips in a scene: one sentence per line, as zero-terminated UTF-8, truncated to
- * capacity bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
+ * Describes in words what the renderer skips in a scene, and each extension and feature of its file that is not
+ * rendered, with the objects that have it: one sentence per line, as zero-terminated UTF-8, truncated to capacity
+ * bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
  * capacity is 0. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
@@ -3859,6 +3918,9 @@ typedef struct luxfer_transfer_params {
 /** A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run. */
 typedef int32_t luxfer_stage;
 
+/** No stage, but a scene that was loaded: only in warnings. */
+#define LUXFER_STAGE_SCENE -1
+
 /** Finds lines, vanishing points and the photo's camera. */
 #define LUXFER_STAGE_VIEW 0
 
@@ -4221,10 +4283,10 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
 /* ====================================================================================================================
  * Warnings
  *
- * Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the
- * place in the photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all
- * its stages. A list is a copy, which stays as it is when the stage is started again. An empty list does not prove a
- * result right.
+ * Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect, its
+ * figure and limit, the place in the photo, and the remedy. Each stage that reads the photo has a list, a transfer has
+ * the lists of all its stages, and a scene has one. A list is a copy, which stays as it is when the stage is started
+ * again. An empty list does not prove a result right.
  * ==================================================================================================================== */
 
 /** A list of warnings. See luxfer_transfer_get_warnings. */
@@ -4241,7 +4303,7 @@ typedef struct luxfer_warning {
     luxfer_warning_code code;
     /**
      * The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look
-     * within, PLANE without.
+     * within, PLANE without; of a luxfer_scene it is SCENE.
      */
     luxfer_stage stage;
     /** 1 if the warning has a place in the photo, else 0. */
@@ -4329,6 +4391,18 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_TARGET_CLIPPED 19
 
 /**
+ * A scene is so high that its unit is hardly the metre; the severity is its height in metres. The message names the
+ * likely unit.
+ */
+#define LUXFER_WARNING_IMPLAUSIBLE_SIZE 20
+
+/**
+ * The file of a scene has a feature or an extension that is not rendered, which the message names with the first
+ * objects that have it; the severity is their number.
+ */
+#define LUXFER_WARNING_NOT_RENDERED 21
+
+/**
  * Gets the warnings of all stages that have a result, in their order. The caller releases *warnings. Any thread.
  * LUXFER_NOT_READY before the first stage has ended.
  */
@@ -4368,6 +4442,13 @@ luxfer_status luxfer_emission_get_warnings(luxfer_emission *emission, luxfer_war
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_relight_get_warnings(luxfer_relight *relight, luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about a scene: an implausible size, and features of its file that are not rendered. The caller
+ * releases *warnings. Any thread.
+ */
+luxfer_status luxfer_scene_get_warnings(luxfer_scene *scene,
+                                        luxfer_warnings **warnings);
 
 /** Counts the warnings of a list. Any thread. */
 luxfer_status luxfer_warnings_count(luxfer_warnings *warnings, uint32_t *count);

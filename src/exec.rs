@@ -5,6 +5,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
+use crate::quiet::{self, Quiet};
 use crate::reserve;
 use rayon::prelude::*;
 use std::io;
@@ -137,11 +138,16 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Starts a thread.
+/// Starts a thread, which is as quiet about panics as the thread that starts it.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
     if !reserve::has_room(THREAD_OVERHEAD) {
         return Err(io::ErrorKind::OutOfMemory.into());
     }
+    let is_quiet = quiet::is_on();
+    let work = move || {
+        let _quiet = is_quiet.then(Quiet::enter);
+        work();
+    };
     thread::Builder::new().name(name.into()).stack_size(STACK).spawn(work)
 }
 

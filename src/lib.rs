@@ -58,6 +58,7 @@ pub mod job;
 #[cfg(feature = "onnx")]
 pub mod network;
 pub mod photometry;
+mod quiet;
 mod reserve;
 pub mod rng;
 pub mod scene;

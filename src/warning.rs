@@ -1,7 +1,7 @@
 //! The one warning type: the reason to doubt a result that is no error, and the remedy.
 //!
-//! A warning compares a figure of a result with a limit, so each stage computes its list from its result alone
-//! (`warnings.rs` in the folder of the stage, with the limits). Nothing is stored.
+//! A warning compares a figure of a result with a limit, so each stage computes its list from its result alone, and a
+//! scene from its contents (`warnings.rs` in the folder of the stage, with the limits). Nothing is stored.
 
 use glam::DVec2;
 use std::fmt;
@@ -48,10 +48,14 @@ pub enum Code {
     Unreachable = 18,
     /// Relighting: the photo clips the target, which is a lower bound.
     TargetClipped = 19,
+    /// Scene: it is so high that its unit is hardly the metre.
+    ImplausibleSize = 20,
+    /// Scene: its file has a feature that is not rendered.
+    NotRendered = 21,
 }
 
 impl Code {
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -71,6 +75,8 @@ impl Code {
         Self::NoLattice,
         Self::Unreachable,
         Self::TargetClipped,
+        Self::ImplausibleSize,
+        Self::NotRendered,
     ];
 }
 

@@ -23,6 +23,7 @@ const GROUPS: &[&str] = &[
     "photo",
     "job",
     "scene",
+    "scene_load",
     "scene_materials",
     "scene_parts",
     "distribution",
@@ -343,6 +344,7 @@ layouts! {
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area bent;
+    luxfer_scene_load_params: struct_size outside unit;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs

@@ -8,15 +8,16 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("warning", &[]),
     ("reserve", &[]),
+    ("quiet", &[]),
     ("job", &["error", "reserve"]),
-    ("exec", &["reserve", "error", "job"]),
+    ("exec", &["reserve", "quiet", "error", "job"]),
     ("rng", &[]),
     ("simd", &[]),
     ("image", &["reserve", "error", "job", "exec", "simd"]),
     ("geometry", &["error", "rng"]),
     ("network", &["error", "job", "exec", "simd", "image"]),
     ("photometry", &["error", "image"]),
-    ("scene", &["simd", "error", "job", "exec", "rng", "image", "geometry", "photometry"]),
+    ("scene", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "photometry"]),
     ("render", &["error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
     ("patch", &["simd", "error", "job", "exec", "rng", "image"]),
     // Stages: never each other. Segmentation knows how many channels the features have.
@@ -71,6 +72,9 @@ const UNSAFE: &[&str] = &[
     "scene/accel/stack.rs",
     "patch/kernel.rs",
 ];
+
+/// The only state that belongs to a thread instead of a context: whether it is inside the library.
+const PER_THREAD: (&str, &str) = ("thread_local!", "quiet");
 
 /// Parts whose float constants all say where their value comes from (docs/glossary.md, "Tags of constants").
 const TAGGED: &[&str] = &[
@@ -171,7 +175,8 @@ fn nothing_unfinished_nothing_printed_nothing_too_long() {
     for (path, text) in sources() {
         let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
         for word in banned {
-            assert!(is_test(&path) || !code.contains(word), "{} contains {word}", path.display());
+            let is_allowed = is_test(&path) || (word, part(&path).as_str()) == PER_THREAD;
+            assert!(is_allowed || !code.contains(word), "{} contains {word}", path.display());
         }
         let lines = text.lines().count();
         assert!(lines <= MAX_LINES, "{} has {lines} lines; split it along a step of its algorithm", path.display());

@@ -25,7 +25,7 @@ fn data(name: &str) -> Option<PathBuf> {
 fn load(name: &str) -> Option<Scene> {
     let path = data(name)?;
     let start = Instant::now();
-    let scene = gltf::load(&path, gltf::UNLIMITED).unwrap();
+    let scene = gltf::load(&path, gltf::Options::default()).unwrap();
     let (elapsed, triangles) = (start.elapsed(), scene.meshes.iter().map(|m| m.triangles.len()).sum::<usize>());
     println!("{name}: {triangles} triangles, {} textures in {elapsed:.2?}", scene.textures.len());
     assert!(elapsed < TIME_LIMIT, "{name} took {elapsed:?}");
@@ -57,7 +57,7 @@ fn kitchen() {
     // Lit, written, and read again.
     let lights = Image::from_fn(8, 8, |x, y| [if x % 2 == 0 && y % 2 == 0 { 1.0 } else { 0.0 }; 3]).unwrap();
     let placed = surface::place(&mut scene, &ceiling, lights, Vec3::splat(3000.0)).unwrap();
-    let again = gltf::import(&gltf::export(&scene).unwrap(), None, gltf::UNLIMITED).unwrap();
+    let again = gltf::import(&gltf::export(&scene).unwrap(), None, gltf::Options::default()).unwrap();
     let patch = again.meshes.iter().find(|m| m.name == "Ceiling (lights)").unwrap();
     assert_eq!(patch.uvs[1], scene.meshes[placed.mesh].uvs[1]);
     assert_eq!(again.materials[patch.material].emission, Vec3::splat(3000.0));

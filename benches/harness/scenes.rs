@@ -206,7 +206,7 @@ pub fn data(name: &str) -> Result<PathBuf, Absent> {
 }
 
 fn glb(name: &str) -> Result<Scene, Absent> {
-    gltf::load(&data(name)?, gltf::UNLIMITED).map_err(|e| e.to_string())
+    gltf::load(&data(name)?, gltf::Options::default()).map_err(|e| e.to_string())
 }
 
 /// The `camera.json` of a scene.

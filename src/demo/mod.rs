@@ -98,7 +98,7 @@ mod tests {
         let ceiling = surface::find(&scene, "Ceiling").unwrap();
         assert!(ceiling.normal == Vec3::NEG_Y && (ceiling.area - 24.0).abs() < 1e-3, "{ceiling:?}");
         let glb = gltf::export(&scene).unwrap();
-        let again = gltf::import(&glb, None, gltf::UNLIMITED).unwrap();
+        let again = gltf::import(&glb, None, gltf::Options::default()).unwrap();
         for (a, b) in again.meshes.iter().zip(&scene.meshes) {
             assert!((&a.name, &a.positions, &a.triangles, &a.uvs) == (&b.name, &b.positions, &b.triangles, &b.uvs));
         }

@@ -12,10 +12,16 @@
 //! use different objects at the same time, and also the same object: calls that change an object wait for each other.
 //! Only the release of the last reference must not overlap with another use of the object.
 //!
-//! The library prints nothing, reads no environment variables, does not end the process on an error and installs no
-//! handlers. All state belongs to a context, with one exception: an emergency reserve of memory, shared by all contexts
-//! of the process. The library uses it for small allocations when the system has no memory left; all running jobs of
-//! the process then end with LUXFER_OUT_OF_MEMORY.
+//! The library prints nothing, not even the message of a defect (LUXFER_INTERNAL), reads no environment variables, does
+//! not end the process on an error and installs no handlers of the system. All state belongs to a context, with one
+//! exception: an emergency reserve of memory, shared by all contexts of the process. The library uses it for small
+//! allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
+//!
+//! Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
+//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and X_release returns
+//! LUXFER_OK and frees nothing. A child may create contexts of its own.
+//!
+//! Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
 //!
 //! With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
 //! any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
@@ -50,8 +56,8 @@ pub struct luxfer_context_params {
     /// or on as many further threads, which the context starts for the first of them.
     pub num_threads: u32,
     /// Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
-    /// that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. The working memory of jobs and
-    /// their results do not count.
+    /// that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a picture file
+    /// takes counts while the file is read. The working memory of jobs and their results do not count.
     pub memory_budget_mib: u64,
 }
 
@@ -76,7 +82,13 @@ pub(super) struct Context {
     budget: u64,
     used: AtomicU64,
     messages: Mutex<Messages>,
+    /// The process that created the context; a forked child has another id.
+    process: u32,
 }
+
+/// Why a context cannot be used in a forked child.
+const INHERITED: &str = "this object was created before the process was forked, and its threads did not come along; \
+                         create a context and its objects in the child process";
 
 /// The last error message of each thread. A map rather than thread-local storage, which would outlive the context and
 /// the library.
@@ -87,6 +99,16 @@ struct Messages {
 }
 
 impl Context {
+    /// An error in a forked child of the process that created the context. Takes no lock: another thread may have held
+    /// it when the process was forked, and would hold it for ever.
+    pub(super) fn check_process(&self) -> Result<()> {
+        if self.process == std::process::id() {
+            Ok(())
+        } else {
+            Err(Error::new(ErrorKind::InvalidOperation, INHERITED))
+        }
+    }
+
     pub(super) fn remember(&self, error: &Error) {
         let messages = &mut *lock(&self.messages);
         messages.count += 1;
@@ -172,6 +194,7 @@ pub unsafe extern "C" fn luxfer_context_create(
             budget: params.memory_budget_mib.saturating_mul(1 << 20),
             used: AtomicU64::new(0),
             messages: Mutex::default(),
+            process: std::process::id(),
         });
         out.set(handle::give(Arc::new(ContextObject(context))));
         Ok(())
@@ -203,6 +226,9 @@ pub unsafe extern "C" fn luxfer_context_last_error(
     capacity: usize,
     needed: *mut usize,
 ) -> luxfer_status {
+    if handle::is_inherited(context) {
+        return guard(|| copy_text(INHERITED, buffer, capacity, needed));
+    }
     enter(context, |object| {
         let messages = lock(&object.context().messages);
         let message = messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str());

@@ -1,16 +1,17 @@
-//! The guard of each entry point: no panic reaches the host, every error becomes a status.
+//! The guard of each entry point: no panic and no message of one reaches the host, every error becomes a status.
 
 use super::float_mode::FloatMode;
 use super::handle::{self, Handle, Owned};
 use super::status::{LUXFER_OK, luxfer_status};
 use crate::error::{Error, ErrorKind, Result};
+use crate::quiet::Quiet;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Runs an entry point that has no object yet.
 pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
-    let _mode = FloatMode::enter();
+    let (_mode, _quiet) = (FloatMode::enter(), Quiet::enter());
     match catch(work) {
         Ok(()) => LUXFER_OK,
         Err(error) => error.kind as luxfer_status,
@@ -57,6 +58,40 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 mod tests {
     use super::*;
     use crate::ffi::status::{LUXFER_FORMAT, LUXFER_INTERNAL};
+    use crate::job::Monitor;
+
+    /// A panic on the calling thread, on a worker and on a job's thread, each caught by the guard.
+    #[test]
+    #[ignore = "a program of its own: a_defect_is_silent runs it and looks at its stderr"]
+    fn has_defects() {
+        assert_eq!(guard(|| panic!("a defect")), LUXFER_INTERNAL);
+        let in_pool =
+            || crate::exec::Pool::new(2)?.run(|| catch(|| crate::exec::map(4, Monitor::default().job(), worker)));
+        assert_eq!(guard(|| in_pool().map(|_| ())), LUXFER_INTERNAL);
+        let in_thread =
+            || crate::exec::spawn("luxfer-job", || assert!(catch(|| worker(0)).is_err())).unwrap().join().unwrap();
+        assert_eq!(guard(|| Ok(in_thread())), LUXFER_OK);
+        // The host's own panics are as loud as before, also in a function that the library calls.
+        assert_eq!(guard(|| crate::quiet::outside(|| panic!("of the host, within"))), LUXFER_INTERNAL);
+        assert!(catch_unwind(|| panic!("of the host, after")).is_err());
+    }
+
+    fn worker(_: usize) -> Result<()> {
+        panic!("a defect of a worker")
+    }
+
+    #[test]
+    #[cfg_attr(miri, ignore = "starts a process")]
+    fn a_defect_is_silent() {
+        let name = concat!(module_path!(), "::has_defects");
+        let name = name.split_once("::").unwrap().1;
+        let mut program = std::process::Command::new(std::env::current_exe().unwrap());
+        let output = program.args([name, "--exact", "--ignored", "--nocapture"]).output().unwrap();
+        let (out, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success() && out.contains("1 passed"), "{out}{errors}");
+        assert!(!errors.contains("a defect"), "{errors}");
+        assert!(errors.contains("of the host, within") && errors.contains("of the host, after"), "{errors}");
+    }
 
     #[test]
     fn panics_and_errors_become_statuses() {

@@ -65,11 +65,20 @@ fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Obje
     if is_ours { Ok(shell) } else { Err(Error::argument(format!("{name} is not a live {}", H::NAME))) }
 }
 
-/// The object behind a handle, kept alive for the length of the call.
+/// The object behind a handle, kept alive for the length of the call. An error in a forked child of the process that
+/// created it.
 pub(super) fn borrow<H: Handle>(handle: *const H, name: &str) -> Result<Arc<H::Object>> {
     let shell = shell(handle, name)?;
     // SAFETY: the tag is right, so the shell is alive and holds an object.
-    Ok(unsafe { Arc::clone(&(*shell).object) })
+    let object = unsafe { &(*shell).object };
+    object.context().check_process()?;
+    Ok(object.clone())
+}
+
+/// Whether a handle is live, but its context belongs to the process of which this one is a forked child.
+pub(super) fn is_inherited<H: Handle>(handle: *const H) -> bool {
+    // SAFETY: as in `borrow`.
+    shell(handle, "the handle").is_ok_and(|shell| unsafe { (*shell).object.context().check_process().is_err() })
 }
 
 /// The object behind a handle given as an argument to another object of the same context.
@@ -86,7 +95,10 @@ pub(super) fn retain<H: Handle>(handle: *mut H) -> luxfer_status {
     guard(|| {
         let shell = shell(handle, "the handle")?;
         // SAFETY: the shell came from `Arc::into_raw` in `give` and is alive.
-        unsafe { Arc::increment_strong_count(shell) };
+        unsafe {
+            (*shell).object.context().check_process()?;
+            Arc::increment_strong_count(shell);
+        }
         Ok(())
     })
 }
@@ -98,7 +110,13 @@ pub(super) fn release<H: Handle>(handle: *mut H) -> luxfer_status {
         }
         let shell = shell(handle, "the handle")?;
         // SAFETY: as above; this is the reference that the host gives back.
-        drop(unsafe { Arc::from_raw(shell) });
+        unsafe {
+            // A forked child has no threads to join, and locks that other threads held stay locked in it: the object
+            // is left as it is, in memory that the child shares with its parent.
+            if (*shell).object.context().check_process().is_ok() {
+                drop(Arc::from_raw(shell));
+            }
+        }
         Ok(())
     })
 }

@@ -16,6 +16,7 @@ use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::exec::spawn;
 use crate::job::Monitor;
+use crate::quiet;
 use std::ffi::c_void;
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
@@ -136,11 +137,13 @@ pub unsafe extern "C" fn luxfer_job_wait(
             };
             if let (Some(report), Some(fraction)) = (progress, fraction) {
                 // SAFETY: the caller's function, with the caller's pointer.
-                if unsafe { report(user, fraction) } != 0 {
+                if quiet::outside(|| unsafe { report(user, fraction) }) != 0 {
                     job.shared.monitor.cancel();
                     progress = None;
                 }
             }
+            // The function may have forked, and this be the child, which has no job to wait for.
+            job.context.check_process()?;
             match result {
                 Some(result) => return result,
                 None if deadline.is_some_and(|d| Instant::now() >= d) => return Err(Job::is_running()),

@@ -118,8 +118,9 @@ pub unsafe extern "C" fn luxfer_scene_requirements(
     })
 }
 
-/// Describes in words what the renderer skips in a scene: one sentence per line, as zero-terminated UTF-8, truncated to
-/// capacity bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
+/// Describes in words what the renderer skips in a scene, and each extension and feature of its file that is not
+/// rendered, with the objects that have it: one sentence per line, as zero-terminated UTF-8, truncated to capacity
+/// bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
 /// capacity is 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
@@ -130,6 +131,9 @@ pub unsafe extern "C" fn luxfer_scene_requirements_text(
     needed: *mut usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        copy_text(&object.ready_world()?.requirements().left_out().join("\n"), buffer, capacity, needed)
+        let world = object.ready_world()?;
+        let mut sentences = world.requirements().left_out();
+        sentences.extend(world.scene().unrendered.iter().map(|unrendered| format!("{unrendered}.")));
+        copy_text(&sentences.join("\n"), buffer, capacity, needed)
     })
 }

@@ -10,11 +10,12 @@ use super::guard::{enter, lock};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::luxfer_image;
 use super::params::{Report, Versioned};
-use super::pointer::{Out, bytes, set_optional, text};
+use super::pointer::{Out, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io;
 use crate::job::{Job, Monitor};
+use crate::quiet;
 use crate::render::World;
 use crate::scene::{Environment, Scene, gltf, surface};
 use glam::Vec3;
@@ -139,13 +140,13 @@ impl SceneObject {
     }
 
     /// A scene from a file, each part of which is counted in the budget before it is made.
-    fn read(context: &Arc<Context>, read: impl FnOnce(gltf::Budget) -> Result<Scene>) -> Result<Arc<Self>> {
-        let charges = RefCell::new(Vec::new());
-        let scene = Arc::new(read(&|bytes| {
-            charges.borrow_mut().push(context.charge(bytes)?);
-            Ok(())
-        })?);
-        let state = State { scene, world: None, charges: charges.into_inner() };
+    pub(super) fn read(
+        context: &Arc<Context>,
+        read: impl FnOnce(&dyn gltf::Budget) -> Result<Scene>,
+    ) -> Result<Arc<Self>> {
+        let charges = Charges { context, kept: RefCell::default() };
+        let scene = Arc::new(read(&charges)?);
+        let state = State { scene, world: None, charges: charges.kept.into_inner() };
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
     }
 
@@ -203,6 +204,24 @@ impl SceneObject {
     }
 }
 
+/// The budget of a context for a scene that is read.
+struct Charges<'a> {
+    context: &'a Arc<Context>,
+    kept: RefCell<Vec<Charge>>,
+}
+
+impl gltf::Budget for Charges<'_> {
+    fn keep(&self, bytes: u64) -> Result<()> {
+        self.kept.borrow_mut().push(self.context.charge(bytes)?);
+        Ok(())
+    }
+
+    fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()> {
+        let _lent = self.context.charge(bytes)?;
+        work()
+    }
+}
+
 /// Bytes of a scene's meshes and textures.
 fn cost(scene: &Scene) -> u64 {
     let meshes = scene.meshes.iter().map(|m| {
@@ -222,43 +241,6 @@ pub unsafe extern "C" fn luxfer_scene_create(
     enter(context, |object| {
         let out = Out::new(scene, "scene")?;
         out.set(handle::give(SceneObject::new(object.context(), Arc::default())?));
-        Ok(())
-    })
-}
-
-/// Loads a glTF 2.0 file, .glb or .gltf with the files it names; path is UTF-8. The caller releases *scene. Any thread.
-/// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
-/// LUXFER_UNSUPPORTED for a required extension that this library does not know, LUXFER_OUT_OF_MEMORY beyond the memory
-/// budget.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_load(
-    context: *mut luxfer_context,
-    path: *const c_char,
-    scene: *mut *mut luxfer_scene,
-) -> luxfer_status {
-    enter(context, |object| {
-        let out = Out::new(scene, "scene")?;
-        let path = Path::new(text(path, "path")?);
-        out.set(handle::give(SceneObject::read(object.context(), |budget| gltf::load(path, budget))?));
-        Ok(())
-    })
-}
-
-/// Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
-/// base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_load_memory(
-    context: *mut luxfer_context,
-    data: *const c_void,
-    size: usize,
-    base_path: *const c_char,
-    scene: *mut *mut luxfer_scene,
-) -> luxfer_status {
-    enter(context, |object| {
-        let out = Out::new(scene, "scene")?;
-        let bytes = bytes(data.cast(), size, "data")?;
-        let base = if base_path.is_null() { None } else { Some(Path::new(text(base_path, "base_path")?)) };
-        out.set(handle::give(SceneObject::read(object.context(), |budget| gltf::import(bytes, base, budget))?));
         Ok(())
     })
 }
@@ -290,7 +272,7 @@ pub unsafe extern "C" fn luxfer_scene_export_memory(
             write.ok_or_else(|| Error::argument("write is NULL; it must be a function that takes the bytes"))?;
         let bytes = gltf::export(&object.snapshot())?;
         // SAFETY: the caller's function, with the caller's pointer.
-        let answer = unsafe { write(user, bytes.as_ptr().cast(), bytes.len()) };
+        let answer = quiet::outside(|| unsafe { write(user, bytes.as_ptr().cast(), bytes.len()) });
         if answer != 0 {
             return Err(Error::new(ErrorKind::Io, format!("the caller's write function returned {answer}")));
         }

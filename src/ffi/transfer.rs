@@ -41,6 +41,8 @@ pub struct luxfer_transfer {
 
 /// A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run.
 pub type luxfer_stage = i32;
+/// No stage, but a scene that was loaded: only in warnings.
+pub const LUXFER_STAGE_SCENE: luxfer_stage = -1;
 /// Finds lines, vanishing points and the photo's camera.
 pub const LUXFER_STAGE_VIEW: luxfer_stage = 0;
 /// Computes the ten channels of the features.

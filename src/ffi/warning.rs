@@ -1,9 +1,9 @@
 //! Warnings
 //!
-//! Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the
-//! place in the photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all
-//! its stages. A list is a copy, which stays as it is when the stage is started again. An empty list does not prove a
-//! result right.
+//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect, its
+//! figure and limit, the place in the photo, and the remedy. Each stage that reads the photo has a list, a transfer has
+//! the lists of all its stages, and a scene has one. A list is a copy, which stays as it is when the stage is started
+//! again. An empty list does not prove a result right.
 
 use super::context::Context;
 use super::emission::luxfer_emission;
@@ -14,10 +14,10 @@ use super::params::{Report, Versioned};
 use super::pointer::{Out, copy_text};
 use super::rectify::luxfer_rectify;
 use super::relight::luxfer_relight;
-use super::scene::missing;
+use super::scene::{luxfer_scene, missing};
 use super::segment::luxfer_segment;
 use super::status::luxfer_status;
-use super::transfer::{luxfer_stage, luxfer_transfer};
+use super::transfer::{LUXFER_STAGE_SCENE, luxfer_stage, luxfer_transfer};
 use crate::error::Result;
 use crate::segment;
 use crate::transfer::Stage;
@@ -75,6 +75,12 @@ pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
 /// The photo clips the target, which is a lower bound; the severity is the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
+/// A scene is so high that its unit is hardly the metre; the severity is its height in metres. The message names the
+/// likely unit.
+pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
+/// The file of a scene has a feature or an extension that is not rendered, which the message names with the first
+/// objects that have it; the severity is their number.
+pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 
 /// A reason to doubt a result. Set struct_size before the call.
 #[repr(C)]
@@ -85,7 +91,7 @@ pub struct luxfer_warning {
     /// LUXFER_WARNING_ value.
     pub code: luxfer_warning_code,
     /// The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look
-    /// within, PLANE without.
+    /// within, PLANE without; of a luxfer_scene it is SCENE.
     pub stage: luxfer_stage,
     /// 1 if the warning has a place in the photo, else 0.
     pub has_place: u32,
@@ -109,7 +115,7 @@ unsafe impl Versioned for luxfer_warning {
 /// The warnings behind a handle, each with its stage.
 pub(super) struct Warnings {
     context: Arc<Context>,
-    list: Vec<(Stage, Warning)>,
+    list: Vec<(luxfer_stage, Warning)>,
 }
 
 impl Owned for Warnings {
@@ -125,14 +131,15 @@ impl Handle for luxfer_warnings {
 }
 
 impl Warnings {
-    fn get(&self, index: u32) -> Result<&(Stage, Warning)> {
+    fn get(&self, index: u32) -> Result<&(luxfer_stage, Warning)> {
         self.list.get(index as usize).ok_or_else(|| missing("warning", index, self.list.len()))
     }
 }
 
 /// A new list for the host.
 fn give(context: &Arc<Context>, list: impl Iterator<Item = (Stage, Warning)>) -> *mut luxfer_warnings {
-    handle::give(Arc::new(Warnings { context: context.clone(), list: list.collect() }))
+    let list = list.map(|(stage, warning)| (stage as luxfer_stage, warning)).collect();
+    handle::give(Arc::new(Warnings { context: context.clone(), list }))
 }
 
 /// Lists the warnings of a stage.
@@ -235,6 +242,21 @@ pub unsafe extern "C" fn luxfer_relight_get_warnings(
     })
 }
 
+/// Gets the warnings about a scene: an implausible size, and features of its file that are not rendered. The caller
+/// releases *warnings. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_get_warnings(
+    scene: *mut luxfer_scene,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let out = Out::new(warnings, "warnings")?;
+        let list = object.snapshot().warnings().into_iter().map(|warning| (LUXFER_STAGE_SCENE, warning)).collect();
+        out.set(handle::give(Arc::new(Warnings { context: object.context().clone(), list })));
+        Ok(())
+    })
+}
+
 /// Counts the warnings of a list. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_warnings_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
@@ -257,7 +279,7 @@ pub unsafe extern "C" fn luxfer_warnings_get(
         let (stage, found) = object.get(index)?;
         out.set(luxfer_warning {
             code: found.code as luxfer_warning_code,
-            stage: *stage as luxfer_stage,
+            stage: *stage,
             has_place: u32::from(found.place.is_some()),
             severity: found.severity,
             limit: found.limit,
@@ -331,6 +353,8 @@ pub extern "C" fn luxfer_warning_name(code: luxfer_warning_code) -> *const c_cha
         LUXFER_WARNING_NO_LATTICE => c"LUXFER_WARNING_NO_LATTICE",
         LUXFER_WARNING_UNREACHABLE => c"LUXFER_WARNING_UNREACHABLE",
         LUXFER_WARNING_TARGET_CLIPPED => c"LUXFER_WARNING_TARGET_CLIPPED",
+        LUXFER_WARNING_IMPLAUSIBLE_SIZE => c"LUXFER_WARNING_IMPLAUSIBLE_SIZE",
+        LUXFER_WARNING_NOT_RENDERED => c"LUXFER_WARNING_NOT_RENDERED",
         _ => c"LUXFER_WARNING_UNKNOWN",
     };
     name.as_ptr()

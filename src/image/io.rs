@@ -17,6 +17,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 pub use crate::image::openexr::{Layer, encode as encode_exr};
+pub use crate::image::working::working_bytes;
 
 /// Largest image a file may hold: 2^28 pixels, a 16 k square.
 pub const MAX_PIXELS: u64 = 1 << 28;

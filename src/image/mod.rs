@@ -24,6 +24,7 @@ mod room;
 mod samples;
 mod tiff;
 pub mod view;
+mod working;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
 pub(crate) use buffer::{make_room, no_memory};

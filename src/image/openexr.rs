@@ -89,6 +89,11 @@ pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     Ok((size.0, size.1, channels))
 }
 
+/// Bytes that reading the first layer takes beside the picture.
+pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
+    Ok(room::layer(&headers(bytes)?))
+}
+
 /// The first layer with R, G and B (and A), or one with a single channel, and the colour space that the file states.
 pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     let headers = headers(bytes)?;

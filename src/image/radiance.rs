@@ -173,6 +173,12 @@ pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     Ok((header.columns, header.rows, 3))
 }
 
+/// Bytes that reading the picture takes beside it.
+pub fn working_bytes(bytes: &[u8]) -> Result<usize> {
+    let header = Header::new(bytes)?;
+    Ok(header.columns * header.rows * 12 + room::scanlines(header.columns))
+}
+
 /// The picture, upright, and the colour space that the file states.
 pub fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     let header = Header::new(bytes)?;

@@ -16,6 +16,15 @@ pub fn probe(bytes: &[u8], format: ImageFormat) -> Result<(usize, usize, usize)>
     Ok((width as usize, height as usize, channels(usize::from(decoder.color_type().channel_count()))))
 }
 
+/// Bytes that reading a file takes beside the picture, but for other chunks of a PNG.
+pub fn working_bytes(bytes: &[u8], format: ImageFormat) -> Result<usize> {
+    let decoder = decoder(bytes, format)?;
+    let (width, height) = decoder.dimensions();
+    let pixel = usize::from(decoder.color_type().bytes_per_pixel());
+    let stored = usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX);
+    Ok(stored.saturating_add(room::pixels(bytes, format, width as usize, height as usize, pixel)))
+}
+
 /// Grey with alpha becomes RGBA.
 fn channels(stored: usize) -> usize {
     if stored == 2 { 4 } else { stored }

@@ -1,4 +1,5 @@
-//! Memory that codecs of others take, and without which they would end the process: asked for before they run.
+//! Memory that codecs of others take, and without which they would end the process: asked for before they run, and
+//! counted against the budget of whoever reads a file ([`super::working`]).
 //!
 //! The bounds are of what the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr` allocate beside what
 //! they are given.
@@ -26,7 +27,12 @@ pub(super) fn check_pixels(
     height: usize,
     pixel_bytes: usize,
 ) -> Result<()> {
-    check(match format {
+    check(pixels(file, format, width, height, pixel_bytes))
+}
+
+/// Bytes for the pixels of a file of the crate `image` on their way.
+pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> usize {
+    match format {
         // Of progressive ones the coefficients of four components, two bytes each, in blocks of up to 32 pixels; a row
         // of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
@@ -34,12 +40,16 @@ pub(super) fn check_pixels(
         // The frame, where it is not as wide as the screen; LZW.
         ImageFormat::Gif => 5 * width * height + (1 << 20),
         _ => 16 * width * pixel_bytes + (1 << 20),
-    })
+    }
 }
 
 /// For the scan lines of a Radiance file on their way.
 pub(super) fn check_scanlines(columns: usize) -> Result<()> {
-    check(16 * columns + (1 << 20))
+    check(scanlines(columns))
+}
+
+pub(super) fn scanlines(columns: usize) -> usize {
+    16 * columns + (1 << 20)
 }
 
 /// For a WebP's pixels beside the picture itself.
@@ -57,17 +67,24 @@ fn webp(file: &[u8], width: usize, height: usize) -> usize {
 
 /// For the decompressors of a TIFF's pixels.
 pub(super) fn check_unpacking() -> Result<()> {
-    check(1 << 20)
+    check(UNPACKING)
 }
+
+/// Bytes of the decompressors.
+pub(super) const UNPACKING: usize = 1 << 20;
 
 /// For a chunk of a PNG file beside its pixels. The pixels' are read bit by bit, a colour profile is unpacked, up to a
 /// limit; nothing that deflate has packed is more than 1032 times as long.
 pub(super) fn check_chunk(name: &[u8], length: usize, file_bytes: usize) -> Result<()> {
-    check(match name {
-        b"IDAT" | b"fdAT" => return Ok(()),
+    check(chunk(name, length, file_bytes))
+}
+
+pub(super) fn chunk(name: &[u8], length: usize, file_bytes: usize) -> usize {
+    match name {
+        b"IDAT" | b"fdAT" => 0,
         b"iCCP" => length.saturating_mul(1032).min(png_limit(file_bytes)),
         _ => length,
-    })
+    }
 }
 
 /// Bytes that the decoder of PNG may take beside the pixels of a file of so many: chunks, which grow by doubling, a
@@ -76,10 +93,14 @@ pub(super) fn png_limit(file_bytes: usize) -> usize {
     file_bytes.saturating_mul(3).saturating_add(8 * MAX_SIDE).saturating_add(MAX_BYTES)
 }
 
-/// For a colour profile: its tables as floating-point numbers, the curves, and the tables of a transform between
-/// profiles (33³ colours, curves of 2^16 values).
-pub(super) fn check_profile(bytes: usize) -> Result<()> {
-    check(bytes.saturating_mul(32).saturating_add(8 << 20))
+pub(super) fn check_profile(bytes: usize, has_tables: bool) -> Result<()> {
+    check(profile(bytes, has_tables))
+}
+
+/// Bytes for a colour profile: its tables as floating-point numbers, the curves, and, of profiles with tables of
+/// colours, the tables of a transform (33³ colours, curves of 2^16 values).
+pub(super) fn profile(bytes: usize, has_tables: bool) -> usize {
+    bytes.saturating_mul(32).saturating_add(if has_tables { 8 << 20 } else { 2 << 20 })
 }
 
 /// For a PNG file of so many bytes of pixels: what becomes of them, packed and as they are, which grow by doubling.
@@ -104,7 +125,11 @@ pub(super) fn block_bytes(header: &Header) -> usize {
 /// For the first layer of an OpenEXR file: all of its samples, a block on its way through a decompressor, and lists of
 /// blocks.
 pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
-    let Some(header) = headers.first() else { return Ok(()) };
+    check(layer(headers))
+}
+
+pub(super) fn layer(headers: &[Header]) -> usize {
+    let Some(header) = headers.first() else { return 0 };
     let (width, height) = (header.layer_size.0, header.layer_size.1);
     let [block_width, block_height] = block_size(header);
     let channels = &header.channels;
@@ -117,7 +142,7 @@ pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
         (block_width.min(width) + 8) * (block_height.min(height) + 8) * (5 * channels.bytes_per_pixel + transform);
     let chunks: usize = headers.iter().map(|h| h.chunk_count).sum();
     let samples = width * height * channels.bytes_per_pixel;
-    check(samples.saturating_add(block).saturating_add(block_bytes(header)).saturating_add(176 * chunks))
+    samples.saturating_add(block).saturating_add(block_bytes(header)).saturating_add(176 * chunks)
 }
 
 /// The blocks of an OpenEXR file as it is written here: tiles of so many pixels a side.

@@ -8,7 +8,7 @@
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
 use super::ggx::{self, AlbedoTable};
-use crate::scene::{AlphaMode, Environment, Material, PunctualLight, Scene, TextureRef};
+use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, TextureRef};
 use glam::{Vec3, Vec4};
 
 /// The shading features that a scene requires.
@@ -127,8 +127,12 @@ impl Range {
 pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
-    let mut used = vec![false; scene.materials.len()];
-    scene.meshes.iter().filter(|m| !m.triangles.is_empty()).for_each(|m| used[m.material] = true);
+    // Materials that a ray can meet, and materials that can emit: on triangles with an area.
+    let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
+    for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {
+        used[mesh.material] = true;
+        spread[mesh.material] |= has_area(mesh);
+    }
     let mut needed = Requirements { textures_given: scene.textures.len(), ..Requirements::default() };
     let mut varied = vec![false; scene.textures.len()];
     let mut compiled_materials = Vec::with_capacity(scene.materials.len());
@@ -139,7 +143,9 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
         compiled_materials.push(compiled);
         if used[index] {
             needed.include_material(index, &compiled, extremes(material, base, layers), table);
-            needed.include_emission(material, range(&material.emission_texture));
+            if spread[index] {
+                needed.include_emission(material, range(&material.emission_texture));
+            }
             mark_varied_textures(material, &compiled, &ranges, &mut varied);
         }
     }
@@ -147,6 +153,14 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     needed.include_solids(scene);
     needed.include_lights(scene);
     (needed, compiled_materials)
+}
+
+/// Whether any triangle of a mesh has an area. Triangles without one are no lights.
+fn has_area(mesh: &Mesh) -> bool {
+    (0..mesh.triangles.len()).any(|triangle| {
+        let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
+        (b - a).cross(c - a).length() as f32 > 0.0
+    })
 }
 
 /// Marks the textures of a material that affect its scattering or its emission.

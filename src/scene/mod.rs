@@ -13,13 +13,16 @@ pub mod material;
 pub mod mesh;
 pub mod surface;
 pub mod texture;
+pub mod unrendered;
 mod validate;
+mod warnings;
 
 pub use camera::Camera;
 pub use light::{Environment, PunctualLight, c90};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use mesh::Mesh;
 pub use texture::{Texture, Wrap, texel_at};
+pub use unrendered::Unrendered;
 pub use validate::check_place;
 
 use crate::photometry::Luminaire;
@@ -36,4 +39,6 @@ pub struct Scene {
     pub distributions: Vec<Arc<Luminaire>>,
     pub environment: Option<Environment>,
     pub cameras: Vec<Camera>,
+    /// The parts of the scene's file that are not shown.
+    pub unrendered: Vec<Unrendered>,
 }

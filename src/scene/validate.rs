@@ -255,6 +255,7 @@ mod tests {
             distributions: vec![Arc::new(Luminaire::lambertian("Panel", 1.0, [0.0; 3]))],
             environment: Some(Environment::Constant(Vec3::ONE)),
             cameras: vec![Camera::look_at(Vec3::ONE, Vec3::ZERO, 1.0)],
+            unrendered: Vec::new(),
         }
     }
 

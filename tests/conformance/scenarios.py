@@ -86,6 +86,10 @@ def scenes() -> Scenario:
     s.call("scene_export", scene, "a.glb")
     s.make("scene_load", s.context, "a.glb")
     s.make("scene_load_memory", s.context, b'{"asset":{"version":"2.0"}}', 27, None)
+    scaled = s.make("scene_load_with", s.context, "a.glb", struct("scene_load_params", unit=100.0))
+    warnings = s.make("scene_get_warnings", scaled)  # 200 m are too high for a room
+    s.call("warnings_get", warnings, 0, struct("warning", "size"))
+    s.make("scene_load_memory_with", s.context, b'{"asset":{"version":"2.0"}}', 27, None, struct("scene_load_params", outside=1))
     s.call("scene_export_memory", scene, ["callback", "write"], None)
     s.call("scene_get_counts", scene, struct("scene_counts", "size"))
     s.call("scene_set_environment", scene, 0.1, 0.2, 0.3)

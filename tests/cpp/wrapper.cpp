@@ -359,6 +359,11 @@ void scenes_come_back() {
     }));
     CHECK_ERROR(scene.write([](const void *, std::size_t) { return false; }), LUXFER_IO);
     const Scene copy = ok(Scene::load_memory(context, file));
+    CHECK(ok(ok(copy.warnings()).count()) == 0);
+    luxfer::SceneLoadParams in_hundreds;
+    in_hundreds.unit = 100;
+    const Scene large = ok(Scene::load_memory(context, file, nullptr, in_hundreds));
+    CHECK(ok(ok(large.warnings()).warning(0)).code == LUXFER_WARNING_IMPLAUSIBLE_SIZE);
     const luxfer_scene_counts counts = ok(copy.counts());
     CHECK(counts.meshes == 2 && counts.cameras == 1 && counts.triangles == 4);
     CHECK(ok(copy.mesh_name(0)) == "Floor" && ok(copy.mesh_name(1)) == "Lamp");

@@ -102,19 +102,33 @@ mv moved prefix
 step "FetchContent and add_subdirectory"
 by_cmake part -DSHARED_ONLY=ON -DLUXFER_SOURCE="$source" -DLUXFER_LIB_DIR="$built"
 
-step "split-debug"
-run_make split-debug $into
+step "debug symbols"
 cd "prefix/$lib"
 readelf -S libluxfer.so | grep -q '\.gnu_debuglink' || fail "the library does not name its debug symbols"
-readelf -S libluxfer.so | grep -q '\.debug_line' && fail "the library still has debug symbols"
+for file in libluxfer.so libluxfer.a; do
+  readelf -S "$file" 2>/dev/null | grep -q '\.debug_line' && fail "$file still has debug symbols"
+done
 readelf -S .debug/libluxfer.so.*.debug | grep -q '\.debug_line' || fail "the debug symbols are lost"
+
+step "no folders of this machine"
+# Where cargo keeps the dependencies, and the source tree. A library that cargo alone has built has them.
+for file in libluxfer.so libluxfer.a .debug/libluxfer.so.*.debug; do
+  for folder in "${CARGO_HOME:-$HOME/.cargo}" "$source/src"; do
+    grep -q "$folder" "$file" && fail "$file names $folder; build it by make or CMake"
+  done
+done
 cd "$scratch"
-by_pkg_config "$scratch/prefix/$lib"
 
 step "uninstall"
 run_make uninstall $into
 left="$(find prefix ! -type d)"
 [ -z "$left" ] || fail "left behind: $left"
+
+step "as built"
+run_make install DEBUG=keep $into
+cmp "$built/libluxfer.so" "prefix/$lib/libluxfer.so" || fail "the library is not as built"
+[ ! -e "prefix/$lib/.debug" ] || fail "debug symbols were split"
+run_make uninstall $into
 
 step "DESTDIR"
 run_make install DESTDIR="$scratch/stage" PREFIX=/usr

@@ -9,6 +9,25 @@ from luxfer import errors
 
 
 class Errors(Case):
+    def test_a_scene_file_is_scaled_and_what_it_has_beyond_the_renderer_is_named(self):
+        big = luxfer.Scene.from_bytes(context(), lit_room().to_bytes(), unit=100)
+        self.assertEqual([w.code for w in big.warnings], [luxfer.types.WarningCode.IMPLAUSIBLE_SIZE])
+        self.assertIn("unit = 0.01", str(big.warnings[0]))
+        self.assertTrue(str(big.warnings[0]).startswith("scene: "))
+        file = self.folder / "room.gltf"
+        file.write_text(
+            '{"asset": {"version": "2.0"}, "buffers": [{"uri": "../room.bin", "byteLength": 1}],'
+            ' "nodes": [{"name": "A", "extensions": {"VENDOR_x": {}}}]}'
+        )
+        with self.assertRaisesRegex(errors.Unsupported, "outside"):
+            luxfer.Scene.load(context(), file)
+        with self.assertRaisesRegex(errors.FileError, "room.bin"):
+            luxfer.Scene.load(context(), file, outside=1)
+        file.write_text(file.read_text().replace("../room.bin", "data:;base64,AA=="))
+        scene = luxfer.Scene.load(context(), file)
+        self.assertIn("VENDOR_x", scene.warnings[0].message)
+        self.assertIn('node "A"', scene.requirements_text())
+
     def test_a_mistyped_setting_names_the_nearest(self):
         render = luxfer.Render(context(), lit_room())
         with self.assertRaisesRegex(TypeError, "no setting 'widht': did you mean 'width'"):

@@ -4,12 +4,14 @@
 #pragma once
 
 #include "core.hpp"
+#include "warning.hpp"
 
 namespace luxfer {
 
 using MaterialParams = Params<luxfer_material_params, luxfer_material_params_init>;
 using CameraParams = Params<luxfer_camera_params, luxfer_camera_params_init>;
 using LightParams = Params<luxfer_light_params, luxfer_light_params_init>;
+using SceneLoadParams = Params<luxfer_scene_load_params, luxfer_scene_load_params_init>;
 
 /// A mesh of packed arrays, which must live until it is added. Arrays with strides are set in the C struct's fields.
 struct MeshParams : Params<luxfer_mesh_params, luxfer_mesh_params_init> {
@@ -47,6 +49,11 @@ public:
         return make_in<Scene>(context, luxfer_scene_load, path.get());
     }
 
+    /// Loads such a file with settings: the unit of its lengths, and whether it may name files outside its folder.
+    static Result<Scene> load(const Context &context, Text path, const luxfer_scene_load_params &params) {
+        return make_in<Scene>(context, luxfer_scene_load_with, path.get(), &params);
+    }
+
     /// Loads such a file from memory: any container of bytes. Other files that it names are read from base_path.
     template <class Bytes>
     static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path = nullptr) {
@@ -54,6 +61,18 @@ public:
         const void *data = std::data(file);
         return make_in<Scene>(context, luxfer_scene_load_memory, data, std::size(file), base_path.get());
     }
+
+    /// Loads it with settings.
+    template <class Bytes>
+    static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path,
+                                     const luxfer_scene_load_params &params) {
+        static_assert(sizeof *std::data(file) == 1, "a file consists of bytes");
+        const void *data = std::data(file);
+        return make_in<Scene>(context, luxfer_scene_load_memory_with, data, std::size(file), base_path.get(), &params);
+    }
+
+    /// An implausible size, and features of the scene's file that are not rendered.
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_scene_get_warnings); }
 
     /// A scene that the library generates: a LUXFER_DEMO_ value.
     static Result<Scene> demo(const Context &context, luxfer_demo which) {

@@ -1,4 +1,4 @@
-// Reasons to doubt the result of a job that has succeeded.
+// Reasons to doubt the result of a job that has succeeded, or a scene that was loaded.
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 #pragma once
@@ -7,7 +7,7 @@
 
 namespace luxfer {
 
-/// The warnings of a stage, or of a whole transfer, as they were when they were asked for. See luxfer_warnings.
+/// The warnings of a stage, of a whole transfer or of a scene, as they were when they were asked for. See luxfer_warnings.
 class Warnings : public Handle<luxfer_warnings, luxfer_warnings_retain, luxfer_warnings_release> {
 public:
     using Handle::Handle;

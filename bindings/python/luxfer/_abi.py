@@ -157,6 +157,7 @@ LUXFER_PATTERN_DISTANCE = 0
 LUXFER_PATTERN_LAMP = 1
 LUXFER_PATTERN_SPACING = 2
 LUXFER_PATTERN_ACROSS = 3
+LUXFER_STAGE_SCENE = -1
 LUXFER_STAGE_VIEW = 0
 LUXFER_STAGE_FEATURES = 1
 LUXFER_STAGE_PLANE = 2
@@ -201,6 +202,8 @@ LUXFER_WARNING_FEW_LAMPS = 16
 LUXFER_WARNING_NO_LATTICE = 17
 LUXFER_WARNING_UNREACHABLE = 18
 LUXFER_WARNING_TARGET_CLIPPED = 19
+LUXFER_WARNING_IMPLAUSIBLE_SIZE = 20
+LUXFER_WARNING_NOT_RENDERED = 21
 LUXFER_GUIDES_FULL = 0
 LUXFER_GUIDES_DIRECT = 1
 LUXFER_GUIDES_SPECULAR = 2
@@ -412,6 +415,16 @@ class luxfer_surface(Structure):
         ("bent", c_float),
     ]
     result = types.Surface
+
+
+class luxfer_scene_load_params(Structure):
+    """Settings of reading a scene's file."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("outside", c_uint32),
+        ("unit", c_double),
+    ]
 
 
 class luxfer_material_params(Structure):
@@ -1363,8 +1376,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_job_retain": (c_int32, [("job", POINTER(luxfer_job))]),
     "luxfer_job_release": (c_int32, [("job", POINTER(luxfer_job))]),
     "luxfer_scene_create": (c_int32, [("context", POINTER(luxfer_context)), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_export": (c_int32, [("scene", POINTER(luxfer_scene)), ("path", c_char_p)]),
     "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),
     "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts))]),
@@ -1375,6 +1386,11 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_scene_retain": (c_int32, [("scene", POINTER(luxfer_scene))]),
     "luxfer_scene_release": (c_int32, [("scene", POINTER(luxfer_scene))]),
+    "luxfer_scene_load_params_init": (c_int32, [("params", POINTER(luxfer_scene_load_params)), ("size", c_size_t)]),
+    "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load_with": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load_memory_with": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_material_params_init": (c_int32, [("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
     "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
@@ -1581,6 +1597,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_segment_get_warnings": (c_int32, [("segment", POINTER(luxfer_segment)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
     "luxfer_emission_get_warnings": (c_int32, [("emission", POINTER(luxfer_emission)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
     "luxfer_relight_get_warnings": (c_int32, [("relight", POINTER(luxfer_relight)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_scene_get_warnings": (c_int32, [("scene", POINTER(luxfer_scene)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
     "luxfer_warnings_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
     "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning))]),
     "luxfer_warnings_get_message": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),

@@ -4,18 +4,31 @@ collector."""
 from __future__ import annotations
 
 import ctypes
+import os
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from . import _abi, _params
 from ._library import library
-from .errors import InvalidArgument, error
+from .errors import InvalidArgument, InvalidOperation, error
 
 if TYPE_CHECKING:
     from .context import Context
     from .image import Image
 
 H = TypeVar("H", bound="Handle")
+
+_forks = 0
+"""Number of forks between the process that loaded the package and this one."""
+
+
+def _count_fork() -> None:
+    global _forks
+    _forks += 1
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_count_fork)
 
 
 def call(context: Context, name: str, *arguments: Any) -> None:
@@ -27,16 +40,23 @@ def call(context: Context, name: str, *arguments: Any) -> None:
 
 
 class Handle:
-    """An object of the library. Releasing it twice is fine; using it afterwards is an error."""
+    """An object of the library. Releasing it twice is fine; using it afterwards is an error. In a forked child process an
+    object of the parent cannot be used; closing it there does nothing."""
 
     kind: ClassVar[str]
     _pointer: Any = None
     _context: Context
+    _forks: int
+
+    def __new__(cls: type[H], *_arguments: Any, **_params: Any) -> H:
+        out = super().__new__(cls)
+        out._forks = _forks
+        return out
 
     def close(self) -> None:
         """Releases the object. A job that runs on it continues; a job without references is cancelled."""
         pointer, self._pointer = self._pointer, None
-        if pointer:
+        if pointer and self._forks == _forks:
             getattr(library, f"luxfer_{self.kind}_release")(pointer)
 
     @property
@@ -49,6 +69,11 @@ class Handle:
         """The C handle, for luxfer.library."""
         if not self._pointer:
             raise InvalidArgument(f"this {type(self).__name__} has been closed")
+        if self._forks != _forks:
+            raise InvalidOperation(
+                f"this {type(self).__name__} was created before the process was forked, and its threads did not come along; "
+                "create a Context and its objects in the child process"
+            )
         return self._pointer
 
     def __enter__(self: H) -> H:

@@ -23,6 +23,7 @@ from .types import (
     TextureUse,
     Wrap,
 )
+from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from .context import Context
     from .image import ImageLike
     from .photometry import Distribution
-    from .types import LightParams, LuminaireParams
+    from .types import LightParams, LuminaireParams, SceneLoadParams
 
 #: What intersect() returns of each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
 HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
@@ -57,15 +58,28 @@ class Scene(Handle):
     # -- files
 
     @classmethod
-    def load(cls, context: Context, path: str | os.PathLike[str]) -> Scene:
-        """Loads a glTF 2.0 file, .glb or .gltf with the files it names."""
-        return cls._made(context, "luxfer_scene_load", _params.text(os.fspath(path), "path"))
+    def load(cls, context: Context, path: str | os.PathLike[str], **params: Unpack[SceneLoadParams]) -> Scene:
+        """Loads a glTF 2.0 file, .glb or .gltf with the files it names. unit is the length of its unit in metres."""
+        settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
+        return cls._made(context, "luxfer_scene_load_with", _params.text(os.fspath(path), "path"), settings)
 
     @classmethod
-    def from_bytes(cls, context: Context, data: bytes, base_path: str | os.PathLike[str] | None = None) -> Scene:
+    def from_bytes(
+        cls,
+        context: Context,
+        data: bytes,
+        base_path: str | os.PathLike[str] | None = None,
+        **params: Unpack[SceneLoadParams],
+    ) -> Scene:
         """Loads a glTF file in memory; files that it names are read from base_path."""
         base = None if base_path is None else _params.text(os.fspath(base_path), "base_path")
-        return cls._made(context, "luxfer_scene_load_memory", data, len(data), base)
+        settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
+        return cls._made(context, "luxfer_scene_load_memory_with", data, len(data), base, settings)
+
+    @property
+    def warnings(self) -> list[StageWarning]:
+        """An implausible size, and each feature of the file that is not rendered."""
+        return warnings_of(self)
 
     @classmethod
     def _made(cls, context: Context, name: str, *arguments: Any) -> Scene:

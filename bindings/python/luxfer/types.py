@@ -468,6 +468,8 @@ class Target(IntEnum):
 class Stage(IntEnum):
     """A stage of the transfer."""
 
+    SCENE = -1
+    """No stage, but a scene that was loaded: only in warnings."""
     VIEW = 0
     """Finds lines, vanishing points and the photo's camera."""
     FEATURES = 1
@@ -577,6 +579,12 @@ class WarningCode(IntEnum):
     """Colour channels do not meet their target; the severity is their number."""
     TARGET_CLIPPED = 19
     """The photo clips the target, which is a lower bound; the severity is the number of these channels."""
+    IMPLAUSIBLE_SIZE = 20
+    """A scene is so high that its unit is hardly the metre; the severity is its height in metres. The message
+    names the likely unit."""
+    NOT_RENDERED = 21
+    """The file of a scene has a feature or an extension that is not rendered, which the message names with the
+    first objects that have it; the severity is their number."""
 
 
 class GuidesImage(IntEnum):
@@ -808,8 +816,9 @@ class ContextParams(TypedDict, total=False):
     thread, or on as many further threads, which the context starts for the first of them."""
     memory_budget_mib: int
     """Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context;
-    a call that would exceed it returns Status.OUT_OF_MEMORY. 0, the default: no limit. The working memory of
-    jobs and their results do not count."""
+    a call that would exceed it returns Status.OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a
+    picture file takes counts while the file is read. The working memory of jobs and their results do not
+    count."""
 
 
 class ImageView(TypedDict, total=False):
@@ -908,6 +917,18 @@ class Surface:
     bent: float
     """Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75
     degrees, as those of a vault; they receive no emission."""
+
+
+class SceneLoadParams(TypedDict, total=False):
+    """Settings of reading a scene's file."""
+
+    outside: int
+    """1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the
+    default: this gives Status.UNSUPPORTED. Set it only for files that you trust. Only files are read, never
+    devices or addresses on a network."""
+    unit: float
+    """Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions,
+    and leaves intensities and luminances as they are. 0.001: the file is in millimetres."""
 
 
 class MaterialParams(TypedDict, total=False):
@@ -1911,7 +1932,7 @@ class Warning:
     """WarningCode."""
     stage: Stage
     """The stage whose result is in doubt, Stage. Of a luxfer_segment it is LIGHTS with a mask to look within,
-    PLANE without."""
+    PLANE without; of a luxfer_scene it is SCENE."""
     has_place: int
     """1 if the warning has a place in the photo, else 0."""
     severity: float

@@ -75,7 +75,7 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     if bytes.len() > MAX_BYTES || !shares_little(bytes) {
         return Ok(Space::Unusable);
     }
-    room::check_profile(bytes.len())?;
+    room::check_profile(bytes.len(), has_tables(bytes))?;
     let options = ParsingOptions { max_profile_size: MAX_BYTES + 1, ..ParsingOptions::default() };
     let Ok(profile) = ColorProfile::new_from_slice_with_options(bytes, options) else { return Ok(Space::Unusable) };
     // Curves of profiles end at 1: high dynamic range is stated beside them.
@@ -92,12 +92,26 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     }
 }
 
+/// Bytes that [`space`] takes for a profile.
+pub fn working_bytes(bytes: &[u8]) -> usize {
+    if bytes.len() > MAX_BYTES { 0 } else { room::profile(bytes.len(), has_tables(bytes)) }
+}
+
+/// The tags of a profile: their names, places and lengths.
+fn tags(bytes: &[u8]) -> impl Iterator<Item = &[u8; 12]> {
+    let parts = bytes.get(HEADER_BYTES..).and_then(|rest| rest.split_first_chunk());
+    let (count, tags) = parts.map_or((0, &[][..]), |(count, tags)| (u32::from_be_bytes(*count), tags));
+    tags.as_chunks().0.iter().take(count as usize)
+}
+
+fn has_tables(bytes: &[u8]) -> bool {
+    tags(bytes).any(|tag| tag.starts_with(b"A2B"))
+}
+
 /// Whether the lengths of all tags are together not much more than the profile: each is unpacked by itself.
 fn shares_little(bytes: &[u8]) -> bool {
-    let Some((count, tags)) = bytes.get(HEADER_BYTES..).and_then(|rest| rest.split_first_chunk()) else { return false };
-    let tags = tags.as_chunks::<12>().0.iter().take(u32::from_be_bytes(*count) as usize);
-    let total: u64 = tags.map(|&[.., a, b, c, d]| u64::from(u32::from_be_bytes([a, b, c, d]))).sum();
-    total <= (MAX_SHARING * bytes.len()) as u64
+    let total: u64 = tags(bytes).map(|&[.., a, b, c, d]| u64::from(u32::from_be_bytes([a, b, c, d]))).sum();
+    bytes.len() > HEADER_BYTES && total <= (MAX_SHARING * bytes.len()) as u64
 }
 
 /// The space of a profile for PQ or HLG.

@@ -33,6 +33,7 @@ use super::tiff;
 use crate::error::Result;
 use curve::Curve;
 use image::ImageFormat;
+use std::borrow::Cow;
 
 /// How the colours of a picture were understood.
 #[repr(i32)]
@@ -68,12 +69,8 @@ impl Space {
     pub fn of(bytes: &[u8], format: Format, exif: &Exif) -> Result<Self> {
         let profile = match format {
             Format::Raster(ImageFormat::Png) => return png::space(bytes),
-            Format::Raster(ImageFormat::Jpeg) => icc::of_segments(jpeg_segments(bytes))?,
-            Format::Raster(ImageFormat::WebP) => {
-                riff_chunks(bytes).find(|c| c.0 == b"ICCP").map(|(_, profile)| profile.into())
-            }
-            Format::Tiff => tiff::profile(bytes).map(Into::into),
-            Format::Raster(_) | Format::Exr | Format::Radiance => return Ok(Self::Unstated),
+            Format::Exr | Format::Radiance => return Ok(Self::Unstated),
+            _ => profile(bytes, format)?,
         };
         // Floating-point numbers are encoded only if a profile says so.
         let is_float = format == Format::Tiff && tiff::is_float(bytes);
@@ -84,6 +81,19 @@ impl Space {
             None => exif.colour.space(),
         }
     }
+}
+
+/// The ICC profile in a file.
+pub fn profile(bytes: &[u8], format: Format) -> Result<Option<Cow<'_, [u8]>>> {
+    Ok(match format {
+        Format::Raster(ImageFormat::Png) => png::profile(bytes)?.map(Into::into),
+        Format::Raster(ImageFormat::Jpeg) => icc::of_segments(jpeg_segments(bytes))?,
+        Format::Raster(ImageFormat::WebP) => {
+            riff_chunks(bytes).find(|c| c.0 == b"ICCP").map(|(_, profile)| profile.into())
+        }
+        Format::Tiff => tiff::profile(bytes).map(Into::into),
+        Format::Raster(_) | Format::Exr | Format::Radiance => None,
+    })
 }
 
 /// The colour space by the EXIF notes.

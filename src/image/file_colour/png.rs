@@ -13,11 +13,19 @@ const UNIT: f64 = 100_000.0;
 /// Exponents of `gAMA` that a picture can mean. [convention]
 const EXPONENTS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
+/// The content of a chunk before the pixels.
+fn find<'a>(bytes: &'a [u8], wanted: &[u8; 4]) -> Option<&'a [u8]> {
+    let mut chunks = png_chunks(bytes).take_while(|c| c.0 != b"IDAT");
+    chunks.find(|c| c.0 == wanted).map(|(.., content)| content)
+}
+
+/// The colour profile, unpacked.
+pub fn profile(bytes: &[u8]) -> Result<Option<Vec<u8>>> {
+    find(bytes, b"iCCP").map_or(Ok(None), icc::of_chunk)
+}
+
 pub fn space(bytes: &[u8]) -> Result<Space> {
-    let find = |wanted: &[u8; 4]| {
-        let mut chunks = png_chunks(bytes).take_while(|c| c.0 != b"IDAT");
-        chunks.find(|c| c.0 == wanted).map(|(.., content)| content)
-    };
+    let find = |wanted| find(bytes, wanted);
     let mut is_stated = false;
     if let Some(&[primaries, transfer, 0, range, ..]) = find(b"cICP") {
         is_stated = true;

@@ -34,6 +34,12 @@ pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     Ok((layout.width, layout.height, layout.channels()))
 }
 
+/// Bytes that reading the first picture takes beside it.
+pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
+    let (layout, _) = layout(bytes)?;
+    Ok(room::UNPACKING + layout.chunk_bytes() + layout.row_bytes())
+}
+
 /// Whether the samples of the first picture are floating-point numbers.
 pub(super) fn is_float(bytes: &[u8]) -> bool {
     layout(bytes).is_ok_and(|(layout, _)| layout.depth.is_float())

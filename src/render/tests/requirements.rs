@@ -121,6 +121,23 @@ fn glass_that_would_bend_light_is_named() {
 }
 
 #[test]
+fn a_lamp_without_area_is_no_light() {
+    let with = |lamp: Mesh| {
+        let materials = vec![matt(0.5, 0.0), matt(0.0, 30.0)];
+        let scene = Scene { meshes: vec![inward_sphere(2.0, 0), lamp], materials, ..Scene::default() };
+        world(scene).requirements().clone()
+    };
+    let lamp = |width: f32| Mesh::parallelogram(Vec3::Y, Vec3::X * width, Vec3::Z, 1);
+    assert!(with(lamp(1e-3)).surfaces);
+    for flat in [lamp(0.0), Mesh { triangles: vec![[0, 1, 1], [2, 2, 2]], ..lamp(1.0) }] {
+        let found = with(flat);
+        assert!(!found.surfaces && found.left_out().contains(&"No surface emits.".to_string()));
+    }
+    // One triangle with an area is enough.
+    assert!(with(Mesh { triangles: vec![[0, 1, 1], [0, 1, 2]], ..lamp(1.0) }).surfaces);
+}
+
+#[test]
 fn bounces_follow_from_the_albedo() {
     let of = |albedo: f32| Requirements { albedo: Vec3::new(0.0, albedo, 0.1), ..Requirements::default() };
     assert_eq!(of(0.5).bounces(0.1), Some(4));

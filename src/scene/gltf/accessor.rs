@@ -2,7 +2,7 @@
 
 use super::container::{File, missing};
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec};
 use gltf::json::accessor::{self, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
@@ -108,6 +108,16 @@ fn layout(accessor: &accessor::Accessor) -> Result<(ComponentType, usize)> {
 /// The number of elements that an accessor declares; nothing else is checked.
 pub fn count(file: &File, index: Index<accessor::Accessor>) -> Result<u64> {
     Ok(find(file, index)?.count.0)
+}
+
+/// Reads colours of three or four numbers; the fourth is 1 where there are three.
+pub fn colours(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; 4]>> {
+    let is_opaque = layout(find(file, index)?)?.1 == 3;
+    if !is_opaque {
+        return vectors(file, index);
+    }
+    let colours: Vec<[f32; 3]> = vectors(file, index)?;
+    try_collect(colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]))
 }
 
 /// Reads vectors of `N` numbers; normalised integers are scaled to `[0, 1]` or `[-1, 1]`.

@@ -1,9 +1,11 @@
 //! The outer layers of a file: GLB chunks; buffers and images embedded in the file, in `data:` URIs, or in separate
 //! files.
 
+use super::document;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io::read_file;
 use crate::image::try_with_capacity;
+use crate::scene::Unrendered;
 use gltf::json::{Index, Root, buffer};
 use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
@@ -12,19 +14,29 @@ const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: &[u8] = b"JSON";
 const BINARY_CHUNK: &[u8] = b"BIN\0";
 
+/// Where the files are that a file names.
+#[derive(Clone, Copy)]
+pub struct Folder<'a> {
+    /// Paths are relative to it.
+    pub path: Option<&'a Path>,
+    /// Whether they may lead out of it.
+    pub is_open: bool,
+}
+
 /// A parsed file with the contents of all its buffers.
 pub struct File<'a> {
     pub root: Root,
+    /// The parts that are not rendered, as far as the JSON shows them.
+    pub unrendered: Vec<Unrendered>,
     buffers: Vec<Cow<'a, [u8]>>,
-    base: Option<&'a Path>,
+    folder: Folder<'a>,
 }
 
 impl<'a> File<'a> {
-    pub fn parse(bytes: &'a [u8], base: Option<&'a Path>) -> Result<Self> {
+    pub fn parse(bytes: &'a [u8], folder: Folder<'a>) -> Result<Self> {
         let (json, blob) = split(bytes)?;
-        let root: Root = gltf::json::deserialize::from_slice(json)
-            .map_err(|e| Error::format(format!("not a glTF file, or its JSON is broken: {e}")))?;
-        let mut file = Self { root, buffers: Vec::new(), base };
+        let (root, unrendered) = document::parse(json)?;
+        let mut file = Self { root, unrendered, buffers: Vec::new(), folder };
         for (i, buffer) in file.root.buffers.iter().enumerate() {
             let bytes = file.buffer(i, buffer, blob).map_err(|e| e.within(format_args!("buffer {i}")))?;
             file.buffers.push(bytes);
@@ -74,8 +86,8 @@ impl<'a> File<'a> {
             }
             return decode_base64(payload);
         }
-        let relative = safe_path(uri)?;
-        let base = self.base.ok_or_else(|| {
+        let relative = relative_path(uri, self.folder.is_open)?;
+        let base = self.folder.path.ok_or_else(|| {
             Error::argument(format!(
                 "the file refers to {uri:?} beside it: give the folder of that file, or load by path"
             ))
@@ -120,18 +132,25 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     json.map(|json| (json, binary)).ok_or_else(|| Error::format("the GLB file has no JSON chunk"))
 }
 
-/// A relative path that cannot leave its folder.
-fn safe_path(uri: &str) -> Result<PathBuf> {
-    let refused = |why: &str| Error::format(format!("the external file {uri:?} {why}"));
-    let bytes = decode_percent(uri).ok_or_else(|| refused("is not validly percent-encoded"))?;
-    let name = String::from_utf8(bytes).map_err(|_| refused("is not valid UTF-8"))?;
-    if name.contains(['\\', ':', '\0']) {
-        return Err(refused("is not a relative path"));
+/// The path in a URI, which cannot leave its folder unless that is open.
+fn relative_path(uri: &str, is_open: bool) -> Result<PathBuf> {
+    let broken = |why: &str| Error::format(format!("the external file {uri:?} {why}"));
+    let refused = |why: &str| Error::new(ErrorKind::Unsupported, format!("the external file {uri:?} {why}"));
+    let bytes = decode_percent(uri).ok_or_else(|| broken("is not validly percent-encoded"))?;
+    let name = String::from_utf8(bytes).map_err(|_| broken("is not valid UTF-8"))?;
+    if name.contains('\0') {
+        return Err(broken("has a zero in its name"));
+    }
+    if name.contains(['\\', ':']) {
+        return Err(refused("is not a relative path with /: only files are read, no other resources"));
     }
     let path = PathBuf::from(name);
-    let inside = path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
-    if !inside || path.file_name().is_none() {
-        return Err(refused("must lie in the file's own folder or below"));
+    if path.file_name().is_none() {
+        return Err(broken("is no file"));
+    }
+    let is_inside = path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    if !is_inside && !is_open {
+        return Err(refused("lies outside the folder of the scene; allow this by luxfer_scene_load_params.outside"));
     }
     Ok(path)
 }
@@ -192,12 +211,19 @@ mod tests {
     }
 
     #[test]
-    fn paths_cannot_leave_their_folder() {
-        assert_eq!(safe_path("a%20b/c.png").unwrap(), PathBuf::from("a b/c.png"));
-        for bad in
-            ["../x", "a/../../x", "/etc/passwd", "%2e%2e/x", "http://host/x", "a\\..\\x", "C:/x", "", ".", "%zz", "%2"]
-        {
-            assert_eq!(safe_path(bad).unwrap_err().kind, ErrorKind::Format, "{bad}");
+    fn paths_leave_their_folder_only_where_they_may() {
+        for is_open in [false, true] {
+            assert_eq!(relative_path("a%20b/c.png", is_open).unwrap(), PathBuf::from("a b/c.png"));
+            for bad in ["", "..", "%zz", "%2", "a%00b"] {
+                assert_eq!(relative_path(bad, is_open).unwrap_err().kind, ErrorKind::Format, "{bad}");
+            }
+            for other in ["http://host/x", "a\\..\\x", "C:/x"] {
+                assert_eq!(relative_path(other, is_open).unwrap_err().kind, ErrorKind::Unsupported, "{other}");
+            }
+        }
+        for outside in ["../x", "a/../../x", "/etc/passwd", "%2e%2e/x"] {
+            assert_eq!(relative_path(outside, false).unwrap_err().kind, ErrorKind::Unsupported, "{outside}");
+            assert!(relative_path(outside, true).is_ok(), "{outside}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Writes a scene as a single GLB file.
 
-use super::import::IES;
+use super::features::IES;
 use super::material::transform_matrix;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::srgb_to_linear;

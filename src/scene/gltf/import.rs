@@ -1,14 +1,16 @@
 //! Converts the nodes, meshes, cameras and lights of a file to world space.
 
-use super::Budget;
-use super::accessor;
-use super::container::{File, missing};
+use super::container::{File, Folder, missing};
+use super::features::{IES, READ};
+use super::instances::{instances, local_transform};
 use super::material::Materials;
+use super::{Budget, Options, accessor};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{try_collect, try_vec};
 use crate::photometry::{Luminaire, ies};
+use crate::scene::unrendered::note;
 use crate::scene::{Camera, Material, Mesh, PunctualLight, Scene};
-use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -21,31 +23,21 @@ use std::sync::Arc;
 /// Maximum number of vertices, and of triangles, of all meshes including instances.
 const MAX_ELEMENTS: u64 = 1 << 26;
 
-/// The extension for measured luminaires as IES files.
-pub const IES: &str = "EXT_lights_ies";
-
-const EXTENSIONS: [&str; 8] = [
-    IES,
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-];
+/// Maximum number of meshes: of primitives of all nodes and instances.
+const MAX_MESHES: usize = 1 << 20;
 
 /// Reads a GLB or glTF file held in memory; external files it refers to are resolved relative to `base`.
 ///
 /// Errors: `Format` for broken, truncated or inconsistent files, `Unsupported` for features this library lacks, `Io`
 /// for unreadable external files, and errors of the budget.
-pub fn import(bytes: &[u8], base: Option<&Path>, budget: Budget) -> Result<Scene> {
-    let file = File::parse(bytes, base)?;
-    if let Some(unknown) = file.root.extensions_required.iter().find(|e| !EXTENSIONS.contains(&e.as_str())) {
+pub fn import(bytes: &[u8], base: Option<&Path>, options: Options) -> Result<Scene> {
+    let Options { budget, unit, is_open } = options;
+    let mut file = File::parse(bytes, Folder { path: base, is_open })?;
+    if let Some(unknown) = file.root.extensions_required.iter().find(|e| !READ.contains(&e.as_str())) {
         let message = format!("the file requires the extension {unknown}; save it without that extension");
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
-    let mut scene = Scene::default();
+    let mut scene = Scene { unrendered: std::mem::take(&mut file.unrendered), ..Scene::default() };
     let mut materials = Materials::new(&file, budget);
     for (i, json) in file.root.materials.iter().enumerate() {
         scene.materials.push(materials.read(i, json).map_err(|e| e.within(format_args!("material {i}")))?);
@@ -56,11 +48,12 @@ pub fn import(bytes: &[u8], base: Option<&Path>, budget: Budget) -> Result<Scene
         budget,
         scene,
         default_material: None,
+        tinted: Vec::new(),
         profiles: Vec::new(),
         vertices: 0,
         triangles: 0,
     };
-    importer.nodes()?;
+    importer.nodes(DMat4::from_scale(DVec3::splat(unit)))?;
     let scene = importer.scene;
     scene.validate().map_err(|e| Error { kind: ErrorKind::Format, ..e })?;
     Ok(scene)
@@ -68,10 +61,12 @@ pub fn import(bytes: &[u8], base: Option<&Path>, budget: Budget) -> Result<Scene
 
 struct Importer<'a> {
     file: &'a File<'a>,
-    budget: Budget<'a>,
+    budget: &'a dyn Budget,
     scene: Scene,
     /// Created for the first primitive without a material.
     default_material: Option<usize>,
+    /// Materials multiplied by a colour: the material, the colour and the product.
+    tinted: Vec<(usize, [f32; 4], usize)>,
     /// Index of each IES file read so far; its distribution in the scene has the same position.
     profiles: Vec<usize>,
     vertices: u64,
@@ -80,11 +75,10 @@ struct Importer<'a> {
 
 impl Importer<'_> {
     /// Visits every node of the default scene once, parents first, in file order.
-    fn nodes(&mut self) -> Result<()> {
+    fn nodes(&mut self, world: DMat4) -> Result<()> {
         let file = self.file;
         let mut visited = try_vec(file.root.nodes.len(), false)?;
-        let mut stack: Vec<(usize, DMat4)> =
-            roots(file)?.into_iter().rev().map(|root| (root, DMat4::IDENTITY)).collect();
+        let mut stack: Vec<(usize, DMat4)> = roots(file)?.into_iter().rev().map(|root| (root, world)).collect();
         while let Some((index, parent)) = stack.pop() {
             let node = file.root.nodes.get(index).ok_or_else(|| missing("node", index, file.root.nodes.len()))?;
             if std::mem::replace(&mut visited[index], true) {
@@ -109,8 +103,10 @@ impl Importer<'_> {
             let mesh = root.get(index).ok_or_else(|| missing("mesh", index.value(), root.meshes.len()))?;
             let own_name = mesh.name.as_ref().filter(|n| !n.is_empty());
             let name = name.or(own_name).cloned().unwrap_or_else(|| format!("Mesh {}", index.value()));
-            for primitive in &mesh.primitives {
-                self.primitive(&name, primitive, transform).map_err(|e| e.within(format_args!("mesh {name:?}")))?;
+            for transform in instances(self.file, node, transform)? {
+                for primitive in &mesh.primitives {
+                    self.primitive(&name, primitive, transform).map_err(|e| e.within(format_args!("mesh {name:?}")))?;
+                }
             }
         }
         if let Some(index) = node.camera {
@@ -243,6 +239,14 @@ impl Importer<'_> {
             Some(index) => return Err(missing("material", index.value(), self.file.root.materials.len())),
             None => self.default_material(),
         };
+        let material = match attribute(Semantic::Colors(0)) {
+            Some(index) => {
+                let colours = accessor::colours(self.file, index)?;
+                checked("COLOR_0", colours.len())?;
+                self.tint(name, material, &colours)?
+            }
+            None => material,
+        };
         positions.shrink_to_fit();
         self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, triangles });
         Ok(())
@@ -259,10 +263,14 @@ impl Importer<'_> {
         let vertices = accessor::count(self.file, positions)?;
         let corners = indices.map_or(Ok(vertices), |index| accessor::count(self.file, index))?;
         let triangles = if mode == Mode::Triangles { corners / 3 } else { corners.saturating_sub(2) };
+        if self.scene.meshes.len() >= MAX_MESHES {
+            let message = format!("the file has more than {MAX_MESHES} meshes, counting every instance");
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
         self.vertices = self.vertices.saturating_add(vertices);
         self.triangles = self.triangles.saturating_add(triangles);
         if self.vertices.max(self.triangles) <= MAX_ELEMENTS {
-            return (self.budget)(vertices * vertex_bytes + 12 * triangles);
+            return self.budget.keep(vertices * vertex_bytes + 12 * triangles);
         }
         Err(Error::new(
             ErrorKind::Unsupported,
@@ -276,6 +284,30 @@ impl Importer<'_> {
             materials.push(Material { name: "Default".into(), ..Material::default() });
             materials.len() - 1
         })
+    }
+
+    /// The material for vertices with such colours: multiplied by the colour if all are equal.
+    fn tint(&mut self, name: &str, material: usize, colours: &[[f32; 4]]) -> Result<usize> {
+        let Some((&first, rest)) = colours.split_first() else { return Ok(material) };
+        if rest.iter().any(|colour| *colour != first) {
+            let effect = "the vertices have one colour, that of the material";
+            note(&mut self.scene.unrendered, "COLOR_0", effect, || format!("mesh {name:?}"));
+            return Ok(material);
+        }
+        if first == [1.0; 4] {
+            return Ok(material);
+        }
+        if let Some((.., known)) = self.tinted.iter().find(|(of, colour, _)| (*of, *colour) == (material, first)) {
+            return Ok(*known);
+        }
+        let [r, g, b, alpha] = first.map(|v| v.clamp(0.0, 1.0));
+        let plain = &self.scene.materials[material];
+        let product =
+            Material { base_color: plain.base_color * Vec3::new(r, g, b), alpha: plain.alpha * alpha, ..plain.clone() };
+        self.scene.materials.push(product);
+        let index = self.scene.materials.len() - 1;
+        self.tinted.push((material, first, index));
+        Ok(index)
     }
 
     fn camera(&mut self, name: String, camera: &json::Camera, transform: DMat4) -> Result<()> {
@@ -321,18 +353,6 @@ fn roots(file: &File) -> Result<Vec<usize>> {
             Ok(roots)
         }
     }
-}
-
-fn local_transform(node: &json::Node) -> DMat4 {
-    if let Some(matrix) = node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
-    }
-    let scale = node.scale.unwrap_or([1.0; 3]);
-    let rotation = node.rotation.unwrap_or_default().0.map(f64::from);
-    let rotation = DQuat::from_array(rotation);
-    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
-    let translation = node.translation.unwrap_or([0.0; 3]);
-    DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, Vec3::from(translation).as_dvec3())
 }
 
 fn bring_in<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(T) -> U) -> Result<Vec<U>> {

@@ -23,14 +23,14 @@ type Key = (Source, Encoding, [Wrap; 2]);
 /// Reads materials in order and collects their textures.
 pub struct Materials<'a> {
     file: &'a File<'a>,
-    budget: Budget<'a>,
+    budget: &'a dyn Budget,
     pub textures: Vec<Texture>,
     keys: Vec<Key>,
     pixels: u64,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(file: &'a File<'a>, budget: Budget<'a>) -> Self {
+    pub fn new(file: &'a File<'a>, budget: &'a dyn Budget) -> Self {
         Self { file, budget, textures: Vec::new(), keys: Vec::new(), pixels: 0 }
     }
 
@@ -58,7 +58,7 @@ impl<'a> Materials<'a> {
             roughness: pbr.roughness_factor.0.clamp(0.0, 1.0),
             metallic_roughness_texture: self.optional(pbr.metallic_roughness_texture.as_ref(), Encoding::Linear)?,
             normal_texture: match &json.normal_texture {
-                Some(normal) => Some(self.reference(normal.index, normal.tex_coord, None, Encoding::Linear)?),
+                Some(normal) => self.reference(normal.index, normal.tex_coord, None, Encoding::Linear)?,
                 None => None,
             },
             normal_scale: json.normal_texture.as_ref().map_or(1.0, |n| n.scale),
@@ -73,7 +73,7 @@ impl<'a> Materials<'a> {
     fn optional(&mut self, info: Option<&texture::Info>, encoding: Encoding) -> Result<Option<TextureRef>> {
         let Some(info) = info else { return Ok(None) };
         let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
-        self.reference(info.index, info.tex_coord, transform, encoding).map(Some)
+        self.reference(info.index, info.tex_coord, transform, encoding)
     }
 
     fn reference(
@@ -82,18 +82,19 @@ impl<'a> Materials<'a> {
         uv_set: u32,
         transform: Option<&extensions::texture::TextureTransform>,
         encoding: Encoding,
-    ) -> Result<TextureRef> {
+    ) -> Result<Option<TextureRef>> {
         let uv_set = transform.and_then(|t| t.tex_coord).unwrap_or(uv_set) as usize;
         if uv_set > 1 {
             let message = format!("texCoord is {uv_set}; only the sets 0 and 1 are read");
             return Err(Error::new(ErrorKind::Unsupported, message));
         }
         let texture = self.texture(index, encoding).map_err(|e| e.within(format_args!("texture {}", index.value())))?;
-        Ok(TextureRef { texture, uv_set, transform: transform.map_or(Mat3::IDENTITY, matrix) })
+        let transform = transform.map_or(Mat3::IDENTITY, matrix);
+        Ok(texture.map(|texture| TextureRef { texture, uv_set, transform }))
     }
 
-    /// The index of a texture in the scene; decodes it at its first use.
-    fn texture(&mut self, index: Index<texture::Texture>, encoding: Encoding) -> Result<usize> {
+    /// The index of a texture in the scene, unless it has no image; decodes it at its first use.
+    fn texture(&mut self, index: Index<texture::Texture>, encoding: Encoding) -> Result<Option<usize>> {
         let root = &self.file.root;
         let json = root.get(index).ok_or_else(|| missing("texture", index.value(), root.textures.len()))?;
         let wrap = match json.sampler {
@@ -103,11 +104,15 @@ impl<'a> Materials<'a> {
                 [wrapping(&sampler.wrap_s)?, wrapping(&sampler.wrap_t)?]
             }
         };
+        // As the crate `gltf` has it.
+        if json.source.value() == u32::MAX as usize {
+            return Ok(None);
+        }
         let image = root.get(json.source).ok_or_else(|| missing("image", json.source.value(), root.images.len()))?;
         let source = image.buffer_view.map_or(Source::Image(json.source.value()), |view| Source::View(view.value()));
         let key = (source, encoding, wrap);
         if let Some(known) = self.keys.iter().position(|k| *k == key) {
-            return Ok(known);
+            return Ok(Some(known));
         }
 
         // An image decoded with another encoding or wrapping becomes a separate texture.
@@ -121,11 +126,20 @@ impl<'a> Materials<'a> {
         let name = name.cloned().unwrap_or_else(|| format!("Image {}", json.source.value()));
         self.textures.push(Texture { name, image: decoded, wrap });
         self.keys.push(key);
-        Ok(self.textures.len() - 1)
+        Ok(Some(self.textures.len() - 1))
     }
 
     /// Decodes an image after checking the size in its header against the budget.
     fn decode(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
+        let mut image = None;
+        self.budget.lend(io::working_bytes(bytes)?, &mut || {
+            image = Some(self.decode_within(bytes, encoding)?);
+            Ok(())
+        })?;
+        image.ok_or_else(|| Error::new(ErrorKind::Internal, "the budget ran no work"))
+    }
+
+    fn decode_within(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
         let (width, height, channels) = io::probe(bytes)?;
         let pixels = width as u64 * height as u64;
         self.pixels += pixels;
@@ -133,7 +147,7 @@ impl<'a> Materials<'a> {
             let message = format!("the textures have more than {MAX_PIXELS} pixels in all");
             return Err(Error::new(ErrorKind::Unsupported, message));
         }
-        (self.budget)(pixels * (channels * size_of::<f32>()) as u64)?;
+        self.budget.keep(pixels * (channels * size_of::<f32>()) as u64)?;
         io::decode(bytes, encoding)
     }
 }

@@ -1,14 +1,15 @@
 //! glTF 2.0 import and export: GLB, or JSON with embedded or external buffers and images.
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
-//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material),
-//! `KHR_mesh_quantization` and `EXT_lights_ies` (type C).
+//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants` (the
+//! default one), `KHR_mesh_quantization`, `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
 //!
-//! Import: every node × primitive becomes one mesh in world space, named after its node. Not imported: animation,
-//! skins and morph targets (the rest pose is used), vertex colours, tangents (the renderer derives them), occlusion
-//! textures, points and lines, orthographic cameras, more than two sets of texture coordinates, and material
-//! properties of other extensions such as `KHR_materials_specular`, `_clearcoat`, `_sheen` and `_volume`. A required
-//! extension not listed above is an error; an optional one is ignored.
+//! Import: every node × instance × primitive becomes one mesh in world space, named after its node. A vertex colour
+//! that all vertices share becomes part of the material. Not imported: animation, skins and morph targets (the rest
+//! pose is used), other vertex colours, tangents (the renderer derives them), occlusion textures, points and lines,
+//! orthographic cameras, more than two sets of texture coordinates, and material properties of other extensions such
+//! as `KHR_materials_specular`, `_clearcoat`, `_sheen` and `_volume`. A required extension not listed above is an
+//! error; an optional one is ignored. All that is left out and would be seen is listed in [`Scene::unrendered`].
 //!
 //! Export: a flat list of nodes, one per mesh, camera and light. The environment is left out, because glTF cannot hold
 //! it.
@@ -19,8 +20,11 @@
 
 mod accessor;
 mod container;
+mod document;
 mod export;
+mod features;
 mod import;
+mod instances;
 mod material;
 #[cfg(test)]
 mod tests;
@@ -33,13 +37,47 @@ use crate::error::Result;
 use crate::image::io;
 use std::path::Path;
 
-/// Called with the size in bytes of each mesh and texture before allocation; an error aborts the import.
-pub type Budget<'a> = &'a dyn Fn(u64) -> Result<()>;
+/// The memory that an import may take; an error aborts it.
+pub trait Budget {
+    /// Called with the size in bytes of each mesh and texture before allocation.
+    fn keep(&self, bytes: u64) -> Result<()>;
+
+    /// Runs work that takes so many bytes until it is done.
+    fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()>;
+}
 
 /// A budget without limit.
-pub const UNLIMITED: Budget<'static> = &|_| Ok(());
+const UNLIMITED: &dyn Budget = &Unlimited;
+
+struct Unlimited;
+
+impl Budget for Unlimited {
+    fn keep(&self, _: u64) -> Result<()> {
+        Ok(())
+    }
+
+    fn lend(&self, _: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()> {
+        work()
+    }
+}
+
+/// How a file is read.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    pub budget: &'a dyn Budget,
+    /// Length in metres of a unit of the file's coordinates, positive and finite.
+    pub unit: f64,
+    /// Whether the file may name files outside its folder.
+    pub is_open: bool,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { budget: UNLIMITED, unit: 1.0, is_open: false }
+    }
+}
 
 /// Reads a `.glb` or `.gltf` file; external files are resolved relative to its folder.
-pub fn load(path: &Path, budget: Budget) -> Result<Scene> {
-    import(&io::read_file(path)?, path.parent(), budget).map_err(|e| e.within(path.display()))
+pub fn load(path: &Path, options: Options) -> Result<Scene> {
+    import(&io::read_file(path)?, path.parent(), options).map_err(|e| e.within(path.display()))
 }

@@ -9,8 +9,10 @@ use serde_json::{Value, json};
 use std::cell::Cell;
 use std::sync::Arc;
 
+mod features;
+
 fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
-    super::import(bytes, base, UNLIMITED)
+    super::import(bytes, base, Options::default())
 }
 
 /// One of each object that the format can hold.
@@ -82,6 +84,7 @@ fn scene() -> Scene {
         distributions: Vec::new(),
         environment: None,
         cameras: vec![Camera { name: "View".into(), ..camera }],
+        unrendered: Vec::new(),
     }
 }
 
@@ -296,7 +299,7 @@ fn lying_files_are_errors_that_say_why() {
         ("KHR_draco", |f| f["extensionsRequired"] = json!(["KHR_draco_mesh_compression"])),
         ("at most", |f| f["accessors"][0] = json!({ "componentType": 5126, "count": 60_000_000, "type": "VEC3" })),
         ("beside it", |f| f["buffers"][0]["uri"] = "mesh.bin".into()),
-        ("own folder", |f| f["buffers"][0]["uri"] = "../mesh.bin".into()),
+        ("outside the folder", |f| f["buffers"][0]["uri"] = "../mesh.bin".into()),
     ];
     for (i, (message, edit)) in cases.into_iter().enumerate() {
         let error = import(&triangle_file(edit), None).expect_err(&format!("case {i}: {message}"));
@@ -319,22 +322,37 @@ fn lying_files_are_errors_that_say_why() {
 #[test]
 fn a_budget_is_asked_for_all_that_will_be_made() {
     let glb = export(&scene()).unwrap();
-    let asked = Cell::new(0);
+    /// What is kept, and the largest loan.
+    struct Limited {
+        limit: u64,
+        kept: Cell<u64>,
+        lent: Cell<u64>,
+    }
+    impl Budget for Limited {
+        fn keep(&self, bytes: u64) -> Result<()> {
+            self.kept.set(self.kept.get() + bytes);
+            if self.kept.get() <= self.limit { Ok(()) } else { Err(Error::new(ErrorKind::OutOfMemory, "enough")) }
+        }
+
+        fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()> {
+            self.lent.set(self.lent.get().max(bytes));
+            work()
+        }
+    }
     let read = |limit: u64| {
-        asked.set(0);
-        super::import(&glb, None, &|bytes| {
-            asked.set(asked.get() + bytes);
-            if asked.get() <= limit { Ok(()) } else { Err(Error::new(ErrorKind::OutOfMemory, "enough")) }
-        })
+        let budget = Limited { limit, kept: Cell::new(0), lent: Cell::new(0) };
+        super::import(&glb, None, Options { budget: &budget, ..Options::default() })
+            .map(|scene| (scene, budget.kept.get(), budget.lent.get()))
     };
-    let whole = read(u64::MAX).unwrap();
+    let (whole, kept, lent) = read(u64::MAX).unwrap();
+    assert!(lent > 0, "decoding a texture takes memory");
     let meshes = whole.meshes.iter().map(|m| {
         let uvs: usize = m.uvs.iter().map(|uvs| size_of_val(&uvs[..])).sum();
         size_of_val(&m.positions[..]) + size_of_val(&m.normals[..]) + size_of_val(&m.triangles[..]) + uvs
     });
     let textures = whole.textures.iter().map(|t| size_of_val(&t.image.data[..]));
     let needed = meshes.chain(textures).sum::<usize>() as u64;
-    assert_eq!(asked.get(), needed);
+    assert_eq!(kept, needed);
     for limit in [0, needed / 2, needed - 1] {
         assert_eq!(read(limit).unwrap_err().kind, ErrorKind::OutOfMemory, "{limit} of {needed}");
     }

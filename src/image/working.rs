@@ -1,0 +1,46 @@
+//! Bytes that reading a picture file takes beside the picture that it becomes: for budgets, which count them while the
+//! file is read.
+
+use super::containers::png_chunks;
+use super::file_colour::{self, icc};
+use super::format::Format;
+use super::{openexr, radiance, raster, room, tiff};
+use crate::error::Result;
+use image::ImageFormat;
+
+/// An upper bound, from the headers alone. No codec runs, and nothing is allocated but a colour profile, which is freed
+/// again.
+pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
+    let format = Format::of(bytes)?;
+    let pixels = match format {
+        Format::Exr => openexr::working_bytes(bytes)?,
+        Format::Radiance => radiance::working_bytes(bytes)?,
+        Format::Tiff => tiff::working_bytes(bytes)?,
+        Format::Raster(ImageFormat::Png) => png(bytes),
+        Format::Raster(format) => raster::working_bytes(bytes, format)?,
+    };
+    let profile = file_colour::profile(bytes, format)?;
+    let profile = profile.map_or(0, |profile| profile.len().saturating_add(icc::working_bytes(&profile)));
+    Ok(pixels.saturating_add(profile) as u64)
+}
+
+/// For a PNG: its samples as they are stored, in as many bytes as the decoder makes of them, and its other chunks.
+fn png(bytes: &[u8]) -> usize {
+    let mut total = 0usize;
+    for (name, _, content) in png_chunks(bytes) {
+        let own = match (name, content) {
+            (b"IHDR", &[a, b, c, d, e, f, g, h, depth, colour, ..]) => {
+                let [width, height] = [[a, b, c, d], [e, f, g, h]].map(|side| u32::from_be_bytes(side) as usize);
+                // Grey, RGB and palettes may have a transparent colour, which becomes alpha.
+                let channels = if matches!(colour, 0 | 4) { 2 } else { 4 };
+                let pixel = channels * if depth == 16 { 2 } else { 1 };
+                let row = room::pixels(bytes, ImageFormat::Png, width, height, pixel);
+                width.saturating_mul(height).saturating_mul(pixel).saturating_add(row)
+            }
+            // They grow by doubling.
+            _ => room::chunk(name, content.len(), bytes.len()).saturating_mul(2),
+        };
+        total = total.saturating_add(own);
+    }
+    total
+}

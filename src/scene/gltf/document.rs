@@ -1,0 +1,83 @@
+//! The JSON of a file: its version is checked, and it is put into the shape that the crate `gltf` reads, which is
+//! stricter than glTF in places.
+
+use super::features;
+use crate::error::{Error, ErrorKind, Result};
+use crate::scene::unrendered::Unrendered;
+use gltf::json::Root;
+use serde_json::{Map, Number, Value, json};
+
+/// Largest number up to which floats store every integer: 2^53. [rounding]
+const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
+
+/// A file's JSON, and the parts of it that are not rendered.
+pub fn parse(json: &[u8]) -> Result<(Root, Vec<Unrendered>)> {
+    let broken = |e: serde_json::Error| Error::format(format!("not a glTF file, or its JSON is broken: {e}"));
+    let mut document: Value = serde_json::from_slice(json).map_err(broken)?;
+    check_version(&document)?;
+    let unrendered = features::unrendered(&document);
+    tidy(&mut document);
+    if let Value::Object(root) = &mut document {
+        complete(root);
+    }
+    Ok((serde_json::from_value(document).map_err(broken)?, unrendered))
+}
+
+/// Refuses files of glTF 1, and files that ask for more than glTF 2.0.
+fn check_version(document: &Value) -> Result<()> {
+    let asset = document.get("asset");
+    let stated = |key: &str| -> Result<Option<(&str, [u32; 2])>> {
+        let Some(text) = asset.and_then(|asset| asset.get(key)).and_then(Value::as_str) else { return Ok(None) };
+        let numbers = text.split_once('.').and_then(|(major, minor)| Some([major.parse().ok()?, minor.parse().ok()?]));
+        let broken = || Error::format(format!("asset.{key} is {text:?}; it must be two numbers, such as \"2.0\""));
+        numbers.map(|numbers| Some((text, numbers))).ok_or_else(broken)
+    };
+    let unsupported = |key: &str, text: &str| {
+        let message = format!("asset.{key} is {text:?}; only glTF 2.0 is read");
+        Err(Error::new(ErrorKind::Unsupported, message))
+    };
+    match (stated("minVersion")?, stated("version")?) {
+        (Some((text, least)), _) if least > [2, 0] => unsupported("minVersion", text),
+        (_, Some((text, [major, _]))) if major != 2 => unsupported("version", text),
+        _ => Ok(()),
+    }
+}
+
+/// Removes `extras`, which may be of any type, and turns whole numbers that are written as floats into integers.
+fn tidy(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            members.remove("extras");
+            members.values_mut().for_each(tidy);
+        }
+        Value::Array(items) => items.iter_mut().for_each(tidy),
+        Value::Number(number) => {
+            let float = number.as_f64().filter(|v| number.is_f64() && v.fract() == 0.0 && v.abs() <= MAX_INTEGER);
+            if let Some(whole) = float {
+                *number = Number::from(whole as i64);
+            }
+        }
+        Value::Null | Value::Bool(_) | Value::String(_) => {}
+    }
+}
+
+/// Adds members that may be left out, and removes animations, whose targets may lack members.
+fn complete(root: &mut Map<String, Value>) {
+    root.remove("animations");
+    for scene in objects(root, "scenes") {
+        scene.entry("nodes").or_insert_with(|| json!([]));
+    }
+    for texture in objects(root, "textures") {
+        // The picture is WebP, and the other one only for readers that do not know WebP.
+        let source = texture.get("extensions").and_then(|e| e.get(features::WEBP)?.get("source").cloned());
+        if let Some(source) = source {
+            texture.insert("source".into(), source);
+        }
+    }
+}
+
+/// The objects of a list.
+fn objects<'a>(root: &'a mut Map<String, Value>, list: &str) -> impl Iterator<Item = &'a mut Map<String, Value>> {
+    let list = root.get_mut(list).and_then(Value::as_array_mut);
+    list.into_iter().flatten().filter_map(Value::as_object_mut)
+}

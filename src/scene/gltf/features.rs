@@ -1,0 +1,168 @@
+//! Extensions that are read, and the parts of a file that are not rendered.
+
+use crate::scene::unrendered::{Unrendered, note};
+use serde_json::Value;
+
+/// Measured luminaires as IES files.
+pub const IES: &str = "EXT_lights_ies";
+/// Many instances of one mesh.
+pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+/// Textures in WebP files.
+pub const WEBP: &str = "EXT_texture_webp";
+
+/// Extensions that a file may require. Of variants of materials the default ones are shown.
+pub const READ: [&str; 11] = [
+    IES,
+    INSTANCING,
+    WEBP,
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Extensions that change no picture, or whose file has the same data in another form too.
+const INVISIBLE: [&str; 6] = [
+    "EXT_meshopt_compression",
+    "KHR_animation_pointer",
+    "KHR_draco_mesh_compression",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "MSFT_texture_dds",
+];
+
+/// A member that makes an extension do nothing, and the value that it has then and by default.
+type Neutral = (&'static str, f64);
+
+/// Extensions of materials that are not rendered, with the missing effect and their neutral settings.
+const MATERIALS: [(&str, &str, &[Neutral]); 9] = [
+    ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
+    ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),
+    ("KHR_materials_diffuse_transmission", "no light passes diffusely", &[("diffuseTransmissionFactor", 0.0)]),
+    ("KHR_materials_dispersion", "all wavelengths are refracted alike", &[("dispersion", 0.0)]),
+    ("KHR_materials_iridescence", "thin films have no colours", &[("iridescenceFactor", 0.0)]),
+    ("KHR_materials_pbrSpecularGlossiness", "the metallic-roughness values are used", &[]),
+    ("KHR_materials_sheen", "there is no sheen of cloth", &[("sheenColorFactor", 0.0)]),
+    (
+        "KHR_materials_specular",
+        "reflections have their usual strength and colour",
+        &[("specularFactor", 1.0), ("specularColorFactor", 1.0)],
+    ),
+    ("KHR_materials_volume", "light is neither refracted nor absorbed inside", &[("thicknessFactor", 0.0)]),
+];
+
+/// Lists of objects, and the name of one of them.
+const LISTS: [(&str, &str); 9] = [
+    ("materials", "material"),
+    ("meshes", "mesh"),
+    ("nodes", "node"),
+    ("textures", "texture"),
+    ("images", "image"),
+    ("cameras", "camera"),
+    ("scenes", "scene"),
+    ("accessors", "accessor"),
+    ("bufferViews", "buffer view"),
+];
+
+/// Everything in a file that is not rendered and can be seen in its JSON alone.
+pub fn unrendered(document: &Value) -> Vec<Unrendered> {
+    let mut list = Vec::new();
+    for (name, kind) in LISTS {
+        for (index, object) in items(document, name) {
+            let place = || place(kind, index, object);
+            extensions(&mut list, object, &place);
+            match name {
+                "meshes" => mesh(&mut list, object, &place),
+                "nodes" => node(&mut list, object, &place),
+                "textures" => texture(&mut list, object, &place),
+                "cameras" if object.get("type").and_then(Value::as_str) == Some("orthographic") => {
+                    note(&mut list, "orthographic cameras", "they are left out", place);
+                }
+                _ => {}
+            }
+        }
+    }
+    for (index, animation) in items(document, "animations") {
+        note(&mut list, "animations", "the scene is shown at rest", || place("animation", index, animation));
+    }
+    list
+}
+
+fn items<'a>(object: &'a Value, list: &str) -> impl Iterator<Item = (usize, &'a Value)> {
+    object.get(list).and_then(Value::as_array).into_iter().flatten().enumerate()
+}
+
+fn place(kind: &str, index: usize, object: &Value) -> String {
+    match object.get("name").and_then(Value::as_str).filter(|name| !name.is_empty()) {
+        Some(name) => format!("{kind} {name:?}"),
+        None => format!("{kind} {index}"),
+    }
+}
+
+/// Notes the extensions of an object that are not rendered.
+fn extensions(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> String) {
+    for (name, settings) in object.get("extensions").and_then(Value::as_object).into_iter().flatten() {
+        // A texture in another format has its own test.
+        if READ.contains(&name.as_str()) || INVISIBLE.contains(&name.as_str()) || name == BASISU {
+            continue;
+        }
+        match MATERIALS.iter().find(|known| known.0 == name) {
+            Some((_, _, neutral)) if does_nothing(settings, neutral) => {}
+            Some((_, effect, _)) => note(list, name, effect, place),
+            None => note(list, name, "the extension is not read", place),
+        }
+    }
+}
+
+/// Whether all settings have the values with which an extension does nothing.
+fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
+    let is = |value: &Value, wanted: f64| match value {
+        Value::Array(numbers) => numbers.iter().all(|number| number.as_f64() == Some(wanted)),
+        value => value.as_f64() == Some(wanted),
+    };
+    // Textures multiply: they change a factor of 1, not one of 0.
+    let has_texture = || settings.as_object().is_some_and(|s| s.keys().any(|key| key.ends_with("Texture")));
+    let is_factor = neutral.iter().any(|&(_, wanted)| wanted != 0.0);
+    !neutral.is_empty()
+        && neutral.iter().all(|&(key, wanted)| settings.get(key).is_none_or(|value| is(value, wanted)))
+        && !(is_factor && has_texture())
+}
+
+/// Textures in Basis Universal files.
+const BASISU: &str = "KHR_texture_basisu";
+
+fn texture(list: &mut Vec<Unrendered>, texture: &Value, place: &dyn Fn() -> String) {
+    let has = |name: &str| texture.get("extensions").is_some_and(|e| e.get(name).is_some());
+    if texture.get("source").is_none() && has(BASISU) {
+        note(list, BASISU, "the texture is left out", place);
+    }
+}
+
+fn mesh(list: &mut Vec<Unrendered>, mesh: &Value, place: &dyn Fn() -> String) {
+    for (_, primitive) in items(mesh, "primitives") {
+        // Points, lines, loops and strips of lines.
+        if primitive.get("mode").and_then(Value::as_f64).is_some_and(|mode| mode < 4.0) {
+            note(list, "points and lines", "they are left out", place);
+        }
+        extensions(list, primitive, place);
+    }
+    weights(list, mesh, place);
+}
+
+fn node(list: &mut Vec<Unrendered>, node: &Value, place: &dyn Fn() -> String) {
+    if node.get("skin").is_some() {
+        note(list, "skins", "the mesh is shown as it is without its joints", place);
+    }
+    weights(list, node, place);
+}
+
+/// Shapes that are mixed in at rest.
+fn weights(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> String) {
+    if items(object, "weights").any(|(_, weight)| weight.as_f64() != Some(0.0)) {
+        note(list, "morph targets", "the mesh has its basic shape", place);
+    }
+}

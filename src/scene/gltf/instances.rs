@@ -1,0 +1,55 @@
+//! Transforms of nodes, and of the instances of a node's mesh (`EXT_mesh_gpu_instancing`).
+
+use super::accessor;
+use super::container::File;
+use super::features::INSTANCING;
+use crate::error::{Error, Result};
+use crate::image::try_collect;
+use glam::{DMat4, DQuat, Vec3};
+use gltf::json::{self, Index};
+use serde_json::Value;
+
+/// The transform of a node within its parent.
+pub fn local_transform(node: &json::Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let rotation = node.rotation.unwrap_or_default().0;
+    compose(node.translation.unwrap_or([0.0; 3]), rotation, node.scale.unwrap_or([1.0; 3]))
+}
+
+/// Translation × rotation × scale; a rotation of zeros is none.
+fn compose(translation: [f32; 3], rotation: [f32; 4], scale: [f32; 3]) -> DMat4 {
+    let rotation = DQuat::from_array(rotation.map(f64::from));
+    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
+    DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, Vec3::from(translation).as_dvec3())
+}
+
+/// The transforms of all instances of a node's mesh: of one, unless the node states others.
+pub fn instances(file: &File, node: &json::Node, transform: DMat4) -> Result<Vec<DMat4>> {
+    match node.extensions.as_ref().and_then(|e| e.others.get(INSTANCING)) {
+        Some(stated) => read(file, stated, transform).map_err(|e| e.within(INSTANCING)),
+        None => Ok(vec![transform]),
+    }
+}
+
+fn read(file: &File, stated: &Value, transform: DMat4) -> Result<Vec<DMat4>> {
+    let index = |name: &str| {
+        let index = stated.get("attributes")?.get(name)?.as_u64()?;
+        u32::try_from(index).ok().map(Index::<json::Accessor>::new)
+    };
+    let translations = index("TRANSLATION").map(|index| accessor::vectors::<3>(file, index)).transpose()?;
+    let rotations = index("ROTATION").map(|index| accessor::vectors::<4>(file, index)).transpose()?;
+    let scales = index("SCALE").map(|index| accessor::vectors::<3>(file, index)).transpose()?;
+    let counts = [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+    let Some(count) = counts.into_iter().flatten().next() else { return Ok(vec![transform]) };
+    if counts.into_iter().flatten().any(|other| other != count) {
+        return Err(Error::format("its attributes have different counts"));
+    }
+    try_collect((0..count).map(|i| {
+        let translation = translations.as_ref().map_or([0.0; 3], |all| all[i]);
+        let rotation = rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |all| all[i]);
+        let scale = scales.as_ref().map_or([1.0; 3], |all| all[i]);
+        transform * compose(translation, rotation, scale)
+    }))
+}

@@ -1,0 +1,303 @@
+//! Valid files in unusual forms, features that are read, and the names of those that are not.
+
+use super::*;
+
+/// Statements of a file's features that are not rendered.
+fn unrendered(edit: impl FnOnce(&mut Value)) -> Vec<String> {
+    import(&triangle_file(edit), None).unwrap().unrendered.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn only_gltf_2_is_read() {
+    let with = |version: &str, least: Option<&str>| {
+        import(
+            &triangle_file(|f| {
+                f["asset"]["version"] = version.into();
+                f["asset"]["minVersion"] = least.map_or(Value::Null, Value::from);
+            }),
+            None,
+        )
+    };
+    for (version, least) in [("2.0", None), ("2.1", None), ("2.0", Some("2.0")), ("2.9", Some("2.0"))] {
+        assert!(with(version, least).is_ok(), "{version} {least:?}");
+    }
+    for (version, least) in [("1.0", None), ("3.0", None), ("2.1", Some("2.1")), ("2.0", Some("3.0"))] {
+        let error = with(version, least).unwrap_err();
+        assert!(error.kind == ErrorKind::Unsupported && error.message.contains("only glTF 2.0"), "{error}");
+    }
+    for text in ["", "2", "two.zero"] {
+        assert_eq!(with(text, None).unwrap_err().kind, ErrorKind::Format, "{text:?}");
+    }
+}
+
+#[test]
+fn valid_files_in_unusual_forms_are_read() {
+    let plain = import(&triangle_file(|_| ()), None).unwrap();
+    type Edit = fn(&mut Value);
+    let edits: [(&str, Edit); 9] = [
+        ("extras of any type", |f| {
+            f["extras"] = json!(7);
+            f["nodes"][0]["extras"] = json!("a text");
+            f["meshes"][0]["extras"] = json!([1, null, { "extras": true }]);
+            f["meshes"][0]["primitives"][0]["extras"] = Value::Null;
+            f["asset"]["extras"] = json!(false);
+        }),
+        ("integers as floats", |f| {
+            f["nodes"][0]["mesh"] = json!(0.0);
+            f["scenes"][0]["nodes"] = json!([0.0]);
+            f["accessors"][0]["count"] = json!(3.0);
+            f["accessors"][0]["componentType"] = json!(5126.0);
+            f["bufferViews"][1]["byteOffset"] = json!(36.0);
+            f["nodes"][0]["translation"] = json!([0.0, -0.0, 0]);
+        }),
+        ("a channel without node", |f| {
+            let target = json!({ "path": "translation" });
+            f["animations"] = json!([{ "channels": [{ "sampler": 0, "target": target }], "samplers": [{ "input": 0, "output": 0 }] }]);
+        }),
+        ("variants as required", |f| {
+            f["extensionsRequired"] = json!(["KHR_materials_variants"]);
+            f["extensions"] = json!({ "KHR_materials_variants": { "variants": [{ "name": "Red" }] } });
+            f["meshes"][0]["primitives"][0]["extensions"] =
+                json!({ "KHR_materials_variants": { "mappings": [{ "material": 0, "variants": [0] }] } });
+        }),
+        ("white vertices", |f| {
+            f["accessors"].as_array_mut().unwrap().push(json!({
+                "bufferView": 2, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC4"
+            }));
+            f["buffers"].as_array_mut().unwrap().push(json!({
+                "byteLength": 12, "uri": "data:application/octet-stream;base64,////////////////"
+            }));
+            f["bufferViews"].as_array_mut().unwrap().push(json!({ "buffer": 1, "byteLength": 12 }));
+            f["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(2);
+        }),
+        ("a clear coat without effect", |f| {
+            f["materials"] = json!([{ "name": "Default", "extensions": { "KHR_materials_clearcoat": { "clearcoatRoughnessFactor": 0.5 } } }]);
+        }),
+        ("a specular layer without effect", |f| {
+            f["materials"] = json!([{ "name": "Default", "extensions": { "KHR_materials_specular": { "specularColorFactor": [1, 1.0, 1] } } }]);
+        }),
+        ("a texture without source", |f| {
+            f["textures"] = json!([{}]);
+            f["materials"] =
+                json!([{ "name": "Default", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+            f["meshes"][0]["primitives"][0]["material"] = json!(0);
+        }),
+        ("metadata", |f| f["extensionsUsed"] = json!(["KHR_xmp_json_ld"])),
+    ];
+    for (name, edit) in edits {
+        let scene = import(&triangle_file(edit), None).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(scene.meshes[0].positions, plain.meshes[0].positions, "{name}");
+        assert_eq!(scene.materials[scene.meshes[0].material], plain.materials[0], "{name}");
+        let expected = usize::from(name == "a channel without node");
+        assert_eq!(scene.unrendered.len(), expected, "{name}: {:?}", scene.unrendered);
+    }
+    // A scene without nodes is empty.
+    let empty = import(&triangle_file(|f| f["scenes"] = json!([{ "name": "Empty" }])), None).unwrap();
+    assert!(empty.meshes.is_empty());
+}
+
+#[test]
+fn each_feature_that_is_not_rendered_is_named() {
+    let materials = [
+        "KHR_materials_anisotropy",
+        "KHR_materials_clearcoat",
+        "KHR_materials_diffuse_transmission",
+        "KHR_materials_dispersion",
+        "KHR_materials_iridescence",
+        "KHR_materials_sheen",
+        "KHR_materials_specular",
+        "KHR_materials_volume",
+    ];
+    let settings = [
+        json!({ "anisotropyStrength": 0.5 }),
+        json!({ "clearcoatFactor": 1 }),
+        json!({ "diffuseTransmissionFactor": 0.25 }),
+        json!({ "dispersion": 0.1 }),
+        json!({ "iridescenceFactor": 1.0 }),
+        json!({ "sheenColorFactor": [0, 0, 0.5] }),
+        json!({ "specularColorTexture": { "index": 0 } }),
+        json!({ "thicknessFactor": 0.01 }),
+    ];
+    for (name, settings) in materials.into_iter().zip(settings) {
+        let texts = unrendered(|f| {
+            f["textures"] = json!([{}]);
+            f["materials"] = json!([{ "name": "Paint", "extensions": { name: settings } }]);
+        });
+        assert_eq!(texts.len(), 1, "{name}");
+        assert!(texts[0].starts_with(name) && texts[0].contains("material \"Paint\""), "{}", texts[0]);
+    }
+    type Edit = fn(&mut Value);
+    let others: [(&str, &str, Edit); 7] = [
+        ("KHR_texture_basisu", "texture 0", |f| {
+            f["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
+        }),
+        ("skins", "node \"Tri\"", |f| {
+            f["skins"] = json!([{ "joints": [0] }]);
+            f["nodes"][0]["skin"] = json!(0);
+        }),
+        ("morph targets", "mesh 0", |f| {
+            f["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0 }]);
+            f["meshes"][0]["weights"] = json!([0.5]);
+        }),
+        ("animations", "animation \"Walk\"", |f| {
+            f["animations"] = json!([{ "name": "Walk", "channels": [], "samplers": [] }])
+        }),
+        ("points and lines", "mesh 0", |f| f["meshes"][0]["primitives"][0]["mode"] = json!(1)),
+        ("orthographic cameras", "camera 0", |f| {
+            let orthographic = json!({ "xmag": 1, "ymag": 1, "zfar": 10, "znear": 0.1 });
+            f["cameras"] = json!([{ "type": "orthographic", "orthographic": orthographic }]);
+        }),
+        ("VENDOR_glow", "node \"Tri\"", |f| f["nodes"][0]["extensions"] = json!({ "VENDOR_glow": {} })),
+    ];
+    for (name, place, edit) in others {
+        let texts = unrendered(edit);
+        assert_eq!(texts.len(), 1, "{name}: {texts:?}");
+        assert!(texts[0].starts_with(name) && texts[0].contains(place), "{}", texts[0]);
+    }
+    assert!(unrendered(|_| ()).is_empty());
+}
+
+/// Adds an accessor of floats in a buffer of its own; its index.
+fn add_floats(file: &mut Value, kind: &str, count: usize, numbers: &[f32]) -> usize {
+    let raw: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for chunk in raw.chunks(3) {
+        let word = chunk.iter().fold(0u32, |w, &b| w << 8 | u32::from(b)) << (8 * (3 - chunk.len()));
+        for digit in 0..=chunk.len() {
+            text.push(char::from(DIGITS[(word >> (18 - 6 * digit)) as usize & 63]));
+        }
+    }
+    let add = |list: &mut Value, item: Value| {
+        let list = list.as_array_mut().unwrap();
+        list.push(item);
+        list.len() - 1
+    };
+    let uri = format!("data:application/octet-stream;base64,{text}");
+    let buffer = add(&mut file["buffers"], json!({ "uri": uri, "byteLength": raw.len() }));
+    let view = add(&mut file["bufferViews"], json!({ "buffer": buffer, "byteLength": raw.len() }));
+    let accessor = json!({ "bufferView": view, "componentType": 5126, "count": count, "type": kind });
+    add(&mut file["accessors"], accessor)
+}
+
+#[test]
+fn instances_are_meshes_of_their_own() {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let file = |short: bool| {
+        triangle_file(|f| {
+            let translations = add_floats(f, "VEC3", 2, &[1.0, 2.0, 3.0, -1.0, 0.0, 0.0]);
+            let rotations = add_floats(f, "VEC4", 2 - usize::from(short), &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half]);
+            let scales = add_floats(f, "VEC3", 2, &[2.0, 2.0, 2.0, 1.0, 1.0, 1.0]);
+            let attributes = json!({ "TRANSLATION": translations, "ROTATION": rotations, "SCALE": scales });
+            f["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+            f["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+            f["nodes"][0]["translation"] = json!([0, 0, 10]);
+        })
+    };
+    let scene = import(&file(false), None).unwrap();
+    assert_eq!((scene.meshes.len(), scene.unrendered.len()), (2, 0));
+    let corners = scene.meshes.iter().map(|mesh| mesh.corners(0)).collect::<Vec<_>>();
+    let expected = [
+        [Vec3::new(1.0, 2.0, 13.0), Vec3::new(3.0, 2.0, 13.0), Vec3::new(1.0, 4.0, 13.0)],
+        [Vec3::new(-1.0, 0.0, 10.0), Vec3::new(-1.0, 1.0, 10.0), Vec3::new(-2.0, 0.0, 10.0)],
+    ];
+    for (found, wanted) in corners.iter().flatten().zip(expected.iter().flatten()) {
+        assert!(near(*found, *wanted), "{found} instead of {wanted}");
+    }
+    let error = import(&file(true), None).unwrap_err();
+    assert!(error.message.contains("different counts"), "{error}");
+    // Millions of instances from a small file, whose accessor has no data.
+    let bomb = triangle_file(|f| {
+        let accessor = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
+        f["accessors"].as_array_mut().unwrap().push(accessor);
+        f["meshes"][0]["primitives"][0]["indices"] = Value::Null;
+        f["accessors"][0]["count"] = json!(1);
+        let instances = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": 2 } } });
+        f["nodes"] = json!([{ "mesh": 0, "extensions": instances }, { "mesh": 0, "extensions": instances }]);
+        f["scenes"][0]["nodes"] = json!([0, 1]);
+    });
+    let error = import(&bomb, None).unwrap_err();
+    assert!(error.kind == ErrorKind::Unsupported && error.message.contains("1048576 meshes"), "{error}");
+}
+
+#[test]
+fn one_colour_of_all_vertices_becomes_part_of_the_material() {
+    let with = |colours: &[f32], kind: &str| {
+        let file = triangle_file(|f| {
+            f["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 1, 1, 1] } }]);
+            f["meshes"][0]["primitives"][0]["material"] = json!(0);
+            let accessor = add_floats(f, kind, 3, colours);
+            f["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor.into();
+            // The same mesh again shares the new material.
+            f["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0 }]);
+            f["scenes"][0]["nodes"] = json!([0, 1]);
+        });
+        import(&file, None).unwrap()
+    };
+    let scene = with(&[0.5, 0.25, 1.0, 0.5].repeat(3), "VEC4");
+    assert_eq!((scene.materials.len(), scene.meshes[0].material, scene.meshes[1].material), (2, 1, 1));
+    assert_eq!((scene.materials[1].base_color, scene.materials[1].alpha), (Vec3::new(0.25, 0.25, 1.0), 0.5));
+    assert_eq!(scene.materials[0].base_color, Vec3::new(0.5, 1.0, 1.0));
+    assert!(scene.unrendered.is_empty());
+    let scene = with(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], "VEC3");
+    assert_eq!((scene.materials.len(), scene.meshes[0].material), (1, 0));
+    assert!(scene.unrendered[0].to_string().starts_with("COLOR_0") && scene.unrendered[0].count == 2);
+}
+
+#[test]
+fn a_webp_texture_is_read() {
+    // A lossless WebP of one pixel, (255, 0, 0).
+    let mut file = Vec::new();
+    let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut file);
+    encoder.encode(&[255, 0, 0], 1, 1, image::ExtendedColorType::Rgb8).unwrap();
+    let folder = std::env::temp_dir().join(format!("luxfer-webp-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("red.webp"), file).unwrap();
+    let gltf = triangle_file(|f| {
+        f["extensionsRequired"] = json!(["EXT_texture_webp"]);
+        f["images"] = json!([{ "uri": "absent.png" }, { "uri": "red.webp" }]);
+        f["textures"] = json!([{ "source": 0, "extensions": { "EXT_texture_webp": { "source": 1 } } }]);
+        f["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    });
+    let scene = import(&gltf, Some(&folder)).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!((scene.textures.len(), scene.unrendered.len()), (1, 0));
+    assert_eq!(scene.textures[0].image.data, [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn files_outside_the_folder_need_leave() {
+    let folder = std::env::temp_dir().join(format!("luxfer-outside-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("scene")).unwrap();
+    let bytes: Vec<u8> = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    std::fs::write(folder.join("mesh.bin"), [&bytes[..], &[0, 1, 2, 0]].concat()).unwrap();
+    let read = |uri: &str, is_open: bool| {
+        let file = triangle_file(|f| f["buffers"][0]["uri"] = uri.into());
+        super::super::import(&file, Some(&folder.join("scene")), Options { is_open, ..Options::default() })
+    };
+    let absolute = folder.join("mesh.bin").to_str().unwrap().to_string();
+    for uri in ["../mesh.bin", "a/../../mesh.bin", absolute.as_str()] {
+        let error = read(uri, false).unwrap_err();
+        assert!(error.kind == ErrorKind::Unsupported && error.message.contains("outside the folder"), "{error}");
+    }
+    for uri in ["../mesh.bin", absolute.as_str()] {
+        assert_eq!(read(uri, true).unwrap().meshes[0].corners(0), [Vec3::ZERO, Vec3::X, Vec3::Y], "{uri}");
+    }
+    // Other resources than files are never read.
+    for uri in ["https://example.org/mesh.bin", "file:///mesh.bin", "..\\mesh.bin"] {
+        assert_eq!(read(uri, true).unwrap_err().kind, ErrorKind::Unsupported, "{uri}");
+    }
+    assert_eq!(read("../absent.bin", true).unwrap_err().kind, ErrorKind::Io);
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn lengths_are_converted_to_metres() {
+    let file = triangle_file(|f| {
+        f["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }]);
+        f["nodes"] = json!([{ "mesh": 0, "translation": [1000, 0, 0], "camera": 0 }]);
+    });
+    let scene = super::super::import(&file, None, Options { unit: 0.001, ..Options::default() }).unwrap();
+    assert!(near(scene.meshes[0].positions[1], Vec3::new(1.001, 0.0, 0.0)));
+    assert!(near(scene.cameras[0].position, Vec3::X) && near(scene.cameras[0].forward, Vec3::NEG_Z));
+}

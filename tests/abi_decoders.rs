@@ -1,0 +1,277 @@
+//! Files are read within the memory budget of the context, what their decoders take included, and on small stacks.
+//!
+//! A program of its own, and one test after the other, because it measures its peak of memory.
+
+mod host;
+
+use host::message;
+use image::codecs::{bmp::BmpEncoder, gif::GifEncoder, jpeg::JpegEncoder, png::PngEncoder, webp::WebPEncoder};
+use image::{ExtendedColorType, Frame, ImageEncoder, RgbImage, RgbaImage};
+use luxfer::ffi::*;
+use miniz_oxide::deflate::compress_to_vec_zlib;
+use std::ptr::null_mut;
+use std::sync::{Mutex, MutexGuard};
+
+/// The tests of this file run one after the other.
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// What the rest of the process may take while a file is read: pages of the program itself, and of its allocator.
+const NOISE: u64 = 3 << 20;
+
+/// A figure of this process in bytes, where the system states it.
+fn figure(name: &str) -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    Some(line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()? * 1024)
+}
+
+/// The value of some work, and by how much the process grew on its way, where the system states it.
+fn growth<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
+    // Give freed memory back first.
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    unsafe {
+        libc::malloc_trim(0);
+    }
+    let is_reset = std::fs::write("/proc/self/clear_refs", "5").is_ok();
+    let before = figure("VmRSS:");
+    let value = work();
+    (value, figure("VmHWM:").zip(before).filter(|_| is_reset).map(|(peak, before)| peak.saturating_sub(before)))
+}
+
+fn with_budget(mib: u64) -> *mut luxfer_context {
+    let params = luxfer_context_params { struct_size: 16, num_threads: 1, memory_budget_mib: mib };
+    host::made(|out| unsafe { luxfer_context_create(&params, out) })
+}
+
+/// Loads a picture from memory under a budget, and releases it: status, message and growth.
+fn load(file: &[u8], mib: u64) -> (luxfer_status, String, Option<u64>) {
+    let context = with_budget(mib);
+    let mut image = null_mut();
+    let (status, grown) = growth(|| unsafe {
+        luxfer_image_load_memory(context, file.as_ptr().cast(), file.len(), LUXFER_COLOUR_SRGB, &mut image)
+    });
+    let message = message(context);
+    unsafe {
+        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+    (status, message, grown)
+}
+
+/// A PNG of 2 x 2 pixels with one more chunk before its pixels.
+fn png_with(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
+    let mut png = Vec::new();
+    PngEncoder::new(&mut png).write_image(&[128; 12], 2, 2, ExtendedColorType::Rgb8).unwrap();
+    let checksum = crc32(&[name, content].concat());
+    let chunk = [&(content.len() as u32).to_be_bytes(), &name[..], content, &checksum.to_be_bytes()].concat();
+    png.splice(33..33, chunk);
+    png
+}
+
+/// The checksum of PNG chunks (PNG specification, third edition, annex D).
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0u32, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 })
+    })
+}
+
+/// Zeros that deflate has packed a thousand times smaller.
+fn bomb(len: usize) -> Vec<u8> {
+    compress_to_vec_zlib(&vec![0; len], 6)
+}
+
+#[test]
+fn packed_chunks_of_a_png_stay_within_the_budget() {
+    let _alone = alone();
+    let packed = bomb(544 << 20);
+    let profile = [b"name\0\0", &packed[..]].concat();
+    let text = [b"Title\0\0", &packed[..]].concat();
+    let international = [b"Title\0\x01\0\0\0", &packed[..]].concat();
+    for (name, content) in [(b"iCCP", &profile), (b"zTXt", &text), (b"iTXt", &international), (b"tEXt", &text)] {
+        let file = png_with(name, content);
+        for mib in [1, 16] {
+            let (status, message, grown) = load(&file, mib);
+            let called = String::from_utf8_lossy(name);
+            assert!(grown.is_none_or(|grown| grown <= (mib << 20) + NOISE), "{called} of {mib} MiB grew {grown:?}");
+            // Text need not be unpacked, so it may be read.
+            match (name, status) {
+                (_, LUXFER_OUT_OF_MEMORY) => assert!(message.contains("budget"), "{message}"),
+                (_, status) => assert_eq!(status, LUXFER_OK, "{called} of {mib} MiB: {message}"),
+            }
+        }
+        assert_eq!(load(&file, 0).0, LUXFER_OK, "without a budget");
+    }
+    // A megabyte's worth of a thousand.
+    let small = [b"name\0\0", &bomb(3 << 20)[..]].concat();
+    assert_eq!(load(&png_with(b"iCCP", &small), 1).0, LUXFER_OUT_OF_MEMORY);
+}
+
+/// Pictures of 800 x 700 pixels, 6.4 MiB as floating-point numbers, in each format that can be written here.
+fn pictures() -> Vec<(&'static str, Vec<u8>)> {
+    const SIZE: [u32; 2] = [800, 700];
+    let noise = |x: u32, y: u32, c: u32| (x.wrapping_mul(31) ^ y.wrapping_mul(57).wrapping_add(c * 91)) as u8;
+    let [width, height] = SIZE;
+    let rgb = RgbImage::from_fn(width, height, |x, y| image::Rgb([0, 1, 2].map(|c| noise(x, y, c))));
+    let rgba = RgbaImage::from_fn(width, height, |x, y| image::Rgba([0, 1, 2, 3].map(|c| noise(x, y, c))));
+    let colour = ExtendedColorType::Rgb8;
+    let file = |write: &dyn Fn(&mut Vec<u8>)| {
+        let mut file = Vec::new();
+        write(&mut file);
+        file
+    };
+    let exr = {
+        let context = host::context(1);
+        let mut pixels: Vec<f32> = rgb.iter().map(|&v| f32::from(v) / 255.0).collect();
+        let view = host::view(width, height, &mut pixels);
+        let image = host::made(|out| unsafe { luxfer_image_create(context, &view, out) });
+        let path = std::env::temp_dir().join(format!("luxfer-decoders-{}.exr", std::process::id()));
+        let name = std::ffi::CString::new(path.to_str().unwrap()).unwrap();
+        unsafe {
+            assert_eq!(luxfer_image_save(image, name.as_ptr(), 1.0), LUXFER_OK);
+            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        }
+        let file = std::fs::read(&path).unwrap();
+        std::fs::remove_file(path).unwrap();
+        file
+    };
+    let radiance = {
+        let mut file = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes();
+        file.extend(rgb.pixels().flat_map(|p| [p[0] | 128, p[1], p[2], 128]));
+        file
+    };
+    vec![
+        ("png", file(&|f| PngEncoder::new(f).write_image(&rgb, width, height, colour).unwrap())),
+        ("jpeg", file(&|f| JpegEncoder::new_with_quality(f, 90).encode(&rgb, width, height, colour).unwrap())),
+        ("webp", file(&|f| WebPEncoder::new_lossless(f).encode(&rgb, width, height, colour).unwrap())),
+        ("bmp", file(&|f| BmpEncoder::new(f).encode(&rgb, width, height, colour).unwrap())),
+        ("gif", file(&|f| GifEncoder::new(f).encode_frame(Frame::new(rgba.clone())).unwrap())),
+        ("tiff", tiff(&rgb)),
+        ("exr", exr),
+        ("hdr", radiance),
+    ]
+}
+
+/// A TIFF of one strip, as it is.
+fn tiff(image: &RgbImage) -> Vec<u8> {
+    let [width, height] = [image.width(), image.height()];
+    let len = 3 * width * height;
+    // Width, height, bits, no compression, RGB, place, samples, rows, length.
+    let tags: [(u16, u16, u32, u32); 9] = [
+        (256, 4, 1, width),
+        (257, 4, 1, height),
+        (258, 3, 3, 8 + 2 + 9 * 12 + 4),
+        (259, 3, 1, 1),
+        (262, 3, 1, 2),
+        (273, 4, 1, 8 + 2 + 9 * 12 + 4 + 6),
+        (277, 3, 1, 3),
+        (278, 4, 1, height),
+        (279, 4, 1, len),
+    ];
+    let mut file = b"II*\0\x08\0\0\0\x09\0".to_vec();
+    for (tag, kind, count, value) in tags {
+        file.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());
+        file.extend([count.to_le_bytes(), value.to_le_bytes()].concat());
+    }
+    file.extend([0, 0, 0, 0, 8, 0, 8, 0, 8, 0]);
+    file.extend(image.as_raw());
+    file
+}
+
+#[test]
+fn every_decoder_stays_within_the_budget() {
+    let _alone = alone();
+    for (name, file) in pictures() {
+        let (mut smallest, mut refused) = (None, 0);
+        for mib in [4, 7, 8, 9, 10, 12, 14, 16, 24, 32, 48, 1024] {
+            let (status, message, grown) = load(&file, mib);
+            assert!(grown.is_none_or(|grown| grown <= (mib << 20) + NOISE), "{name} under {mib} MiB grew {grown:?}");
+            match status {
+                LUXFER_OK => smallest = smallest.or(Some(mib)),
+                LUXFER_OUT_OF_MEMORY => refused = mib,
+                _ => panic!("{name} under {mib} MiB: {message}"),
+            }
+        }
+        println!("{name}: read from {smallest:?} MiB on");
+        let smallest = smallest.unwrap_or_else(|| panic!("{name} cannot be read"));
+        assert!(refused < smallest, "{name}: refused under {refused} MiB, read under {smallest}");
+    }
+}
+
+/// The stack that a host's thread must have at least, as the guide says.
+const SMALLEST_STACK: usize = 128 << 10;
+
+/// A glTF file whose scene has data of the host's, nested as deeply as JSON is read.
+fn nested_gltf() -> Vec<u8> {
+    let extras = format!("{{\"data\":{}1{}}}", "[".repeat(120), "]".repeat(120));
+    format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"name":"a","extras":{extras}}}],"scenes":[{{"nodes":[0]}}]}}"#)
+        .into()
+}
+
+/// Loads a scene from memory, if it is one.
+fn load_scene(context: *mut luxfer_context, file: &[u8]) -> luxfer_status {
+    let mut scene = null_mut();
+    unsafe {
+        let status = luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), std::ptr::null(), &mut scene);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        status
+    }
+}
+
+/// A host's function that collects a file.
+unsafe extern "C" fn collect(file: *mut std::ffi::c_void, data: *const std::ffi::c_void, size: usize) -> i32 {
+    let file = unsafe { &mut *file.cast::<Vec<u8>>() };
+    file.extend_from_slice(unsafe { std::slice::from_raw_parts(data.cast(), size) });
+    0
+}
+
+/// Calls that return when their work is done.
+fn quick_calls(context: *mut luxfer_context) {
+    let (image, scene) = (host::image(context, 320, 240, 0.5), host::scene(context));
+    let same = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
+    let mut hits = vec![luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 }; 10_000];
+    let mut needs = unsafe { std::mem::zeroed::<luxfer_requirements>() };
+    needs.struct_size = size_of_val(&needs) as u32;
+    let mut sheet = unsafe { std::mem::zeroed::<luxfer_sheet_params>() };
+    let mut file = Vec::<u8>::new();
+    unsafe {
+        assert_eq!(luxfer_scene_intersect(scene, vec![ray; 10_000].as_ptr(), 10_000, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_requirements(scene, 0.1, &mut needs), LUXFER_OK);
+        let made = |make: &dyn Fn(*mut *mut luxfer_image) -> luxfer_status| {
+            assert_eq!(luxfer_image_release(host::made(make)), LUXFER_OK);
+        };
+        made(&|out| luxfer_image_warp(image, same.as_ptr(), 300, 200, out));
+        made(&|out| luxfer_image_false_colour(image, std::ptr::null(), out));
+        assert_eq!(luxfer_sheet_params_init(&mut sheet, size_of_val(&sheet)), LUXFER_OK);
+        let sheet = luxfer_sheet_params { paper_width: 100.0, paper_height: 80.0, dpi: 50.0, ..sheet };
+        let printed = host::made(|out| luxfer_sheet_print(image, &sheet, out));
+        made(&|out| luxfer_sheet_align(printed, 32, 24, &sheet, out, null_mut()));
+        assert_eq!(luxfer_image_release(printed), LUXFER_OK);
+        assert_eq!(luxfer_scene_export_memory(scene, Some(collect), (&raw mut file).cast()), LUXFER_OK);
+        assert_eq!(load_scene(context, &file), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+    }
+}
+
+#[test]
+fn a_thread_with_a_small_stack_can_read_files_and_make_quick_calls() {
+    let _alone = alone();
+    let mut files = pictures();
+    let profile = [b"name\0\0", &compress_to_vec_zlib(&[0; 4000], 6)[..]].concat();
+    files.push(("png with a profile", png_with(b"iCCP", &profile)));
+    let work = move || {
+        let context = with_budget(0);
+        for (name, file) in &files {
+            assert_eq!(load(file, 0).0, LUXFER_OK, "{name}");
+        }
+        assert_eq!(load_scene(context, &nested_gltf()), LUXFER_OK, "{}", message(context));
+        quick_calls(context);
+        assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+    };
+    std::thread::Builder::new().stack_size(SMALLEST_STACK).spawn(work).unwrap().join().unwrap();
+}

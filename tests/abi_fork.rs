@@ -1,0 +1,204 @@
+//! A host may fork: in the child, objects from before the fork refuse every call at once, and new ones work.
+
+#![cfg(unix)]
+
+mod host;
+
+use host::{context, image, made, message, scene, view};
+use luxfer::ffi::*;
+use std::ffi::c_void;
+use std::fs;
+use std::os::fd::AsRawFd;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::ptr::{null, null_mut};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Longest time for which a child may run, on a crowded machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Forks, runs `work` in the child, and returns everything that the child wrote to its stderr. A check that fails
+/// there, or a child that does not end, fails here.
+fn in_child(name: &str, work: impl FnOnce()) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
+    let errors = fs::File::create(&path).unwrap();
+    // SAFETY: the child runs C functions and ends by `_exit`.
+    let child = unsafe { libc::fork() };
+    assert!(child >= 0);
+    if child == 0 {
+        unsafe {
+            libc::dup2(errors.as_raw_fd(), 2);
+            libc::_exit(i32::from(catch_unwind(AssertUnwindSafe(work)).is_err()));
+        }
+    }
+    let (begin, mut status) = (Instant::now(), 0);
+    while unsafe { libc::waitpid(child, &mut status, libc::WNOHANG) } == 0 {
+        if begin.elapsed() > PATIENCE {
+            unsafe { libc::kill(child, libc::SIGKILL) };
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let written = fs::read_to_string(&path).unwrap();
+    fs::remove_file(path).unwrap();
+    assert_eq!(status, 0, "the child failed: {written}");
+    written
+}
+
+/// A rendering that lasts until it is cancelled, in its first pass or later.
+fn start_render(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut luxfer_render, *mut luxfer_job) {
+    let render = made(|out| unsafe { luxfer_render_create(context, out) });
+    let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
+    unsafe {
+        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+    }
+    let params = luxfer_render_params { width: 64, height: 64, samples: 1 << 20, ..params };
+    (render, made(|out| unsafe { luxfer_render_start(render, &params, out) }))
+}
+
+/// A ray that goes up from the middle of the room.
+fn trace(scene: *mut luxfer_scene) -> (luxfer_status, f32) {
+    let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
+    let mut hit = luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 };
+    (unsafe { luxfer_scene_intersect(scene, &ray, 1, &mut hit) }, hit.t)
+}
+
+/// Objects of one context, with a job that runs.
+struct Objects {
+    context: *mut luxfer_context,
+    image: *mut luxfer_image,
+    scene: *mut luxfer_scene,
+    render: *mut luxfer_render,
+    job: *mut luxfer_job,
+}
+
+impl Objects {
+    fn new() -> Self {
+        let context = context(2);
+        let (image, scene) = (image(context, 4, 4, 0.5), scene(context));
+        let (render, job) = start_render(context, scene);
+        Self { context, image, scene, render, job }
+    }
+
+    /// The status of one call of each kind.
+    fn call_all(&self) -> Vec<luxfer_status> {
+        let (mut pixels, mut place) = ([0.5; 12], [null_mut::<c_void>(); 3]);
+        let [made, job, other] = &mut place;
+        let view = view(2, 2, &mut pixels);
+        unsafe {
+            vec![
+                luxfer_context_retain(self.context),
+                luxfer_image_create(self.context, &view, (made as *mut *mut c_void).cast()),
+                luxfer_render_create(self.context, (other as *mut *mut c_void).cast()),
+                luxfer_image_retain(self.image),
+                luxfer_image_read(self.image, 0, &view),
+                trace(self.scene).0,
+                luxfer_render_set_scene(self.render, self.scene),
+                luxfer_render_start(self.render, null(), (job as *mut *mut c_void).cast()),
+                luxfer_job_poll(self.job, null_mut(), null_mut()),
+                luxfer_job_status(self.job),
+                luxfer_job_cancel(self.job),
+                luxfer_job_wait(self.job, -1, None, null_mut()),
+                luxfer_job_retain(self.job),
+            ]
+        }
+    }
+
+    fn release(&self) -> [luxfer_status; 5] {
+        unsafe {
+            [
+                luxfer_job_release(self.job),
+                luxfer_render_release(self.render),
+                luxfer_scene_release(self.scene),
+                luxfer_image_release(self.image),
+                luxfer_context_release(self.context),
+            ]
+        }
+    }
+
+    /// Every call is refused at once, with a reason, and every release is fine, twice too.
+    fn check_inherited(&self) {
+        let clock = Instant::now();
+        assert_eq!(self.call_all(), vec![LUXFER_INVALID_OPERATION; 13]);
+        assert!(message(self.context).contains("before the process was forked"), "{}", message(self.context));
+        assert_eq!([self.release(), self.release()], [[LUXFER_OK; 5]; 2]);
+        assert_eq!(self.call_all(), vec![LUXFER_INVALID_OPERATION; 13]);
+        assert!(clock.elapsed() < Duration::from_secs(5), "{:?}", clock.elapsed());
+    }
+}
+
+#[test]
+fn a_child_cannot_use_the_objects_of_its_parent_and_has_its_own() {
+    let objects = Objects::new();
+    let written = in_child("child", || {
+        objects.check_inherited();
+        // A context of the child's own renders, and takes no object of the parent.
+        let own = Objects::new();
+        assert_eq!(trace(own.scene), (LUXFER_OK, 2.0));
+        let spare = made(|out| unsafe { luxfer_render_create(own.context, out) });
+        unsafe {
+            assert_eq!(luxfer_render_set_scene(spare, objects.scene), LUXFER_INVALID_OPERATION);
+            assert!(message(own.context).contains("before the process was forked"));
+            assert_eq!(luxfer_job_wait(own.job, 50, None, null_mut()), LUXFER_NOT_READY);
+            assert_eq!(luxfer_job_cancel(own.job), LUXFER_OK);
+            assert_eq!(luxfer_job_wait(own.job, -1, None, null_mut()), LUXFER_CANCELLED);
+            assert_eq!(luxfer_render_release(spare), LUXFER_OK);
+        }
+        assert_eq!(own.release(), [LUXFER_OK; 5]);
+    });
+    assert_eq!(written, "");
+    // The parent goes on.
+    assert_eq!(trace(objects.scene), (LUXFER_OK, 2.0));
+    unsafe {
+        assert_eq!(luxfer_job_cancel(objects.job), LUXFER_OK);
+        assert_eq!(luxfer_job_wait(objects.job, -1, None, null_mut()), LUXFER_CANCELLED);
+    }
+    assert_eq!(objects.release(), [LUXFER_OK; 5]);
+}
+
+#[test]
+fn a_fork_while_other_threads_are_in_the_library_leaves_no_lock_that_a_child_waits_for() {
+    let objects = Objects::new();
+    let (ends, context) = (AtomicBool::new(false), objects.context as usize);
+    std::thread::scope(|scope| {
+        // Fails, which keeps a message under a lock, and makes images.
+        scope.spawn(|| {
+            let context = context as *mut luxfer_context;
+            while !ends.load(Ordering::Relaxed) {
+                assert_eq!(unsafe { luxfer_image_create(context, null(), null_mut()) }, LUXFER_INVALID_ARGUMENT);
+                assert_eq!(unsafe { luxfer_image_release(image(context, 8, 8, 1.0)) }, LUXFER_OK);
+            }
+        });
+        let written: String = (0..20).map(|_| in_child("busy", || objects.check_inherited())).collect();
+        ends.store(true, Ordering::Relaxed);
+        assert_eq!(written, "");
+    });
+    assert_eq!(objects.release(), [LUXFER_OK; 5]);
+}
+
+/// Forks; the child's answer is to go on.
+unsafe extern "C" fn fork_within(forked: *mut c_void, _: f64) -> i32 {
+    let forked = unsafe { &mut *forked.cast::<Option<libc::pid_t>>() };
+    match *forked {
+        None => *forked = Some(unsafe { libc::fork() }),
+        Some(_) => return 1,
+    }
+    0
+}
+
+#[test]
+fn a_wait_whose_progress_function_forks_ends_in_the_child() {
+    let objects = Objects::new();
+    let mut forked: Option<libc::pid_t> = None;
+    let status = unsafe { luxfer_job_wait(objects.job, -1, Some(fork_within), (&raw mut forked).cast()) };
+    let child = forked.unwrap();
+    if child == 0 {
+        unsafe { libc::_exit(status) };
+    }
+    assert_eq!(status, LUXFER_CANCELLED);
+    let mut ended = 0;
+    assert_eq!(unsafe { libc::waitpid(child, &mut ended, 0) }, child);
+    assert_eq!((libc::WIFEXITED(ended), libc::WEXITSTATUS(ended)), (true, LUXFER_INVALID_OPERATION));
+    assert_eq!(objects.release(), [LUXFER_OK; 5]);
+}
