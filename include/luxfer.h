@@ -4146,8 +4146,8 @@ typedef struct luxfer_transfer_report {
      */
     double plane_distance;
     /**
-     * Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.1 for
-     * lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
+     * Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.25
+     * for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
      */
     double plane_distance_error;
 } luxfer_transfer_report;

@@ -211,9 +211,9 @@ class AddOn(unittest.TestCase):
         self.load_photo()
         strokes = self.scene.luxfer.strokes
         complete = convert.pixels(strokes)
-        beside = (complete[..., :3] == (0, 0, 1)).all(-1)
+        lights = (complete[..., :3] == (1, 1, 0)).all(-1)
         some = complete.copy()
-        some[beside] = 0.5
+        some[lights] = 0.5
         manager = bpy.context.window_manager
 
         def paint(values):
@@ -225,7 +225,7 @@ class AddOn(unittest.TestCase):
         self.follow()  # the photo
         self.follow()  # the strokes
         self.assertEqual(list(live.preview.shown), ["plane"])
-        self.assertIn("blue", live.preview.hint)
+        self.assertIn("yellow", live.preview.hint)
         self.assertEqual(live.preview.overlay().shape, complete.shape)
 
         paint(complete)

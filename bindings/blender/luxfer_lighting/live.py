@@ -26,7 +26,7 @@ PIXELS = 1_500_000
 #: The message if strokes for a stage are missing.
 HINTS = {
     "plane": "Paint a stroke on the plane of the lights (green) and one off it (red)",
-    "lights": "Paint a stroke on a light (yellow) and one beside the lights (blue)",
+    "lights": "Paint a stroke on a light (yellow)",
 }
 
 

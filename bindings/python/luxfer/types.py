@@ -1894,8 +1894,8 @@ class TransferReport:
     """Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN
     before the stage EMISSION has ended, and for a given texture."""
     plane_distance_error: float
-    """Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.1
-    for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance."""
+    """Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about
+    0.25 for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance."""
 
 
 @dataclass(frozen=True)
