@@ -14,6 +14,7 @@ ICONS = {"PLANE": "COLORSET_03_VEC", "NOT_PLANE": "COLORSET_01_VEC", "LIGHT": "C
 
 #: Titles of the stages of a transfer.
 STAGES = {
+    "SCENE": "Scene",
     "VIEW": "Camera",
     "FEATURES": "Depth",
     "PLANE": "Plane",
