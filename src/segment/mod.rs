@@ -31,6 +31,7 @@
 
 mod classify;
 mod distance;
+mod edges;
 mod ellipsoid;
 mod exponential;
 mod face;
@@ -47,6 +48,7 @@ mod tests;
 mod warnings;
 
 pub use distance::dilate;
+pub use edges::smooth_edges;
 pub use strokes::{Stroke, StrokeSet};
 pub use warnings::almost_all_lit;
 
@@ -237,7 +239,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         return instances::run(input, job);
     }
 
-    if params.channels == 0 && input.within.is_none() && face::is_laid_out(input) {
+    if params.channels == 0 && input.within.is_none() && face::laid_out(input).is_some() {
         subsets.retain(|subset| subset & POSITION == 0);
     }
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();

@@ -6,7 +6,6 @@ use super::pattern::Sizing;
 use super::{LitScene, Results, Transfer, colour, ground, viewpoint};
 use crate::emission::Emission;
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::pyramid;
 use crate::job::Job;
 use crate::render::World;
 use crate::scene::Camera;
@@ -14,9 +13,6 @@ use crate::scene::surface::{self, Surface};
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
-
-/// Standard deviation of the blur of the light mask in photo pixels.
-const EDGE_BLUR: f32 = 0.9;
 
 impl Transfer {
     pub(super) fn find_view(&mut self, job: Job) -> Result<()> {
@@ -109,10 +105,9 @@ impl Transfer {
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
 
-        // What the unwarped plane shows of the light mask. Where a lamp is clipped its edge is a staircase of whole pixels:
-        // a blur of about a pixel makes half the confidence the straight edge again.
+        // Warp the mask of the lights as the photo was.
         let (width, height) = (unwarped.image.width, unwarped.image.height);
-        let smooth = pyramid::blur(&lights.confidence, EDGE_BLUR, job.part(0.0, 0.05))?;
+        let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
         let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.1))?;
         let input = emission::Input {
             unwarped: &unwarped.image,
