@@ -18,10 +18,10 @@ const AGREEMENT: f64 = 0.9;
 /// Cosine between normals that are equal but for rounding: those of a room laid out as a box, and not of a depth map. [rounding]
 const EQUAL: f32 = 1.0 - 1e-4;
 
-/// Whether the positive strokes lie on one face of a room laid out as a box. Position then says no more than the face does, and a
-/// classifier that looks at it cuts off parts of the face that no stroke has touched.
-pub fn is_laid_out(input: &Input) -> bool {
-    stroked_normal(input, EQUAL).is_some()
+/// The normal of the face that the positive strokes lie on, in a room laid out as a box. Position then says no more than the face
+/// does, and a classifier that looks at it cuts off parts of the face that no stroke has touched.
+pub fn laid_out(input: &Input) -> Option<Vec3> {
+    stroked_normal(input, EQUAL)
 }
 
 /// Takes pixels out of the mask that lie on another face of the room than the positive strokes; where the strokes agree on no
@@ -40,6 +40,13 @@ pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The pixels beside one along its row and column.
+fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let x = i % width;
+    let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
+    beside.into_iter().flatten().filter(move |&n| n < count)
 }
 
 fn normal_at(features: &Image, pixel: usize) -> Vec3 {
@@ -79,9 +86,7 @@ fn touched(input: &Input, mask: &Image) -> Result<Vec<bool>> {
         }
     }
     while let Some(i) = next.pop() {
-        let x = i % width;
-        let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
-        for n in beside.into_iter().flatten().filter(|&n| n < count) {
+        for n in beside(i, width, count) {
             if mask.data[n] > 0.5 && !std::mem::replace(&mut touched[n], true) {
                 try_push(&mut next, n)?;
             }

@@ -1,30 +1,45 @@
-//! The area of the room's surface that each pixel shows: lamps of one kind cover equal areas of it, however far they are.
+//! What each pixel shows of the room's surface: lamps of one kind cover equal areas of it, in equal shapes, however far they are.
 
 use crate::error::Result;
 use crate::exec;
-use crate::image::{Image, try_vec};
+use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use glam::Vec3;
 
 /// Where the positions are in the features.
 const POSITION: usize = 4;
 
-/// Areas in the square of the unit of the positions, by the cross product of their differences along rows and columns.
-pub fn areas(features: &Image, job: Job) -> Result<Vec<f32>> {
-    let (width, height) = (features.width, features.height);
-    let position = |x: usize, y: usize| Vec3::from_slice(&features.pixel(x, y)[POSITION..]);
-    let mut areas = try_vec(width * height, 0f32)?;
-    exec::for_rows(&mut areas, width, job, |y, row| {
-        let (above, below) = (y.saturating_sub(1), (y + 1).min(height - 1));
-        for (x, area) in row.iter_mut().enumerate() {
-            let (left, right) = (x.saturating_sub(1), (x + 1).min(width - 1));
-            let across = position(right, y) - position(left, y);
-            let down = position(x, below) - position(x, above);
-            let steps = ((right - left).max(1) * (below - above).max(1)) as f32;
-            *area = across.cross(down).length() / steps;
-        }
-    })?;
-    Ok(areas)
+/// What each pixel shows of the room's surface, in the unit of the positions.
+pub struct Footprint {
+    pub area: Vec<f32>,
+    /// Coordinates along the face that the strokes lie on.
+    pub at: Vec<[f32; 2]>,
+}
+
+impl Footprint {
+    /// Areas by the cross product of the differences of positions along rows and columns; coordinates along the two room axes that are
+    /// farthest from the normal of the face.
+    pub fn new(features: &Image, normal: Vec3, job: Job) -> Result<Self> {
+        let (width, height) = (features.width, features.height);
+        let position = |x: usize, y: usize| Vec3::from_slice(&features.pixel(x, y)[POSITION..]);
+        let mut area = try_vec(width * height, 0f32)?;
+        exec::for_rows(&mut area, width, job, |y, row| {
+            let (above, below) = (y.saturating_sub(1), (y + 1).min(height - 1));
+            for (x, area) in row.iter_mut().enumerate() {
+                let (left, right) = (x.saturating_sub(1), (x + 1).min(width - 1));
+                let across = position(right, y) - position(left, y);
+                let down = position(x, below) - position(x, above);
+                let steps = ((right - left).max(1) * (below - above).max(1)) as f32;
+                *area = across.cross(down).length() / steps;
+            }
+        })?;
+        let off = normal.abs().max_position();
+        let at = try_collect((0..width * height).map(|i| {
+            let p = position(i % width, i / width);
+            [p[(off + 1) % 3], p[(off + 2) % 3]]
+        }))?;
+        Ok(Self { area, at })
+    }
 }
 
 #[cfg(test)]
@@ -42,7 +57,8 @@ mod tests {
             pixel[POSITION..POSITION + 3].copy_from_slice(&at.to_array());
             pixel
         });
-        let areas = areas(&features.unwrap(), Monitor::default().job()).unwrap();
+        let footprint = Footprint::new(&features.unwrap(), Vec3::Y, Monitor::default().job()).unwrap();
+        let areas = footprint.area;
         let expected = across.cross(down).length();
         assert!(areas.iter().all(|area| (area - expected).abs() < 1e-5 * expected), "{expected} {areas:?}");
     }

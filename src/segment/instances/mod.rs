@@ -30,6 +30,7 @@ use super::{Input, Segmentation};
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
+use footprint::Footprint;
 use painted::Paint;
 use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
@@ -75,11 +76,11 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let floor = floor(&photo, &paint)?;
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
     // In a room laid out as a box, the features tell how large things are.
-    let footprint = match face::is_laid_out(input) {
-        true => Some(footprint::areas(input.features, job.part(0.6, 0.65))?),
-        false => None,
+    let footprint = match face::laid_out(input) {
+        Some(normal) => Some(Footprint::new(input.features, normal, job.part(0.6, 0.65))?),
+        None => None,
     };
-    let regions = Regions::new(&tree, &photo, footprint.as_deref(), job.part(0.65, 0.8))?;
+    let regions = Regions::new(&tree, &photo, footprint.as_ref(), job.part(0.65, 0.8))?;
     let mut negatives = try_vec(tree.len(), 0f64)?;
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);

@@ -1,5 +1,6 @@
 //! What the regions of the tree look like: size and shape by their moments, mean colour, and the contrast along their contour.
 
+use super::footprint::Footprint;
 use super::tree::Tree;
 use crate::error::Result;
 use crate::exec;
@@ -84,12 +85,72 @@ impl Brightness {
     }
 }
 
+/// Sums over the pixels of each node on the surface of the room, each pixel weighed by the area that it shows.
+pub struct OnSurface {
+    pub area: Vec<f64>,
+    u: Vec<f64>,
+    v: Vec<f64>,
+    uu: Vec<f64>,
+    vv: Vec<f64>,
+    uv: Vec<f64>,
+    /// Sums of squares of the pixels' areas.
+    squares: Vec<f64>,
+}
+
+impl OnSurface {
+    fn new(tree: &Tree, footprint: &Footprint) -> Result<Self> {
+        let blank = || try_vec(tree.len(), 0f64);
+        let mut sums = Self {
+            area: blank()?,
+            u: blank()?,
+            v: blank()?,
+            uu: blank()?,
+            vv: blank()?,
+            uv: blank()?,
+            squares: blank()?,
+        };
+        for ((&node, &area), at) in tree.node_of.iter().zip(&footprint.area).zip(&footprint.at) {
+            let (node, area, [u, v]) = (node as usize, f64::from(area), at.map(f64::from));
+            // The root's shape is of no interest.
+            if node != 0 {
+                sums.area[node] += area;
+                sums.u[node] += area * u;
+                sums.v[node] += area * v;
+                sums.uu[node] += area * u * u;
+                sums.vv[node] += area * v * v;
+                sums.uv[node] += area * u * v;
+                sums.squares[node] += area * area;
+            }
+        }
+        let Self { area, u, v, uu, vv, uv, squares } = &mut sums;
+        [area, u, v, uu, vv, uv, squares].into_iter().for_each(|values| tree.accumulate(values));
+        Ok(sums)
+    }
+
+    /// Ratio of the axes of the ellipse with the same second moments, at least 1.
+    pub fn aspect(&self, node: usize) -> f64 {
+        let area = self.area[node].max(f64::MIN_POSITIVE);
+        let mean = |sums: &[f64]| sums[node] / area;
+        let (u, v) = (mean(&self.u), mean(&self.v));
+        let moments = [mean(&self.uu) - u * u, mean(&self.vv) - v * v, mean(&self.uv) - u * v];
+        // A pixel has an extent of its own: a twelfth of its area, on average.
+        let [long, short] = ellipse(moments, mean(&self.squares) / 12.0);
+        long / short.max(f64::MIN_POSITIVE)
+    }
+}
+
+/// Lengths of the axes of the ellipse with second moments xx, yy and xy, each widened by `pixel`; the long one first.
+fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
+    let (mean, spread) = (0.5 * (xx + yy) + pixel, (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
+    [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
+}
+
 /// Sums over the pixels of each node, and over its contour.
 pub struct Regions {
     /// In pixels.
     pub area: Vec<f64>,
     /// On the surface of a room that was laid out.
-    pub surface: Option<Vec<f64>>,
+    pub surface: Option<OnSurface>,
     x: Vec<f64>,
     y: Vec<f64>,
     xx: Vec<f64>,
@@ -101,11 +162,11 @@ pub struct Regions {
 }
 
 impl Regions {
-    pub fn new(tree: &Tree, photo: &Brightness, footprint: Option<&[f32]>, job: Job) -> Result<Self> {
+    pub fn new(tree: &Tree, photo: &Brightness, footprint: Option<&Footprint>, job: Job) -> Result<Self> {
         let blank = || try_vec(tree.len(), 0f64);
         let mut sums = Self {
             area: blank()?,
-            surface: footprint.map(|_| blank()).transpose()?,
+            surface: footprint.map(|footprint| OnSurface::new(tree, footprint)).transpose()?,
             x: blank()?,
             y: blank()?,
             xx: blank()?,
@@ -120,10 +181,6 @@ impl Regions {
                 job.check()?;
             }
             sums.add_row(tree, photo, y);
-        }
-        if let (Some(surface), Some(footprint)) = (&mut sums.surface, footprint) {
-            tree.node_of.iter().zip(footprint).for_each(|(&node, &area)| surface[node as usize] += f64::from(area));
-            tree.accumulate(surface);
         }
         let Self { area, x, y, xx, yy, xy, lab: [l, a, b], contour_gradient, contour_length, .. } = &mut sums;
         let all = [area, x, y, xx, yy, xy, l, a, b, contour_gradient, contour_length];
@@ -186,11 +243,9 @@ impl Regions {
     pub fn axes(&self, node: usize) -> [f64; 2] {
         let area = self.area[node];
         let [u, v] = self.centre(node);
+        let [xx, yy, xy] = [self.xx[node] / area - u * u, self.yy[node] / area - v * v, self.xy[node] / area - u * v];
         // A pixel has an extent of its own: a twelfth of its side squared.
-        let (xx, yy) = (self.xx[node] / area - u * u + 1.0 / 12.0, self.yy[node] / area - v * v + 1.0 / 12.0);
-        let xy = self.xy[node] / area - u * v;
-        let (mean, spread) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
-        [mean + spread, (mean - spread).max(1.0 / 12.0)].map(|variance| 4.0 * variance.sqrt())
+        ellipse([xx, yy, xy], 1.0 / 12.0)
     }
 
     /// Area over that of the ellipse with the same second moments: 1 of an ellipse, 0.95 of a rectangle, less of a ring or of branches.

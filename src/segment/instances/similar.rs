@@ -3,7 +3,7 @@
 
 use super::painted::MIN_AREA;
 use super::regions::{Brightness, Regions};
-use super::surroundings::{self, Surroundings};
+use super::surroundings::{self, Bounds, Surroundings};
 use super::tree::Tree;
 use crate::error::Result;
 use crate::image::{Image, try_vec};
@@ -22,16 +22,24 @@ const SOLIDITY: f64 = 0.85;
 /// Area, relative to the smallest painted lamp: at three times the distance a lamp in a ceiling is a third as wide and, foreshortened,
 /// a ninth as high. [convention]
 const SMALLER: f64 = 1.0 / 27.0;
-/// Area, relative to the largest painted lamp. [judged on 28 photos]
+/// Area, relative to the largest painted lamp, where the room's size is not known. [judged on 28 photos]
 const LARGER: f64 = 1.6;
 /// Factor between its area on the plane and those of the painted lamps: bloom and blur spread far ones. [judged on 44
 /// photos]
 const SURFACE: f64 = 4.0;
+/// Factors by which a lamp may be rounder or longer on the plane than the painted lamps: blur widens thin ones, and lengthens far ones
+/// along the view. [bench photos:tune]
+const ROUNDER: f64 = 4.0;
+const LONGER: f64 = 2.5;
 /// Share of the pixels of the largest painted lamp from which a painted lamp shows its area on the plane. [judged on 44
 /// photos]
 const SHOWN: f64 = 0.01;
-/// Breadth, relative to the broadest painted lamp. [judged on 28 photos]
+/// Breadth, relative to the broadest painted lamp, where the room's size is not known. [judged on 28 photos]
 const BROADER: f64 = 1.5;
+/// Share of the smallest area on the plane that the photo's border leaves of a lamp. [bench photos:tune]
+const CUT: f64 = 0.06;
+/// Share of a lamp's pixels that strokes beside lamps may graze. [bench photos:tune]
+const GRAZED: f64 = 0.03;
 /// Share of the ring that must be plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// Power of the area in the order of candidates: of nested regions with contours almost as sharp, the largest. [judged on 44 photos]
@@ -59,8 +67,8 @@ pub struct Similar {
 struct Model {
     min_area: f64,
     max_area: f64,
-    /// On the plane, where the room was laid out.
-    surface: Option<[f64; 2]>,
+    /// Where the room was laid out.
+    surface: Option<OnSurface>,
     max_breadth: f64,
     min_lightness: f64,
     min_solidity: f64,
@@ -68,6 +76,12 @@ struct Model {
     /// Least contrast along the contour and to the ring, of a lamp too large for blur to matter.
     contour: f64,
     ring: f64,
+}
+
+/// Ranges of lamps on the surface of the room.
+struct OnSurface {
+    area: [f64; 2],
+    aspect: [f64; 2],
 }
 
 pub struct Search<'a> {
@@ -147,10 +161,14 @@ impl Search<'_> {
             max_area: most(of(&|n| regions.area[n])) * LARGER,
             surface: regions.surface.as_ref().map(|surface| {
                 let min_shown = SHOWN * most(of(&|n| regions.area[n]));
-                let shown = painted.iter().map(|&n| n as usize).filter(|&n| regions.area[n] >= min_shown);
-                let range =
-                    shown.fold([f64::INFINITY, 0.0f64], |[low, high], n| [low.min(surface[n]), high.max(surface[n])]);
-                [range[0] / SURFACE, range[1] * SURFACE]
+                let shown: Vec<usize> =
+                    painted.iter().map(|&n| n as usize).filter(|&n| regions.area[n] >= min_shown).collect();
+                let range = |f: &dyn Fn(usize) -> f64| {
+                    let values = shown.iter().map(|&n| f(n));
+                    values.fold([f64::INFINITY, 0.0f64], |[low, high], v| [low.min(v), high.max(v)])
+                };
+                let ([min, max], [round, long]) = (range(&|n| surface.area[n]), range(&|n| surface.aspect(n)));
+                OnSurface { area: [min / SURFACE, max * SURFACE], aspect: [round / ROUNDER, long * LONGER] }
             }),
             max_breadth: most(of(&|n| regions.axes(n)[1])) * BROADER,
             min_lightness: least(of(&|n| regions.colour(n)[0])) - DIMMER,
@@ -161,22 +179,34 @@ impl Search<'_> {
         }))
     }
 
+    /// Whether a node has the size of a lamp: on the plane where the room was laid out, else in the photo. The border of the photo
+    /// may cut it to any smaller size.
+    fn has_size(&self, model: &Model, node: usize) -> bool {
+        let regions = self.regions;
+        let area = regions.area[node];
+        let Some((on_surface, surface)) = model.surface.as_ref().zip(regions.surface.as_ref()) else {
+            return (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
+        };
+        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
+        if surface.area[node] > on_surface.area[1] {
+            return false;
+        }
+        let is_whole = surface.area[node] >= on_surface.area[0]
+            && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
+        area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
+    }
+
     /// 1 and more where a node is like the painted lamps in all respects but its surroundings; below it, how far it is from that in
     /// one of brightness, colour and contrast; 0 where size, shape or strokes speak against it.
     fn likeness(&self, model: &Model, node: usize) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !(model.min_area..=model.max_area).contains(&area) || self.negatives[node] > 0.0 {
+        if !self.has_size(model, node) || self.negatives[node] > GRAZED * area {
             return 0.0;
         }
         let sharpness = sharpness(area);
         let contour = regions.contrast(node) / (model.contour * sharpness);
-        if contour < NEARLY || regions.axes(node)[1] > model.max_breadth || regions.solidity(node) < model.min_solidity
-        {
-            return 0.0;
-        }
-        let surface = model.surface.zip(regions.surface.as_ref());
-        if surface.is_some_and(|([least, most], surface)| !(least..=most).contains(&surface[node])) {
+        if contour < NEARLY || regions.solidity(node) < model.min_solidity {
             return 0.0;
         }
         let [l, a, b] = regions.colour(node);

@@ -76,6 +76,11 @@ impl Bounds {
         }
     }
 
+    /// Whether the rectangle reaches the photo's border.
+    pub fn touch_border(&self, photo: &Brightness) -> bool {
+        self.x0 == 0 || self.y0 == 0 || self.x1 == photo.width || self.y1 == photo.height
+    }
+
     /// Width and height.
     pub fn size(&self) -> [usize; 2] {
         [self.x1 - self.x0, self.y1 - self.y0]

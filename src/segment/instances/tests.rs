@@ -23,17 +23,23 @@ fn is_in(r: [usize; 4], x: usize, y: usize) -> bool {
 
 /// Features of a photo: a ceiling that is washed bright towards one side, dark walls below, a little noise.
 fn features() -> Image {
+    features_with(&LAMPS)
+}
+
+/// The same with other lamps. The ceiling faces the camera: all its pixels show equal areas.
+fn features_with(lamps: &[[usize; 4]]) -> Image {
     let mut image = Image::new(WIDTH, HEIGHT, CHANNELS).unwrap();
     for (i, pixel) in image.data.chunks_exact_mut(CHANNELS).enumerate() {
         let (x, y) = (i % WIDTH, i / WIDTH);
         let noise = 0.02 * (Rng::new(5, &[i as u64]).next_f32() - 0.5);
         let grey = match () {
-            () if LAMPS.iter().any(|r| is_in(*r, x, y)) || is_in(WINDOW, x, y) => 1.0,
+            () if lamps.iter().any(|r| is_in(*r, x, y)) || is_in(WINDOW, x, y) => 1.0,
             () if y < 120 => 0.25 + 0.2 * x as f32 / WIDTH as f32,
             () => 0.1,
         };
         let lab = colour::linear_to_lab(Vec3::splat((grey + noise).clamp(0.0, 1.0)));
         pixel[..3].copy_from_slice(&lab.to_array());
+        pixel[4..7].copy_from_slice(&[0.01 * x as f32, 2.0, 0.01 * y as f32]);
         pixel[7..].copy_from_slice(&if y < 120 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, -1.0] });
     }
     image
@@ -49,7 +55,11 @@ fn stroke(positive: bool, points: &[[f64; 2]]) -> Stroke {
 }
 
 fn segment(strokes: &[Stroke], within: Option<&Image>) -> Segmentation {
-    let input = Input { features: &features(), strokes, within };
+    segment_in(&features(), strokes, within)
+}
+
+fn segment_in(features: &Image, strokes: &[Stroke], within: Option<&Image>) -> Segmentation {
+    let input = Input { features, strokes, within };
     run(&input, &Params { subject: Subject::Lamps, ..Params::default() }, Monitor::default().job()).unwrap()
 }
 
@@ -89,6 +99,36 @@ fn a_negative_stroke_takes_a_lamp_out() {
     let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]]), stroke(false, &[[230.0, 26.0], [250.0, 26.0]])];
     let (lamps, elsewhere) = found(&segment(&strokes, Some(&ceiling)).mask);
     assert_eq!((lamps, elsewhere), (vec![true, true, false, true, true], 0));
+}
+
+#[test]
+fn a_negative_stroke_that_grazes_a_lamp_leaves_it() {
+    let ceiling = ceiling();
+    // Over a corner of the second lamp: 6 of its 480 pixels.
+    let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]]), stroke(false, &[[118.0, 33.0], [124.0, 33.0]])];
+    assert_eq!(found(&segment(&strokes, Some(&ceiling)).mask), (vec![true; 5], 0));
+}
+
+#[test]
+fn a_lamp_that_the_border_cuts_may_be_of_any_size_and_a_thing_inside_may_not() {
+    let ceiling = ceiling();
+    let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
+    for (x, is_found) in [(WIDTH - 10, true), (WIDTH - 20, false)] {
+        let part = [x, 90, x + 10, 96];
+        let features = features_with(&[&LAMPS[..], &[part]].concat());
+        let mask = segment_in(&features, &strokes, Some(&ceiling)).mask;
+        assert_eq!(mask.pixel(x + 5, 93)[0] > 0.5, is_found, "a piece of 10 x 6 pixels at {x}");
+    }
+}
+
+#[test]
+fn things_of_another_shape_are_no_lamps() {
+    let ceiling = ceiling();
+    // A bright strip of a lamp's area, twelve times as long for its width.
+    let strip = [60, 100, 180, 104];
+    let features = features_with(&[&LAMPS[..], &[strip]].concat());
+    let mask = segment_in(&features, &[stroke(true, &[[30.0, 26.0], [50.0, 26.0]])], Some(&ceiling)).mask;
+    assert_eq!(mask.pixel(120, 102)[0], 0.0);
 }
 
 #[test]
