@@ -39,6 +39,11 @@ const ALIGNED: f64 = 0.07;
 /// Standard deviation of a side, and of the bloom at each edge, in pixels of the photo. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
+/// The same of the bloom where the lamps show it: where it explains this share of the differences of their sides, of so many lamps
+/// at least. Lamps of several lengths, or hidden in part, do not grow with magnification. [bench photos:tune, photos:real]
+const SHOWN_BLOOM: f64 = 1.5;
+const EXPLAINED: f64 = 0.5;
+const MIN_JUDGES: usize = 4;
 /// Corners of an ellipse's outline. [rounding]
 const ELLIPSE_CORNERS: usize = 64;
 
@@ -271,17 +276,24 @@ fn common_axis(members: &[&Member]) -> DVec2 {
 /// least squares of side = s + 2 bloom × photo pixel, the bloom held to its deviation.
 fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     // Normal equations of s and bloom.
-    let (mut gram, mut sums) = (DMat2::from_diagonal(DVec2::new(0.0, BLOOM.powi(-2))), DVec2::ZERO);
+    let (mut gram, mut sums, mut square) = (DMat2::ZERO, DVec2::ZERO, 0.0);
     let (mut least, mut count) = (f64::INFINITY, 0);
     for (side, pixel) in sides {
         let weight = (SIDE_NOISE * pixel).powi(-2);
         let row = DVec2::new(1.0, 2.0 * pixel);
         gram += DMat2::from_cols(row * row.x, row * row.y) * weight;
         sums += row * side * weight;
+        square += side * side * weight;
         (least, count) = (least.min(side), count + 1);
     }
-    let fitted = gram.inverse() * sums;
-    let bloomless = if fitted.y > 0.0 && count > 1 { fitted.x } else { sums.x / gram.x_axis.x };
+    let mean = sums.x / gram.x_axis.x;
+    let fit = |deviation: f64| (gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * sums;
+    let shown = fit(SHOWN_BLOOM);
+    // Sums of squared residuals of the fit and of the mean.
+    let (left, all) = (square - 2.0 * shown.dot(sums) + shown.dot(gram * shown), square - mean * sums.x);
+    let is_shown = count >= MIN_JUDGES && left < (1.0 - EXPLAINED) * all;
+    let fitted = if is_shown { shown } else { fit(BLOOM) };
+    let bloomless = if fitted.y > 0.0 && count > 1 { fitted.x } else { mean };
     Some(bloomless.max(0.5 * least)).filter(|s| s.is_finite() && *s > 0.0)
 }
 
