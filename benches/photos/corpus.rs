@@ -90,7 +90,9 @@ pub fn load(source: &Source) -> Result<Photo, String> {
 fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
     let [width, height] = [photo.width, photo.height];
     let listed = items(&record["luminaires"]);
-    let mut lamps: Vec<Lamp> = listed.iter().filter_map(lamp).collect();
+    let mut lamps = distinct(listed.iter().filter_map(lamp).collect(), [width, height]);
+    let centres =
+        listed.iter().filter(|item| lamp(item).is_none()).filter_map(|item| point(&item["centre_px"])).collect();
     let mut lights = Mask::new(width, height);
     lamps.iter().flat_map(|lamp| &lamp.polygons).for_each(|polygon| lights.fill(polygon));
     // Lamps measured in the ceiling seen straight on, some of which the list by hand leaves out.
@@ -117,11 +119,32 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
         plane: None,
         either: None,
         lamps,
+        centres,
         layout,
         distance: None,
         to_photo,
         is_trap: TRAPS.contains(&name),
     }
+}
+
+/// The lamps without those that lie in one another: several seeds on one lamp grow regions that hold each other. The largest region
+/// is the lamp.
+fn distinct(mut lamps: Vec<Lamp>, [width, height]: [usize; 2]) -> Vec<Lamp> {
+    let drawn = |lamp: &Lamp| {
+        let mut mask = Mask::new(width, height);
+        lamp.polygons.iter().for_each(|polygon| mask.fill(polygon));
+        mask
+    };
+    lamps.sort_by_key(|lamp| std::cmp::Reverse(drawn(lamp).count()));
+    let mut kept: Vec<(Lamp, Mask)> = Vec::new();
+    for lamp in lamps {
+        let mask = drawn(&lamp);
+        let is_within = |(_, other): &(Lamp, Mask)| 2 * mask.common(other) > mask.count();
+        if !kept.iter().any(is_within) {
+            kept.push((lamp, mask));
+        }
+    }
+    kept.into_iter().map(|(lamp, _)| lamp).collect()
 }
 
 /// The shorter side of the smallest rectangle around a polygon of pixels.

@@ -75,7 +75,13 @@ impl Agreement {
         // A texture that lacks what the truth has is as far off as can be.
         let demanded = |a: Option<f64>, b: Option<f64>| b.map(|b| a.map_or(f64::INFINITY, |a| (a / b).ln()));
         let lines = truth.are_lines();
-        let spacing = |lamps: &Lamps| if lines { lamps.spacing_across() } else { lamps.spacing() };
+        // The photo of a single row does not tell what lies beside it.
+        let row = truth.row();
+        let spacing = |lamps: &Lamps| match row {
+            _ if lines => lamps.spacing_across(),
+            Some(angle) => lamps.spacing_along(angle),
+            None => lamps.spacing(),
+        };
         let lit = texture.lit.zip(truth.lit).map(|([lit, _], [low, high])| (lit / lit.clamp(low, high)).ln());
         let steps = texture.steps().zip(truth.steps());
         let kinds = truth.by_kind();
@@ -189,6 +195,14 @@ fn precision(lights: &Mask, truth: &Truth) -> f64 {
     if let Some(unlisted) = &truth.unlisted {
         let unlisted = unlisted.on.iter().zip(&near.on).map(|(unlisted, near)| *unlisted && !near);
         lights.on.iter_mut().zip(unlisted).for_each(|(on, unlisted)| *on &= !unlisted);
+    }
+    if !truth.centres.is_empty() {
+        let is_listed = |i: &usize| {
+            let at = DVec2::new((i % lights.width) as f64 + 0.5, (i / lights.width) as f64 + 0.5);
+            truth.centres.iter().any(|centre| centre.distance(at) <= f64::from(NEAR))
+        };
+        let parts: Vec<Vec<usize>> = lights.parts().into_iter().filter(|part| part.iter().any(is_listed)).collect();
+        parts.iter().flatten().filter(|i| !near.on[**i]).for_each(|&i| lights.on[i] = false);
     }
     lights.common(&near) as f64 / lights.count().max(1) as f64
 }

@@ -167,6 +167,7 @@ fn truth(room: &Room, shot: &Shot, look: &Look, scenery: &Scenery) -> Truth {
         plane: Some(plane),
         either: Some(either),
         lamps,
+        centres: Vec::new(),
         layout,
         distance: Some(shot.distance.into()),
         to_photo: Some(to_photo),

@@ -2,10 +2,16 @@
 
 use glam::DVec2;
 use luxfer::geometry::polygon;
+use std::f64::consts::PI;
 
 /// Lamps longer than this many times their width are lines: their ends are where the photo or a joint cuts them, so width and
 /// distance across describe them. [convention]
 const LINE_ASPECT: f64 = 6.0;
+
+/// Ratio of the sides of a lamp from which its long side has a direction. [convention]
+const LONG: f64 = 1.2;
+/// Cosine of the angle up to which a step follows a row. [convention: 20 degrees]
+const ALONG: f64 = 0.94;
 
 /// One lamp.
 #[derive(Clone, Debug)]
@@ -105,6 +111,26 @@ impl Lamps {
         median((0..centres.len()).filter_map(|i| {
             let others = (0..centres.len()).filter(|j| *j != i);
             others.map(|j| centres[i].distance(centres[j])).min_by(f64::total_cmp)
+        }))
+    }
+
+    /// Of lamps in a single row, the angle from a lamp's long side to the row, in [0, π); none of round lamps.
+    pub fn row(&self) -> Option<f64> {
+        let [first, .., last] = &self.whole[..] else { return None };
+        let along = (last.centre - first.centre).try_normalize()?;
+        let is_in_row = |lamp: &Shape| (lamp.centre - first.centre).perp_dot(along).abs() < lamp.sides.y / 2.0;
+        let is_row = self.whole.len() > 2 && self.others.is_empty() && self.whole.iter().all(is_in_row);
+        let is_long = self.aspect().is_some_and(|aspect| aspect > LONG);
+        (is_row && is_long).then(|| first.axis.angle_to(along).rem_euclid(PI))
+    }
+
+    /// Median distance from a lamp's centre to the nearest other in the direction at an angle to its long side.
+    pub fn spacing_along(&self, angle: f64) -> Option<f64> {
+        median(self.whole.iter().filter_map(|lamp| {
+            let along = DVec2::from_angle(angle).rotate(lamp.axis);
+            let steps = self.whole.iter().map(|other| other.centre - lamp.centre);
+            let ahead = steps.filter(|step| step.dot(along).abs() > ALONG * step.length() && step.length() > 0.0);
+            ahead.map(|step| step.length()).min_by(f64::total_cmp)
         }))
     }
 

@@ -39,6 +39,8 @@ pub struct Truth {
     /// Pixels that may be taken for the plane or not, as of beams under a ceiling.
     pub either: Option<Mask>,
     pub lamps: Vec<Lamp>,
+    /// Lamps of which the list gives the centre alone: what a mask holds there is judged neither way.
+    pub centres: Vec<DVec2>,
     /// The lamps in their plane, where the camera is known; 1 is the distance of the camera from the plane.
     pub layout: Option<Lamps>,
     /// That distance in metres, where known.
