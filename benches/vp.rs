@@ -91,7 +91,7 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
         headline.push(("vp.yud_dev.auc10".into(), auc));
     }
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
-        let told = set.told_which_lines();
+        let told = set.from_labelled_lines();
         let angles = |from: usize, to: usize| {
             let mut all: Vec<f64> = told.iter().flat_map(|i| &i[from.min(i.len())..to.min(i.len())]).copied().collect();
             all.sort_by(f64::total_cmp);

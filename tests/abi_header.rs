@@ -1,10 +1,9 @@
-//! The header is generated, complete, and true: it equals what cbindgen makes of the sources, compiles as C99 and C++17
-//! without a warning, its structs have the size and the offsets that Rust gives them, and its functions are what the
-//! library exports.
+//! The header is generated and complete: it equals the output of cbindgen, compiles as C99 and C++17 without warnings,
+//! its structs have the sizes and offsets of the Rust structs, and its functions are the exported ones.
 //!
 //! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h`.
 
-// The header is that of the whole library.
+// The header describes the library with all features.
 #![cfg(feature = "stylize")]
 
 use luxfer::ffi::*;
@@ -65,7 +64,7 @@ const GROUPS: &[&str] = &[
     "demo_photo",
 ];
 
-/// Structs that come in arrays: they carry no size, and never change.
+/// Structs that occur in arrays: they have no size field and never change.
 const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit"];
 
 #[test]
@@ -85,7 +84,7 @@ fn the_header_is_what_the_sources_say() {
     assert_eq!(checked_in.len(), generated.len(), "include/luxfer.h ends early or late; run with LUXFER_BLESS=1");
 }
 
-/// The C program in the README is one that compiles, warnings as errors.
+/// The C program in the README compiles, with warnings as errors.
 #[test]
 fn the_readme_program_compiles() {
     let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
@@ -105,7 +104,7 @@ fn the_header_compiles_as_c99_and_as_cpp17_without_a_warning() {
     }
 }
 
-/// Compiles a file against the header, warnings as errors.
+/// Checks a file against the header with a compiler, with warnings as errors.
 fn check_syntax(compiler: &str, standard: &str, file: &Path) {
     run(Command::new(compiler)
         .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", "-I"])
@@ -133,7 +132,7 @@ fn structs_have_the_same_layout_in_c_and_rust() {
     let structs = structs(&header);
     assert!(structs.len() > 5);
 
-    // A C program that prints what the C compiler makes of each field the header has.
+    // A C program that prints the offset and the size of each field of the header.
     let mut source = "#include \"luxfer.h\"\n#include <stdio.h>\nint main(void) {\n".to_string();
     for (name, fields) in &structs {
         writeln!(source, "printf(\"{name} = %zu\\n\", sizeof({name}));").unwrap();
@@ -159,7 +158,7 @@ fn structs_have_the_same_layout_in_c_and_rust() {
         for (field, offset, field_size) in fields {
             writeln!(seen_by_rust, "{name}.{field} = {offset} + {field_size}").unwrap();
         }
-        // New fields are told from old ones by the size alone, so none may hide in padding at the end.
+        // Only the struct size distinguishes new fields from old ones, so there must be no padding at the end.
         let (_, offset, field_size) = fields.last().unwrap();
         assert_eq!(offset + field_size, *size, "{name} has padding at its end");
         let starts_with_size = fields[0] == ("struct_size", 0, 4);
@@ -207,7 +206,7 @@ fn header() -> String {
     std::fs::read_to_string(root().join("include/luxfer.h")).expect("include/luxfer.h")
 }
 
-/// A file beside the test programs, which are not in the source tree.
+/// Path of a temporary file outside the source tree, beside the test programs.
 fn scratch(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
@@ -222,14 +221,14 @@ fn version() -> [&'static str; 3] {
     [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]
 }
 
-/// Runs a program that must succeed; returns what it prints.
+/// Runs a program that must succeed; returns its output.
 fn run(command: &mut Command) -> String {
     let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
     assert!(output.status.success(), "{command:?}:\n{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// One pass of cbindgen for each file, under the head comment of the file.
+/// Runs cbindgen once for each file and puts the head comment of the file before its output.
 fn generate() -> String {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
     let mut out = config.header.take().unwrap();
@@ -253,7 +252,7 @@ fn generate() -> String {
     (out + &trailer).trim_start().to_string()
 }
 
-/// Puts comments that fit onto one line.
+/// Puts each comment that fits onto one line.
 fn one_line_comments(text: &str) -> String {
     let mut lines = text.lines();
     let mut out = String::new();
@@ -275,7 +274,7 @@ fn one_line_comments(text: &str) -> String {
     out
 }
 
-/// The head comment of a source file, set off by rules.
+/// The head comment of a source file as a section heading.
 fn banner(source: &str) -> String {
     let rule = "=".repeat(116);
     let lines = source.lines().map_while(|l| l.strip_prefix("//!"));
@@ -311,7 +310,7 @@ fn structs(header: &str) -> BTreeMap<&str, Vec<&str>> {
         } else if line.starts_with('}') {
             current = None;
         } else if line.trim_start().starts_with(['*', '/']) {
-            // A comment, whose lines may end with a semicolon too.
+            // Skip comments, whose lines may end with a semicolon too.
         } else if let (Some(fields), Some(declaration)) = (&mut current, line.strip_suffix(';')) {
             let name = declaration.split('[').next().unwrap();
             fields.push(name.rsplit([' ', '*']).next().unwrap());
@@ -324,7 +323,7 @@ type Fields = Vec<(&'static str, usize, usize)>;
 
 macro_rules! layouts {
     ($($type:ident: $($field:ident)*;)*) => {
-        /// Sizes, and offsets and sizes of the fields, as Rust has them.
+        /// For each struct its size, and the offsets and sizes of its fields, as Rust lays them out.
         fn rust_layouts() -> BTreeMap<&'static str, (usize, Fields)> {
             BTreeMap::from([$((stringify!($type), {
                 fn size<T>(_: fn(&$type) -> &T) -> usize {
