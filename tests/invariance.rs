@@ -84,7 +84,7 @@ fn picture((scene, camera): &(Scene, Camera), samples: u32) -> Film {
 }
 
 /// Number of paths for comparisons in which the paths are identical.
-const FEW: u32 = 1 << 12;
+const IDENTICAL_PATHS: u32 = 1 << 12;
 
 /// The material of the ceiling with its lamps.
 fn emitter(scene: &Scene) -> usize {
@@ -106,23 +106,23 @@ fn solution((scene, _): &(Scene, Camera), paths: u32) -> Solution {
 #[test]
 fn the_unit_of_length_changes_nothing() {
     let metres = room();
-    let (film, solved) = (picture(&metres, 8), solution(&metres, FEW));
+    let (film, solved) = (picture(&metres, 8), solution(&metres, IDENTICAL_PATHS));
     for power in [-20, -10, 10, 20] {
         let scaled = mapped(&metres, Mat3::IDENTITY, 2f32.powi(power), Vec3::ZERO);
         assert_eq!(picture(&scaled, 8).beauty, film.beauty, "2^{power}");
-        assert_eq!(solution(&scaled, FEW).scale, solved.scale, "2^{power}");
+        assert_eq!(solution(&scaled, IDENTICAL_PATHS).scale, solved.scale, "2^{power}");
     }
 }
 
 #[test]
 fn the_place_changes_nothing() {
     let here = room();
-    let (film, solved) = (picture(&here, 8), solution(&here, FEW));
+    let (film, solved) = (picture(&here, 8), solution(&here, IDENTICAL_PATHS));
     // At these distances coordinates are multiples of 1/16 m, as are all lengths of the room.
     for place in [vec3(1e6, 0.0, 0.0), vec3(-1e6, 2e5, 1e6)] {
         let moved = mapped(&here, Mat3::IDENTITY, 1.0, place);
         assert_eq!(picture(&moved, 8).beauty, film.beauty, "{place}");
-        assert_eq!(solution(&moved, FEW).scale, solved.scale, "{place}");
+        assert_eq!(solution(&moved, IDENTICAL_PATHS).scale, solved.scale, "{place}");
     }
 }
 
@@ -154,7 +154,7 @@ fn the_strength_of_the_lamps_changes_nothing_but_the_answer() {
     let emission = scene.materials[emitter].emission;
     let mut scale = |power: i32| {
         scene.materials[emitter].emission = emission * 2f32.powi(power);
-        solution(&(scene.clone(), camera.clone()), FEW).scale * 2f64.powi(power)
+        solution(&(scene.clone(), camera.clone()), IDENTICAL_PATHS).scale * 2f64.powi(power)
     };
     let solved = scale(0);
     for power in [-30, -10, 10, 30] {
