@@ -142,8 +142,8 @@ pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: 
     Perspective { focal, axes, ..*camera }
 }
 
-/// The relative standard deviation of a focal length that was not given: of what the vanishing points of the axes and
-/// photos in general say together.
+/// The relative standard deviation of a focal length that was not given, from the vanishing points of the axes and the
+/// prior together.
 pub fn focal_spread(camera: &Perspective, points: &[VanishingPoint; 3]) -> f64 {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let from_lines =

@@ -112,7 +112,8 @@ fn points_at_the_centre_and_at_infinity_are_exact() {
 fn the_files_focal_length_decides_where_lines_do_not() {
     let expected = |focal: f64| Params { expected_focal: Some([focal, 0.05 * focal]), ..Params::default() };
     let mask = Image::from_fn(SIZE.0, SIZE.1, |_, y| [f32::from(y < 200)]).unwrap();
-    // Straight along the room: lines say nothing of the focal length, and so of how long the ceiling is.
+    // The camera looks straight along the room, so the lines determine neither the focal length nor the length of the
+    // ceiling.
     let ahead = camera(0.0, 0.0, 0.0, 1000.0);
     let (photo, lines) = (ceiling(&ahead), room(&ahead, [20, 20, 20], 0.0, 3));
     let unwarped = |params: &Params| {
@@ -175,7 +176,7 @@ fn two_families_give_the_third() {
 
 #[test]
 fn families_that_no_camera_could_see_at_right_angles_still_give_orthogonal_axes() {
-    // Vanishing points on one side of the centre: their rays meet at less than a right angle whatever the focal length.
+    // Vanishing points on one side of the centre: for any focal length their rays meet at less than a right angle.
     let points = [DVec2::new(1500.0, 320.0), DVec2::new(2500.0, 350.0)];
     let segments: Vec<Segment> = (0..80)
         .map(|i| {
