@@ -1,7 +1,8 @@
 //! One resolution of the problem, quantised for matching.
 
 use super::guides::{Channels, no_guides};
-use super::{Input, Mode, Params, check_side, pca};
+use super::params::{Input, Mode, Params, check_side};
+use super::pca;
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::colour::linear_to_srgb;
