@@ -4,9 +4,10 @@
 //! field as it was before the sweep, and writes all tiles back at the end.
 
 use super::domain::Domain;
-use super::field::{Field, NONE, pack, unpack};
+use super::field::Field;
 use super::kernel::{Kernel, Patch};
 use super::occurrence::Occurrence;
+use super::position::{NONE, pack, unpack};
 use super::quantised::QuantisedImage;
 use crate::error::Result;
 use crate::exec;

@@ -1,7 +1,8 @@
 //! Reconstructs the image from a field: the average of the pixels that overlapping matches place at each position
 //! (Algorithm 1).
 
-use super::field::{Field, NONE, pack, unpack};
+use super::field::Field;
+use super::position::{NONE, pack, unpack};
 use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
