@@ -6,11 +6,8 @@
 //! out in between.
 
 use super::footprint::{Footprints, RUN};
-use super::lanes::MAX_READ;
+use super::lanes::{MAX_READ, TAPS};
 use crate::image::Image;
-
-/// Taps along each side.
-pub const TAPS: usize = 4;
 
 /// Longest side of a rectangle that the taps cover at any sub-pixel position: `TAPS - 1` [convention].
 pub const MAX_SIDE: f32 = 3.0;

@@ -8,7 +8,7 @@ use crate::exec::Pool;
 use crate::geometry::FocalSource;
 use crate::job::Monitor;
 use crate::rng::Rng;
-use glam::{DMat3, DQuat};
+use glam::{DMat3, DQuat, DVec3};
 
 const SIZE: (usize, usize) = (800, 600);
 

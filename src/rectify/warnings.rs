@@ -1,6 +1,7 @@
 //! Reasons to doubt a camera and an unwarped plane.
 
-use super::camera::{USUAL_SPREAD, focal_spread};
+use super::camera::focal_spread;
+use super::focal::USUAL_SPREAD;
 use super::{Unwarped, View};
 use crate::geometry::FocalSource;
 use crate::warning::{Code, Warning, percent};
