@@ -1,8 +1,8 @@
 //! Matrix products: four rows by sixteen columns are accumulated in registers, in order along the shared axis.
 
 use super::super::tensor::{Tensor, count};
+use super::call::{Call, Settings};
 use super::elementwise::Spread;
-use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_collect;
