@@ -1,8 +1,14 @@
+use super::aligned::Aligned;
+use super::lanes::Baseline;
+use super::node::Node;
+use super::packet::{Packet, TriangleRay};
+use super::traverse::is_better;
 use super::*;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use crate::rng::Rng;
 use crate::simd::forced;
+use glam::Vec3;
 use std::sync::{Arc, Mutex};
 
 fn build(triangles: &[[Vec3; 3]]) -> Accel {
