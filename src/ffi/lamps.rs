@@ -8,7 +8,7 @@ use super::context::luxfer_context;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
-use super::lamps_goals::Aim;
+use super::lamp_goal::StoredGoal;
 use super::params::{self, Versioned};
 use super::pointer::Out;
 use super::query::LUXFER_NONE;
@@ -104,7 +104,7 @@ unsafe impl Versioned for luxfer_lamps_params {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     pub emission: Option<(Arc<SceneObject>, Option<u32>)>,
-    pub goals: Vec<Aim>,
+    pub goals: Vec<StoredGoal>,
     /// Dimming levels of the drivers; empty for drivers without steps.
     pub levels: Vec<f64>,
 }
