@@ -18,7 +18,7 @@ use std::io::Cursor;
 
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// Primaries with which R, G and B are CIE X, Y and Z.
+/// Primaries with which R, G and B are CIE X, Y and Z [convention].
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
 /// Bytes of a tile that any file may have.

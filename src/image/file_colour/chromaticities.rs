@@ -35,6 +35,7 @@ impl Chromaticities {
 
     /// By the codes of Recommendation ITU-T H.273, table 2.
     pub fn of_code(code: u8) -> Option<Self> {
+        // [convention: Recommendation ITU-T H.273]
         const D65: [f64; 2] = Chromaticities::REC709.white;
         const C: [f64; 2] = [0.310, 0.316];
         let (primaries, white) = match code {

@@ -9,8 +9,8 @@ use crate::image::colour::srgb_to_linear;
 pub const PQ: u8 = 16;
 pub const HLG: u8 = 18;
 
-/// Reference white of high dynamic range, which becomes 1: in cd/m² of PQ, and as a code of HLG (Recommendation ITU-R
-/// BT.2408-7, table 1).
+/// Reference white of high dynamic range, which becomes 1: in cd/m² of PQ, and as a code of HLG
+/// [convention: Recommendation ITU-R BT.2408-7, table 1].
 const PQ_WHITE: f64 = 203.0;
 const HLG_WHITE: f64 = 0.75;
 

@@ -120,5 +120,5 @@ impl ExifColour {
     }
 }
 
-/// Adobe RGB (1998), 4.3.1.2: 2 + 51/256.
+/// Exponent of Adobe RGB: 2 + 51/256 [convention: Adobe RGB (1998), 4.3.1.2].
 const ADOBE_GAMMA: f64 = 563.0 / 256.0;

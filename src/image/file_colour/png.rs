@@ -7,7 +7,7 @@ use super::{Conversion, Space, cicp, icc};
 use crate::error::Result;
 use crate::image::containers::png_chunks;
 
-/// Numbers of `gAMA` and `cHRM` are stored as 100,000 times their value.
+/// Numbers of `gAMA` and `cHRM` are stored as 100,000 times their value [convention: PNG].
 const UNIT: f64 = 100_000.0;
 
 /// Exponents of `gAMA` that a picture can mean. [convention]

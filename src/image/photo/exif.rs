@@ -31,7 +31,7 @@ mod tag {
     pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
-/// What the sensitivity of 16 bits says where the number is too large for it.
+/// Value of the 16-bit sensitivity field if the number is too large for it [convention: Exif].
 const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
 
 /// The notes that the library has a use for. Numbers that no camera can mean are absent.

@@ -15,7 +15,7 @@ pub(super) use orientation::Upright;
 /// apart at 4:3).
 const FOCAL_ERROR: f64 = 0.05;
 
-/// Diagonal of film of 36 x 24 mm, along which CIPA DCG-001 takes equivalent focal lengths.
+/// Diagonal of film of 36 x 24 mm, to which equivalent focal lengths refer [convention: CIPA DCG-001].
 const FILM_DIAGONAL: f64 = 43.266_615_305_567_87;
 
 /// Two ways to the focal length that differ by more than this contradict each other. [convention]: twice
@@ -26,11 +26,11 @@ const AGREEMENT: f64 = 0.1;
 /// resizing rounds them. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
-/// ISO 12232:2019, 6.2: saturation-based speed is 78 lx s over the focal-plane exposure that just saturates.
+/// Saturation-based speed is 78 lx s over the focal-plane exposure that just saturates [convention: ISO 12232:2019, 6.2].
 const SATURATION: f64 = 78.0;
 
-/// Focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis (ISO
-/// 12232:2019, annex A).
+/// Focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis
+/// [convention: ISO 12232:2019, annex A].
 const LENS: f64 = 0.65;
 
 /// How far the luminance of white may lie from the saturation-based one, as factors. Below: the speed may be a
