@@ -69,7 +69,6 @@ impl Op {
         if let Some(op) = Unary::read(node.kind, &at).map(Self::Unary).or(Binary::read(node.kind).map(Self::Binary)) {
             return Ok(op);
         }
-        let axes = || at.integers("axes");
         Ok(match node.kind {
             "Constant" => Self::Constant(constant(&at)?),
             "Clip" => Self::Clip {
@@ -104,6 +103,14 @@ impl Op {
                 Self::Reduce(reduce::Reduce::read(node.kind, &at))
             }
             "Resize" | "Upsample" => Self::Resize(resize::Resize::read(node.kind, &at, opset, constants)?),
+            _ => Self::read_rearranging(node, &at)?,
+        })
+    }
+
+    /// Parses an operator that rearranges items or computes shapes.
+    fn read_rearranging(node: &NodeMessage, at: &Settings) -> Result<Self> {
+        let axes = || at.integers("axes");
+        Ok(match node.kind {
             "Pad" => Self::Pad {
                 mode: gather::Pad::read(at.text("mode", "constant"))?,
                 pads: at.integers("pads"),
