@@ -13,6 +13,7 @@
 //! therefore measured at three numbers of paths; at the largest of them only for some of the tiles, selected in
 //! proportion to their part of the variance at the second.
 
+pub use super::adaptive::MIN_UNIFORM_PATHS;
 use super::eye::Eye;
 use super::grid::{AREA, Grid};
 use super::pass::Pass;
@@ -32,13 +33,13 @@ use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-/// Largest number of tiles to render. [judged, not recorded]
+/// Largest number of tiles to render. [origin not recorded]
 const MAX_TILES: usize = 128;
 /// Paths per pixel in three passes: each replication has a power of four, at which points are stratified best.
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
-/// Largest number of tiles with the last number of paths. [judged, not recorded]
+/// Largest number of tiles with the last number of paths. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Selection weight of a tile without variance, relative to the mean. [judged, not recorded]
+/// Selection weight of a tile without variance, relative to the mean. [origin not recorded]
 const MIN_CHANCE: f64 = 0.5;
 /// Separates the random numbers of the pilot from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
