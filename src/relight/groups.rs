@@ -110,7 +110,7 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams,
     Ok(GroupSolution { scale, half_width, outcomes, unreachable })
 }
 
-/// Number of groups processed per task. [judged, not recorded]
+/// Number of groups processed per task. [convention]
 const GROUPS_PER_RUN: usize = 1024;
 
 /// The power of each group: one list for all channels, or one list per channel.

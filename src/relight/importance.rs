@@ -77,7 +77,7 @@ const MAX_CELLS: usize = 512;
 
 /// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells if that is less; at most 64. With
 /// too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
-/// [judged, not recorded]
+/// [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;

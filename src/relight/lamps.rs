@@ -20,7 +20,7 @@ pub struct Lamps {
     sizes: Vec<f32>,
 }
 
-/// Relative gap in area, from one lamp to the next larger one, that separates two types. [judged, not recorded]
+/// Relative gap in area, from one lamp to the next larger one, that separates two types. [origin not recorded]
 const TYPE_GAP: f32 = 0.25;
 
 #[derive(Clone, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Largest number of primaries of a luminaire. [convention]
 pub const MAX_PRIMARIES: usize = 64;
 
-/// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [judged, not
+/// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [origin not
 /// recorded]
 const REGULARISATION: f64 = 1e-9;
 /// Relative colour error that counts as zero. [rounding]
