@@ -12,9 +12,9 @@ use crate::image::try_collect;
 use crate::job::Job;
 use glam::{DVec3, Vec3};
 
-/// Number of paths that the prior, the mean of the tile, is worth. [judged, not recorded]
+/// Number of paths that the prior, the mean of the tile, is worth. [origin not recorded]
 const PRIOR_PATHS: f64 = 8.0;
-/// Largest ratio of the median radiance to a pixel's radiance, and reciprocal of the smallest. [judged, not recorded]
+/// Largest ratio of the median radiance to a pixel's radiance, and reciprocal of the smallest. [origin not recorded]
 const MAX_WEIGHT: f64 = 50.0;
 
 /// Median over the tiles of their mean radiance, per channel; `None` without any paths.
