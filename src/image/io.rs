@@ -1,9 +1,9 @@
-//! Picture files: PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR in; PNG and OpenEXR out. With `raster` and
-//! `radiance` the only user of `image`.
+//! Picture files: reads PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR; writes PNG and OpenEXR. Only this
+//! file, `raster` and `radiance` use the crate `image`.
 //!
-//! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it. Photos are
-//! converted from the colour space that their file states to linear Rec.709 ([`super::file_colour`]); textures are
-//! not, as glTF asks (2.0, 3.8.3), nor are data.
+//! A header that claims more than [`MAX_PIXELS`] is refused before any allocation. Photos are converted from the
+//! colour space that their file states to linear Rec.709 ([`super::file_colour`]); textures are not, as glTF requires
+//! (2.0, 3.8.3), nor are data.
 
 pub use super::files::{Target, check_regular, read_file, write_file};
 use crate::error::{Error, ErrorKind, Result};
@@ -19,35 +19,35 @@ use std::path::Path;
 pub use crate::image::openexr::{Layer, encode as encode_exr};
 pub use crate::image::working::working_bytes;
 
-/// Largest image a file may hold: 2^28 pixels, a 16 k square.
+/// Maximum number of pixels of a file: 2^28, a 16 k square.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
-/// No compression of an OpenEXR or TIFF file that can be read makes samples more times shorter (deflate: 1032, once
-/// PXR24 has left out a quarter; LZW: 1330).
+/// Upper bound of the compression ratio of OpenEXR and TIFF files (deflate: 1032, and PXR24 drops a quarter before;
+/// LZW: 1330).
 pub(super) const DENSEST: usize = 1400;
 
-/// How the samples of a file are to be read.
+/// Interpretation of the samples of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     /// Colours: integers are sRGB, floating-point numbers linear, unless the file of a photo states another space.
     Srgb,
-    /// Data that is no colour, as it is: normal maps, roughness, masks.
+    /// Data other than colour, returned as stored: normal maps, roughness, masks.
     Linear,
 }
 
-/// A picture that stands upright in linear Rec.709, and what its file says of the camera.
+/// An upright picture in linear Rec.709, and the metadata of its file.
 #[derive(Clone, Debug)]
 pub struct Photo {
     pub image: Image,
     pub metadata: PhotoMetadata,
 }
 
-/// Reads a file with 1, 3 or 4 channels, as linear values, upright.
+/// Reads a file with 1, 3 or 4 channels as linear values, upright.
 pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
     decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.within(path.display()))
 }
 
-/// Reads a picture file held in memory, its rows and columns and its colours as they are stored.
+/// Reads a picture file in memory, with rows, columns and colour space as stored.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     match Format::of(bytes)? {
         Format::Exr => Ok(openexr::decode(bytes)?.0),
@@ -57,7 +57,7 @@ pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     }
 }
 
-/// Reads a picture file held in memory, puts it upright by what the camera wrote into it, and converts its colours.
+/// Reads a picture file in memory, turns it upright by its EXIF orientation, and converts its colours.
 pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     let format = Format::of(bytes)?;
     let exif = match format {
@@ -78,13 +78,13 @@ pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     Ok(Photo { image, metadata })
 }
 
-/// Converts linear colours from the space that their file states.
+/// Converts linear colours from the space that their file states to Rec.709.
 fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Image, FileColour)> {
     let colour = match space {
         _ if encoding == Encoding::Linear => FileColour::Data,
         Space::Unstated => FileColour::Assumed,
         Space::Native => FileColour::Stated,
-        // One channel is no colour.
+        // A picture with one channel has no colour space.
         Space::Other(_) if image.channels < 3 => FileColour::Assumed,
         Space::Other(conversion) => {
             conversion.apply(&mut image)?;
@@ -95,8 +95,7 @@ fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Im
     Ok((image, colour))
 }
 
-/// Reads a picture as it is stored, and converts it from the space that its file states; without one it is read as
-/// sRGB.
+/// Reads a picture as stored, and converts it from the space that its file states, or from sRGB without a statement.
 fn convert_stored(
     space: Space,
     encoding: Encoding,
@@ -115,8 +114,8 @@ fn convert_stored(
     convert((read(encoding)?, space), encoding)
 }
 
-/// Width, height and largest number of channels of a picture file, from its header alone: what decoding it will need.
-/// The sides are those of the stored picture, not of the upright one.
+/// Width, height and maximum number of channels of a picture file, from its header alone. The sides are those of the
+/// stored picture, before it is turned upright.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     match Format::of(bytes)? {
         Format::Exr => openexr::probe(bytes),
@@ -169,10 +168,10 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
     state_srgb(out.into_inner())
 }
 
-/// Adds the chunk `sRGB` to a PNG: relative colorimetric, as nothing but the exposure was changed.
+/// Adds the chunk `sRGB` to a PNG, with the relative colorimetric intent.
 fn state_srgb(png: Vec<u8>) -> Result<Vec<u8>> {
     const CHUNK: [u8; 13] = *b"\0\0\0\x01sRGB\x01\xd9\xc9\x2c\x7f";
-    // Behind the signature and the header.
+    // Insert it after the signature and the header.
     let (head, pixels) = png.split_at(8 + 25);
     try_collect([head, &CHUNK, pixels].into_iter().flatten().copied())
 }
@@ -205,18 +204,18 @@ mod tests {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "cut at {cut}");
             }
         }
-        // One whose tiles claim 2^20 pixels a side.
+        // A file whose tiles claim 2^20 pixels per side.
         let mut bomb = exr.clone();
         let at = exr.windows(15).position(|w| w == b"tiles\0tiledesc\0").unwrap() + 15 + 4;
         assert_eq!(bomb[at..at + 8], [64, 0, 0, 0, 64, 0, 0, 0]);
         bomb[at..at + 8].copy_from_slice(&[0, 0, 16, 0, 0, 0, 16, 0]);
         let error = probe(&bomb).unwrap_err();
         assert!(error.kind == ErrorKind::Format && error.message.contains("tiles of"), "{error}");
-        // A PNG whose header claims 2^31 - 1 pixels a side.
+        // A PNG whose header claims 2^31 - 1 pixels per side.
         let mut bomb = png.clone();
         bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
         assert_eq!(decode(&bomb, Encoding::Srgb).unwrap_err().kind, ErrorKind::Unsupported);
-        // An OpenEXR file both of whose windows claim 16384 pixels a side.
+        // An OpenEXR file whose two windows claim 16384 pixels per side.
         let mut bomb = exr.clone();
         let window = |width: i32, height: i32| [0, 0, width - 1, height - 1].map(i32::to_le_bytes).concat();
         let places: Vec<usize> = (0..exr.len() - 16).filter(|&at| exr[at..at + 16] == window(19, 13)).collect();
@@ -232,8 +231,8 @@ mod tests {
         let image = Image::from_fn(1, 1, |_, _| [0.5]).unwrap();
         let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
-        // The table with the place of the only tile, which begins with its column, its row and its level in both
-        // directions. It has one pixel at all levels.
+        // The offset table of the only tile, which begins with its column, its row and its level in both directions.
+        // The tile has one pixel at all levels.
         let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
         assert_eq!(exr[table + 8..table + 24], [0; 16]);
         exr[table + 16] = 10;

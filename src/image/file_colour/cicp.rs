@@ -14,8 +14,8 @@ pub const HLG: u8 = 18;
 const PQ_WHITE: f64 = 203.0;
 const HLG_WHITE: f64 = 0.75;
 
-/// The space with these primaries and this transfer function; `full` gives the code in `[0, 1]` of a stored one.
-/// Nothing if a code is unknown.
+/// The space with these primaries and this transfer function; `full` maps a stored code to `[0, 1]`. `None` if a code
+/// is unknown.
 pub fn space(primaries: u8, transfer: u8, full: impl Fn(f64) -> f64) -> Result<Option<Space>> {
     let function: fn(f64) -> f64 = match transfer {
         1 | 6 | 14 | 15 => bt709,
