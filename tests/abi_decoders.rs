@@ -203,7 +203,7 @@ fn every_decoder_stays_within_the_budget() {
 }
 
 /// Minimum stack of a host's thread, as the guide states it.
-const SMALLEST_STACK: usize = 128 << 10;
+const MIN_STACK: usize = 128 << 10;
 
 /// A glTF file with custom data (extras), nested as deeply as the JSON reader allows.
 fn nested_gltf() -> Vec<u8> {
@@ -274,5 +274,5 @@ fn a_thread_with_a_small_stack_can_read_files_and_make_quick_calls() {
         quick_calls(context);
         assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
     };
-    std::thread::Builder::new().stack_size(SMALLEST_STACK).spawn(work).unwrap().join().unwrap();
+    std::thread::Builder::new().stack_size(MIN_STACK).spawn(work).unwrap().join().unwrap();
 }

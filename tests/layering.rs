@@ -118,7 +118,7 @@ const CIRCLES: &[&str] = &[
     "image::photo::exif",
     "image::radiance",
     "image::raster",
-    "image::room",
+    "image::memory",
     "image::tiff",
     "image::tiff::chunk",
     "image::tiff::ifd",

@@ -11,7 +11,7 @@ use crate::image::colour::linear_to_srgb;
 use crate::image::file_colour::{Conversion, FileColour, Space};
 use crate::image::format::Format;
 use crate::image::photo::{self, Orientation, PhotoMetadata};
-use crate::image::{Image, MAX_SIDE, openexr, radiance, raster, room, tiff, try_collect};
+use crate::image::{Image, MAX_SIDE, memory, openexr, radiance, raster, tiff, try_collect};
 use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
@@ -24,7 +24,7 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 
 /// Upper bound of the compression ratio of OpenEXR and TIFF files (deflate: 1032, and PXR24 drops a quarter before;
 /// LZW: 1330).
-pub(super) const DENSEST: usize = 1400;
+pub(super) const MAX_COMPRESSION: usize = 1400;
 
 /// Interpretation of the samples of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,7 +154,7 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
         let encoded = if alpha { v } else { linear_to_srgb(v * exposure) };
         *b = (encoded.clamp(0.0, 1.0) * 255.0).round() as u8;
     }
-    room::check_packing(bytes.len())?;
+    memory::check_packing(bytes.len())?;
     let mut out = Cursor::new(Vec::new());
     image::write_buffer_with_format(
         &mut out,

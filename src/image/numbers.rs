@@ -7,7 +7,7 @@
 
 use super::io::check_regular;
 use super::openexr::{broken, first_layer, headers};
-use super::{Image, room, try_vec, try_with_capacity};
+use super::{Image, memory, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
 use exr::prelude as ex;
@@ -157,8 +157,8 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
     let texts = head.notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>();
     let channels = 3 + 2 * head.numbers;
     use ex::WritableImage;
-    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
-    room::check_blocks(width, height, channels)?;
+    let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
+    memory::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)

@@ -8,9 +8,9 @@
 //! largest is read, and of several parts the first.
 
 use super::file_colour::{Chromaticities, Conversion, Space};
-use super::io::{DENSEST, check_size};
+use super::io::{MAX_COMPRESSION, check_size};
 use super::samples::Largest;
-use super::{Image, room, try_collect, try_with_capacity};
+use super::{Image, memory, try_collect, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::attribute;
 use exr::prelude as ex;
@@ -22,7 +22,7 @@ pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
 /// Maximum size in bytes of a tile that any file may have; larger ones must be justified by the picture.
-const LARGEST_TILE: usize = 64 << 20;
+const MAX_TILE_BYTES: usize = 64 << 20;
 
 pub(super) fn broken(e: exr::error::Error) -> Error {
     use exr::error::Error as Cause;
@@ -44,12 +44,14 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
         let (width, height) = (header.layer_size.0, header.layer_size.1);
         check_size(width as u64, height as u64)?;
         // Memory for all channels is allocated before the first one is read.
-        if (width * height).saturating_mul(header.channels.bytes_per_pixel) > bytes.len().saturating_mul(DENSEST) {
+        if (width * height).saturating_mul(header.channels.bytes_per_pixel)
+            > bytes.len().saturating_mul(MAX_COMPRESSION)
+        {
             return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
         }
         // Tiles may be larger than the picture; memory is limited by the stored size of the tile.
-        let tile = room::block_bytes(header);
-        if tile > bytes.len().saturating_mul(DENSEST).max(LARGEST_TILE) {
+        let tile = memory::block_bytes(header);
+        if tile > bytes.len().saturating_mul(MAX_COMPRESSION).max(MAX_TILE_BYTES) {
             return Err(Error::format(format!(
                 "the OpenEXR header asks for tiles of {tile} bytes, which so short a file cannot hold"
             )));
@@ -64,7 +66,7 @@ pub(super) fn first_layer(
     headers: &exr::meta::Headers,
 ) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
     use ex::{ReadChannels, ReadLayers};
-    room::check_layer(headers)?;
+    memory::check_layer(headers)?;
     let file = exr::image::read::any_channels::ReadAnyChannels { read_samples: Largest }
         .first_valid_layer()
         .all_attributes()
@@ -91,7 +93,7 @@ pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
 
 /// Bytes of memory for reading the first layer, in addition to the picture.
 pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
-    Ok(room::layer(&headers(bytes)?))
+    Ok(memory::layer(&headers(bytes)?))
 }
 
 /// The first layer with R, G and B (and A), or with a single channel, and the colour space that the file states.
@@ -224,8 +226,8 @@ pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
     let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 64 * channels;
     let (width, height) = (first.width, first.height);
-    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
-    room::check_blocks(width, height, channels)?;
+    let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
+    memory::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)

@@ -7,7 +7,7 @@
 use super::file_colour::{Chromaticities, Conversion, Space};
 use super::io::check_size;
 use super::photo::{Orientation, Upright};
-use super::{Image, room, try_vec};
+use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
 use glam::{DMat3, DVec3};
 use image::ImageDecoder;
@@ -175,7 +175,7 @@ pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
 /// Bytes of memory for reading the picture, in addition to it.
 pub fn working_bytes(bytes: &[u8]) -> Result<usize> {
     let header = Header::new(bytes)?;
-    Ok(header.columns * header.rows * 12 + room::scanlines(header.columns))
+    Ok(header.columns * header.rows * 12 + memory::scanlines(header.columns))
 }
 
 /// The picture, upright, and the colour space that the file states.
@@ -183,7 +183,7 @@ pub fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     let header = Header::new(bytes)?;
     let (columns, rows) = (header.columns, header.rows);
     let mut raw = try_vec(columns * rows * 12, 0u8)?;
-    room::check_scanlines(columns)?;
+    memory::check_scanlines(columns)?;
     let plain = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {rows} +X {columns}\n");
     let file = plain.as_bytes().chain(&bytes[header.pixels..]);
     HdrDecoder::new(file).and_then(|decoder| decoder.read_image(&mut raw)).map_err(super::raster::broken)?;

@@ -4,7 +4,7 @@ use super::colour::{srgb_to_linear, srgb8_table};
 use super::containers::{gif_frame, png_chunks};
 use super::io::{Encoding, check_size};
 use super::photo::{Orientation, Upright};
-use super::{Image, room, try_vec};
+use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
 use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
@@ -22,7 +22,7 @@ pub fn working_bytes(bytes: &[u8], format: ImageFormat) -> Result<usize> {
     let (width, height) = decoder.dimensions();
     let pixel = usize::from(decoder.color_type().bytes_per_pixel());
     let stored = usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX);
-    Ok(stored.saturating_add(room::pixels(bytes, format, width as usize, height as usize, pixel)))
+    Ok(stored.saturating_add(memory::pixels(bytes, format, width as usize, height as usize, pixel)))
 }
 
 /// Grey with alpha becomes RGBA.
@@ -39,7 +39,7 @@ fn decoder(bytes: &[u8], format: ImageFormat) -> Result<impl ImageDecoder + '_> 
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     if format == ImageFormat::Png {
         let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(room::png_limit(bytes.len()) as u64);
+        limits.max_alloc = Some(memory::png_limit(bytes.len()) as u64);
         reader.limits(limits);
     }
     let decoder = reader.into_decoder().map_err(broken)?;
@@ -62,7 +62,7 @@ fn check_chunks(bytes: &[u8]) -> Result<()> {
                 "the PNG's palette has {length} bytes; it must hold 1 to 256 colours of 3"
             )));
         }
-        room::check_chunk(name, content.len(), bytes.len())?;
+        memory::check_chunk(name, content.len(), bytes.len())?;
     }
     Ok(())
 }
@@ -100,7 +100,7 @@ pub fn decode(bytes: &[u8], format: ImageFormat, encoding: Encoding, orientation
     let (width, height) = (width as usize, height as usize);
     let colour = decoder.color_type();
     let mut raw = try_vec(usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX), 0u8)?;
-    room::check_pixels(bytes, format, width, height, usize::from(colour.bytes_per_pixel()))?;
+    memory::check_pixels(bytes, format, width, height, usize::from(colour.bytes_per_pixel()))?;
     decoder.read_image(&mut raw).map_err(broken)?;
 
     let stored = usize::from(colour.channel_count());

@@ -4,7 +4,7 @@
 use super::containers::png_chunks;
 use super::file_colour::{self, icc};
 use super::format::Format;
-use super::{openexr, radiance, raster, room, tiff};
+use super::{memory, openexr, radiance, raster, tiff};
 use crate::error::Result;
 use image::ImageFormat;
 
@@ -33,11 +33,11 @@ fn png(bytes: &[u8]) -> usize {
                 // Grey, RGB and palettes may have a transparent colour, which becomes alpha.
                 let channels = if matches!(colour, 0 | 4) { 2 } else { 4 };
                 let pixel = channels * if depth == 16 { 2 } else { 1 };
-                let row = room::pixels(bytes, ImageFormat::Png, width, height, pixel);
+                let row = memory::pixels(bytes, ImageFormat::Png, width, height, pixel);
                 width.saturating_mul(height).saturating_mul(pixel).saturating_add(row)
             }
             // The buffers of chunks grow by doubling.
-            _ => room::chunk(name, content.len(), bytes.len()).saturating_mul(2),
+            _ => memory::chunk(name, content.len(), bytes.len()).saturating_mul(2),
         };
         total = total.saturating_add(own);
     }

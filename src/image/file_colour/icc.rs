@@ -5,7 +5,7 @@ use super::chromaticities::{is_identity, of_colorants};
 use super::curve::{Curve, is_srgb};
 use super::{Conversion, Space, cicp};
 use crate::error::Result;
-use crate::image::{room, try_push, try_vec};
+use crate::image::{memory, try_push, try_vec};
 use glam::DMat3;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 use moxcms::{
@@ -75,7 +75,7 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     if bytes.len() > MAX_BYTES || !shares_little(bytes) {
         return Ok(Space::Unusable);
     }
-    room::check_profile(bytes.len(), has_tables(bytes))?;
+    memory::check_profile(bytes.len(), has_tables(bytes))?;
     let options = ParsingOptions { max_profile_size: MAX_BYTES + 1, ..ParsingOptions::default() };
     let Ok(profile) = ColorProfile::new_from_slice_with_options(bytes, options) else { return Ok(Space::Unusable) };
     // Curves of profiles end at 1, so a profile states high dynamic range by code points.
@@ -94,7 +94,7 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
 
 /// Bytes of memory that [`space`] needs for a profile.
 pub fn working_bytes(bytes: &[u8]) -> usize {
-    if bytes.len() > MAX_BYTES { 0 } else { room::profile(bytes.len(), has_tables(bytes)) }
+    if bytes.len() > MAX_BYTES { 0 } else { memory::profile(bytes.len(), has_tables(bytes)) }
 }
 
 /// The tags of a profile: name, offset and length of each.

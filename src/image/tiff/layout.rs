@@ -2,7 +2,7 @@
 
 use super::ifd::{Directory, Field};
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::io::{DENSEST, check_size};
+use crate::image::io::{MAX_COMPRESSION, check_size};
 
 /// The tags that describe the layout of pixels (TIFF 6.0).
 mod tag {
@@ -265,7 +265,7 @@ impl<'a> Layout<'a> {
                 self.sizes.len()
             )));
         }
-        let densest = if self.compression == Compression::None { 1 } else { DENSEST };
+        let densest = if self.compression == Compression::None { 1 } else { MAX_COMPRESSION };
         let pixel_bits = self.samples * self.planes * self.depth.bits();
         if self.width * self.height * pixel_bits / 8 > file_bytes.saturating_mul(densest) {
             return Err(Error::format("the TIFF header promises more than so short a file can hold"));

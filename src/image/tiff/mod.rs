@@ -17,7 +17,7 @@ mod tests;
 use super::colour::{srgb_to_linear, srgb8_table};
 use super::io::Encoding;
 use super::photo::{Orientation, Upright};
-use super::{Image, room, try_vec};
+use super::{Image, memory, try_vec};
 use crate::error::{Error, Result};
 use chunk::{sample, undo_predictor, unpack};
 use ifd::{Ifds, Order};
@@ -38,7 +38,7 @@ pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
 /// Bytes of memory for reading the first picture, in addition to it.
 pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
     let (layout, _) = layout(bytes)?;
-    Ok(room::UNPACKING + layout.chunk_bytes() + layout.row_bytes())
+    Ok(memory::UNPACKING + layout.chunk_bytes() + layout.row_bytes())
 }
 
 /// Whether the samples of the first picture are floating-point numbers.
@@ -55,7 +55,7 @@ pub(super) fn profile(bytes: &[u8]) -> Option<&[u8]> {
 /// The first picture, as linear values.
 pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
     let (layout, order) = layout(bytes)?;
-    room::check_unpacking()?;
+    memory::check_unpacking()?;
     let mut out = Upright::new(layout.width, layout.height, layout.channels(), orientation)?;
     let mut unpacked = try_vec(layout.chunk_bytes(), 0u8)?;
     let mut spare = try_vec(layout.row_bytes(), 0u8)?;

@@ -5,7 +5,7 @@ use crate::error::Result;
 
 /// The 8-connected regions of pixels with a colour above 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Patches {
+pub struct Regions {
     /// For each pixel the number of its region plus one, or 0; regions are numbered by their first pixel, row by row.
     pub labels: Vec<u32>,
     pub count: usize,
@@ -14,7 +14,7 @@ pub struct Patches {
 /// Number of pixels that are tested together.
 const BLOCK: usize = 64;
 
-impl Patches {
+impl Regions {
     pub fn of(image: &Image) -> Result<Self> {
         let (width, height) = (image.width, image.height);
         let colours = image.channels.min(3);
@@ -66,11 +66,11 @@ mod tests {
     fn patches_hang_together_by_sides_and_corners() {
         let rows = ["#...#", ".#..#", ".....", "#.#.."];
         let image = Image::from_fn(5, 4, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
-        let patches = Patches::of(&image).unwrap();
+        let patches = Regions::of(&image).unwrap();
         assert_eq!(patches.count, 4);
         let found: Vec<String> = patches.labels.chunks(5).map(|r| r.iter().map(u32::to_string).collect()).collect();
         assert_eq!(found, ["10002", "01002", "00000", "30400"]);
-        assert_eq!(Patches::of(&Image::new(3, 2, 3).unwrap()).unwrap().count, 0);
+        assert_eq!(Regions::of(&Image::new(3, 2, 3).unwrap()).unwrap().count, 0);
     }
 
     #[test]
@@ -80,7 +80,7 @@ mod tests {
             for at in (0..29 * 11).step_by(7) {
                 for channel in 0..channels {
                     image.data[at * channels + channel] = 1e-30;
-                    let patches = Patches::of(&image).unwrap();
+                    let patches = Regions::of(&image).unwrap();
                     let found = usize::from(channel < colours);
                     assert_eq!(patches.count, found, "channel {channel} of {channels}");
                     assert_eq!(patches.labels.iter().position(|l| *l == 1), (found == 1).then_some(at));

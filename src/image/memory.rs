@@ -153,7 +153,7 @@ fn tiles(width: usize, height: usize) -> usize {
     width.div_ceil(TILE) * height.div_ceil(TILE)
 }
 
-/// Checks the memory for writing an OpenEXR file, in addition to the bytes of [`longest_file`]: blocks in compression,
+/// Checks the memory for writing an OpenEXR file, in addition to the bytes of [`max_file_bytes`]: blocks in compression,
 /// and their list.
 pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
@@ -161,6 +161,6 @@ pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Resu
 
 /// Size in bytes of an OpenEXR file of incompressible samples with this many bytes of names and notes: samples, and
 /// for each block its offset and head.
-pub(super) fn longest_file(width: usize, height: usize, channels: usize, texts: usize) -> usize {
+pub(super) fn max_file_bytes(width: usize, height: usize, channels: usize, texts: usize) -> usize {
     4 * channels * width * height + 32 * tiles(width, height) + 64 * channels + texts + 4096
 }
