@@ -221,7 +221,7 @@ struct SystematicSampler {
 }
 
 impl SystematicSampler {
-    /// `count` marks along chances of this sum.
+    /// Sets `count` marks along a cumulative sum that ends at `sum`.
     fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
         let step = sum / count as f64;
         Self { step, next: rng.next_f64() * step, end: 0.0 }
@@ -231,11 +231,11 @@ impl SystematicSampler {
     /// An item with a chance longer than a step is selected more than once.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
-        let mut met = 0.0;
+        let mut marks = 0.0;
         while self.next < self.end {
-            (self.next, met) = (self.next + self.step, met + 1.0);
+            (self.next, marks) = (self.next + self.step, marks + 1.0);
         }
-        if met > 0.0 { met * self.step / chance } else { 0.0 }
+        if marks > 0.0 { marks * self.step / chance } else { 0.0 }
     }
 }
 

@@ -55,7 +55,7 @@ pub struct RouletteWeights {
 }
 
 impl RouletteWeights {
-    /// From the pixels of a tile, in an image of this [`median_radiance`].
+    /// The weights of a tile from its pixels, with the [`median_radiance`] of the image.
     pub fn of(tile: &[Pixel], median_radiance: DVec3) -> Self {
         Self {
             median_radiance,
