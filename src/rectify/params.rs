@@ -97,9 +97,10 @@ impl Params {
 pub struct UnwarpParams {
     /// The two room axes that span the plane; chosen by the lines inside the mask if absent.
     pub axes: Option<[usize; 2]>,
-    /// Longest side of the unwarped image in pixels, in `[16, 16384]`; the photo's own resolution decides below it.
+    /// Maximum length of the longer side of the unwarped image in pixels, in `[16, 16384]`; smaller if the resolution
+    /// of the photo is lower.
     pub max_side: usize,
-    /// Largest magnification of the photo, > 0; parts of the plane farther away are cut off.
+    /// Maximum magnification of the photo, > 0; parts of the plane farther away are cut off.
     pub max_magnification: f64,
 }
 

@@ -131,7 +131,8 @@ fn the_files_focal_length_decides_where_lines_do_not() {
     let (focal, source, _) = unwarped(&Params { focal: Some(900.0), ..expected(1000.0) });
     assert!(focal == 900.0 && source == FocalSource::Given);
 
-    // Across it lines are surer than any file.
+    // For a camera that looks across the room, the lines determine the focal length better than the metadata of a
+    // file.
     let across = camera(0.5, 0.3, 0.05, 700.0);
     let view = view_of(&room(&across, [40, 40, 40], 0.1, 8), &expected(1000.0)).unwrap();
     assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.01, "{}", view.perspective.focal);

@@ -212,8 +212,8 @@ impl Importance {
                 let mut sum = DVec3::ZERO;
                 for j in 0..nv {
                     for i in 0..nu {
-                        let within = Vec2::new((i as f32 + 0.5) / nu as f32, (j as f32 + 0.5) / nv as f32);
-                        let uv = (Vec2::new(x as f32, y as f32) + within) * cell;
+                        let offset = Vec2::new((i as f32 + 0.5) / nu as f32, (j as f32 + 0.5) / nv as f32);
+                        let uv = (Vec2::new(x as f32, y as f32) + offset) * cell;
                         let value = texture.nearest(placement.transform_point2(uv)).truncate();
                         sum += value.max(Vec3::ZERO).as_dvec3();
                     }
