@@ -342,7 +342,7 @@ layouts! {
     luxfer_photo_metadata: struct_size orientation focal focal_error f_number exposure_time iso white_luminance
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
-    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area bent;
+    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
     luxfer_scene_load_params: struct_size outside unit;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
@@ -378,22 +378,22 @@ layouts! {
     luxfer_render_part: struct_size x y width height first_sample samples;
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
-    luxfer_illuminance_report: struct_size points least mean largest mean_error;
+    luxfer_illuminance_report: struct_size points minimum mean maximum mean_error;
     luxfer_relight_params: struct_size quantity paths target_error time_budget_ms fit seed;
-    luxfer_relight_report: struct_size paths scale half_width response background reach reserved error delta_e;
-    luxfer_lamps_params: struct_size group row_tolerance free_colour most evenness tolerance paths target_error
+    luxfer_relight_report: struct_size paths scale half_width response background outcome reserved error delta_e;
+    luxfer_lamps_params: struct_size group row_tolerance free_colour max_scale regularisation tolerance paths target_error
         time_budget_ms reserved seed;
     luxfer_lamps_report: struct_size lamps groups goals paths met;
     luxfer_lamp: struct_size group centre scale half_width;
-    luxfer_lamps_goal: struct_size reach target achieved half_width background;
+    luxfer_lamps_goal: struct_size outcome target achieved half_width background;
     luxfer_lamps_response: struct_size reserved mean half_width;
     luxfer_importance_params: struct_size width height quantity paths target_error time_budget_ms reserved seed;
     luxfer_importance_report: struct_size paths response half_width band_error;
-    luxfer_placement_params: struct_size aim radiance starts least_offset most_offset least_scale most_scale
-        least_rotation most_rotation seed;
+    luxfer_placement_params: struct_size aim radiance starts min_offset max_offset min_scale max_scale
+        min_rotation max_rotation seed;
     luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
-    luxfer_false_colour_params: struct_size scale unit bar least most;
+    luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size reached colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
     luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
@@ -412,7 +412,7 @@ layouts! {
     luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish sweeps
         coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
         seed coarse_guides coarse_iterations occurrence reserved;
-    luxfer_stylize_report: struct_size finished levels halvings patch most_used energy used entropy guide_error
+    luxfer_stylize_report: struct_size finished levels halvings patch max_uses energy used entropy guide_error
         broken_source broken_target;
     luxfer_stylize_round: struct_size passes energy;
     luxfer_stylize_pass: struct_size reserved knee coverage gained;

@@ -137,7 +137,7 @@ fn illuminance_comes_with_its_error() {
         report.struct_size = size_of_val(&report) as u32;
         assert_eq!(luxfer_illuminance_get_report(stage, &mut report), LUXFER_OK);
         let mean = lux.1.iter().map(|&v| f64::from(v)).sum::<f64>() / 12.0;
-        assert!(report.points == 12 && (report.mean - mean).abs() < 1e-4 * mean && report.least > 0.0);
+        assert!(report.points == 12 && (report.mean - mean).abs() < 1e-4 * mean && report.minimum > 0.0);
         assert!(report.mean_error > 0.0 && report.mean_error < 0.1 * mean);
         // Wrong grids are refused.
         let flat = luxfer_illuminance_grid { normal: [0.0; 3], ..plane };

@@ -119,7 +119,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_image(stylize, 0, &mut null_mut()), LUXFER_NOT_READY);
         assert_eq!(run(stylize, &params()), LUXFER_OK, "{}", message(context));
         let all = report(stylize);
-        assert!(all.finished == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.most_used > 0);
+        assert!(all.finished == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
 
         // Read the rounds of the level and their passes, whose coverage rises.

@@ -98,7 +98,7 @@ fn a_doubtful_mask_says_so_with_figure_limit_place_and_advice() {
     let mut ones = vec![1.0f32; 64 * 48];
     let within = luxfer_image_view { channels: 1, byte_size: 64 * 48 * 4, ..view(64, 48, &mut ones) };
     let within = made(|out| unsafe { luxfer_image_create(context, &within, out) });
-    assert_eq!(unsafe { luxfer_segment_set_within(segment, within) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_segment_set_region(segment, within) }, LUXFER_OK);
     run(segment);
     let lights = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
     assert!(list(lights).iter().all(|w| w.stage == LUXFER_STAGE_LIGHTS));

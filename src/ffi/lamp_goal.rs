@@ -35,7 +35,7 @@ impl StoredGoal {
         }
     }
 
-    /// The goal for the solver; `triangles` are those of [`Self::triangles`].
+    /// The goal for the solver; `triangles` come from [`Self::triangles`].
     pub(super) fn goal<'a>(&self, triangles: &'a [(usize, usize)]) -> Goal<'a> {
         let place = match self.place {
             Where::Mesh(_) => Place::Surface(triangles),

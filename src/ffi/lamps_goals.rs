@@ -9,7 +9,7 @@ use super::illuminance::luxfer_illuminance_grid;
 use super::lamp_goal::{StoredGoal, Where};
 use super::lamps::{Inputs, Output, luxfer_lamps};
 use super::params;
-use super::relight::{luxfer_quantity, luxfer_sense, quantity, sense};
+use super::relight::{constraint, luxfer_constraint, luxfer_quantity, quantity};
 use super::scene::{colour, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
@@ -72,25 +72,27 @@ fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
     })
 }
 
-/// Makes a goal a limit, separately in each channel: LUXFER_SENSE_ values. The three values of a goal in lux must be
-/// equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_SENSE_EXACTLY. Any
+/// Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must be
+/// equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL. Any
 /// thread.
 /// LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_set_sense(
+pub unsafe extern "C" fn luxfer_lamps_set_constraint(
     lamps: *mut luxfer_lamps,
     goal: u32,
-    red: luxfer_sense,
-    green: luxfer_sense,
-    blue: luxfer_sense,
+    red: luxfer_constraint,
+    green: luxfer_constraint,
+    blue: luxfer_constraint,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let senses = [sense(red)?, sense(green)?, sense(blue)?];
+        let senses = [constraint(red)?, constraint(green)?, constraint(blue)?];
         stage.change(|inputs| {
             let count = inputs.goals.len();
             let stored = inputs.goals.get_mut(goal as usize).ok_or_else(|| missing("goal", goal, count))?;
             if stored.aspect == Aspect::Luminance && senses != [senses[0]; 3] {
-                return Err(Error::argument(format!("goal {goal} is in lux; its channels must have the same sense")));
+                return Err(Error::argument(format!(
+                    "goal {goal} is in lux; its channels must have equal constraints"
+                )));
             }
             stored.sense = senses;
             Ok(())

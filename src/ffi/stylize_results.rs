@@ -43,7 +43,7 @@ pub struct luxfer_stylize_report {
     /// Width of the patches, in pixels.
     pub patch: u32,
     /// Largest number of uses of an exemplar patch.
-    pub most_used: u32,
+    pub max_uses: u32,
     /// Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
     /// channels of the artwork have the weight 1 together, the guides guide_weight.
     pub energy: f64,
@@ -70,7 +70,7 @@ unsafe impl Versioned for luxfer_stylize_report {
             levels: 0,
             halvings: 0,
             patch: 0,
-            most_used: 0,
+            max_uses: 0,
             energy: 0.0,
             used: 0.0,
             entropy: 0.0,
@@ -87,7 +87,7 @@ impl luxfer_stylize_report {
         Self {
             finished: 1,
             patch: finished.patch as u32,
-            most_used: finished.usage.max_uses,
+            max_uses: finished.usage.max_uses,
             used: finished.usage.used,
             entropy: finished.usage.entropy,
             guide_error: finished.guide_rms,

@@ -46,7 +46,7 @@ pub fn mix_primaries(primaries: &[DVec3], max_drive: f64, wanted: DVec3) -> Resu
     if let Some(i) = primaries.iter().position(|p| !p.is_finite()) {
         return Err(Error::argument(format!("primary {i} is {}; it must be finite", primaries[i])));
     }
-    check_range("most", max_drive, 0.0, f64::INFINITY)?;
+    check_range("max_drive", max_drive, 0.0, f64::INFINITY)?;
     for channel in wanted.to_array() {
         check_range("colour", channel, 0.0, f64::from(f32::MAX))?;
     }
