@@ -6,34 +6,19 @@
 //! (2.0, 3.8.3), nor are data.
 
 pub use super::files::{Target, check_regular, read_file, write_file};
+pub use super::limits::{Encoding, MAX_PIXELS};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::linear_to_srgb;
 use crate::image::file_colour::{Conversion, FileColour, Space};
 use crate::image::format::Format;
 use crate::image::photo::{self, Orientation, PhotoMetadata};
-use crate::image::{Image, MAX_SIDE, memory, openexr, radiance, raster, tiff, try_collect};
+use crate::image::{Image, memory, openexr, radiance, raster, tiff, try_collect};
 use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
 
 pub use crate::image::openexr::{Layer, encode as encode_exr};
 pub use crate::image::working::working_bytes;
-
-/// Maximum number of pixels of a file: 2^28, a 16 k square.
-pub const MAX_PIXELS: u64 = 1 << 28;
-
-/// Upper bound of the compression ratio of OpenEXR and TIFF files (deflate: 1032, and PXR24 drops a quarter before;
-/// LZW: 1330).
-pub(super) const MAX_COMPRESSION: usize = 1400;
-
-/// Interpretation of the samples of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Encoding {
-    /// Colours: integers are sRGB, floating-point numbers linear, unless the file of a photo states another space.
-    Srgb,
-    /// Data other than colour, returned as stored: normal maps, roughness, masks.
-    Linear,
-}
 
 /// An upright picture in linear Rec.709, and the metadata of its file.
 #[derive(Clone, Debug)]
@@ -123,21 +108,6 @@ pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
         Format::Tiff => tiff::probe(bytes),
         Format::Raster(format) => raster::probe(bytes, format),
     }
-}
-
-/// Refuses sizes beyond the limits of the library, and pictures without pixels.
-pub(super) fn check_size(width: u64, height: u64) -> Result<()> {
-    let is_empty = width == 0 || height == 0;
-    if is_empty || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {
-        return Err(Error::new(
-            if is_empty { ErrorKind::Format } else { ErrorKind::Unsupported },
-            format!(
-                "the header says {width} x {height} pixels; sides must lie in [1, {MAX_SIDE}] and the area in [1, \
-                 {MAX_PIXELS}]"
-            ),
-        ));
-    }
-    Ok(())
 }
 
 /// Encodes a linear image as an 8-bit sRGB PNG after multiplying it by `exposure`; 1, 3 or 4 channels.

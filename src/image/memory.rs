@@ -5,7 +5,6 @@
 //! the buffers that they are given.
 
 use super::containers::riff_chunks;
-use super::file_colour::icc::MAX_BYTES;
 use super::{MAX_SIDE, no_memory};
 use crate::error::Result;
 use crate::reserve;
@@ -13,6 +12,10 @@ use exr::compression::Compression;
 use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use image::ImageFormat;
+
+/// Maximum size of a profile in bytes; larger ones are ignored. [convention]: profiles of displays and cameras have a
+/// few thousand, of scanners up to a million.
+pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
 /// Returns an error if the system does not have this many bytes.
 fn check(bytes: usize) -> Result<()> {
@@ -90,7 +93,7 @@ pub(super) fn chunk(name: &[u8], length: usize, file_bytes: usize) -> usize {
 /// Bytes that the PNG decoder may need in addition to the pixels of a file of `file_bytes` bytes: chunks, which grow
 /// by doubling, a row of maximum width, and a colour profile.
 pub(super) fn png_limit(file_bytes: usize) -> usize {
-    file_bytes.saturating_mul(3).saturating_add(8 * MAX_SIDE).saturating_add(MAX_BYTES)
+    file_bytes.saturating_mul(3).saturating_add(8 * MAX_SIDE).saturating_add(MAX_PROFILE_BYTES)
 }
 
 pub(super) fn check_profile(bytes: usize, has_tables: bool) -> Result<()> {

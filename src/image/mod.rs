@@ -11,6 +11,7 @@ pub mod file_colour;
 mod files;
 mod format;
 pub mod io;
+mod limits;
 mod memory;
 pub mod numbers;
 mod openexr;

@@ -7,8 +7,8 @@
 //! Not read, with an error that names it: deep data, and luminance with subsampled chroma. Of several resolutions the
 //! largest is read, and of several parts the first.
 
-use super::file_colour::{Chromaticities, Conversion, Space};
-use super::io::{MAX_COMPRESSION, check_size};
+use super::file_colour::{Chromaticities, Space};
+use super::limits::{MAX_COMPRESSION, check_size};
 use super::samples::Largest;
 use super::{Image, memory, try_collect, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
@@ -181,7 +181,7 @@ fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32
     let is_xyz = chromaticities.primaries == XYZ;
     let white = if is_xyz { Chromaticities::REC709.white } else { chromaticities.white };
     let white = neutral.map_or(white, point);
-    chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Conversion::linear_space)
+    chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Space::linear)
 }
 
 /// A named group of channels of an OpenEXR file; an empty name gives plain `R`, `G`, `B`.

@@ -4,8 +4,8 @@
 //! The stored values are divided by the factors `EXPOSURE` and `COLORCORR`; `PRIMARIES` and values in XYZ are
 //! converted to linear Rec.709. Scan lines may run in any of the eight directions. Not modelled: `PIXASPECT`.
 
-use super::file_colour::{Chromaticities, Conversion, Space};
-use super::io::check_size;
+use super::file_colour::{Chromaticities, Space};
+use super::limits::check_size;
 use super::photo::{Orientation, Upright};
 use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
@@ -148,7 +148,7 @@ impl Colour {
                 if self.factor == DVec3::ONE && self.chromaticities.is_none() {
                     return Space::Unstated;
                 }
-                Conversion::linear_space(matrix * DMat3::from_diagonal(self.factor.recip()))
+                Space::linear(matrix * DMat3::from_diagonal(self.factor.recip()))
             }
             _ => Space::Unusable,
         }

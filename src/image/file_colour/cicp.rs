@@ -1,8 +1,9 @@
 //! Colour spaces by their code points (Recommendation ITU-T H.273).
 
 use super::chromaticities::{Chromaticities, is_identity};
+use super::conversion::Conversion;
 use super::curve::{Curve, bt709, hlg, pq};
-use super::{Conversion, Space};
+use super::space::Space;
 use crate::error::Result;
 use crate::image::colour::srgb_to_linear;
 

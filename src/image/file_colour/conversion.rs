@@ -1,7 +1,5 @@
 //! Conversion of the colours of a file to linear Rec.709, in place.
 
-use super::Space;
-use super::chromaticities::is_identity;
 use super::curve::Curve;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Image, try_vec};
@@ -38,7 +36,7 @@ impl Conversion {
         Self(Kind::Grey(curve))
     }
 
-    fn linear(matrix: DMat3) -> Self {
+    pub(super) fn linear(matrix: DMat3) -> Self {
         Self(Kind::Rgb { curves: None, matrix: matrix.as_mat3() })
     }
 
@@ -46,11 +44,6 @@ impl Conversion {
     pub fn srgb() -> Result<Self> {
         let curve = Curve::srgb()?;
         Ok(Self::new([curve.clone(), curve.clone(), curve], DMat3::IDENTITY))
-    }
-
-    /// The space whose linear colours a matrix converts to Rec.709.
-    pub fn linear_space(matrix: DMat3) -> Space {
-        if is_identity(matrix) { Space::Native } else { Space::Other(Self::linear(matrix)) }
     }
 
     pub fn tables(to_srgb: Arc<TransformF32Executor>) -> Result<Self> {

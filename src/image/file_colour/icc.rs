@@ -2,8 +2,10 @@
 //! or tables for RGB.
 
 use super::chromaticities::{is_identity, of_colorants};
+use super::cicp;
+use super::conversion::Conversion;
 use super::curve::{Curve, is_srgb};
-use super::{Conversion, Space, cicp};
+use super::space::Space;
 use crate::error::Result;
 use crate::image::{memory, try_push, try_vec};
 use glam::DMat3;
@@ -13,9 +15,7 @@ use moxcms::{
 };
 use std::borrow::Cow;
 
-/// Maximum size of a profile in bytes; larger ones are ignored. [convention]: profiles of displays and cameras have a
-/// few thousand, of scanners up to a million.
-pub const MAX_BYTES: usize = 3 << 20;
+pub use crate::image::memory::MAX_PROFILE_BYTES as MAX_BYTES;
 
 /// Maximum number of tags that share one piece of data. [convention]: three curves, three intents, and both
 /// directions.

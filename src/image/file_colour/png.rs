@@ -2,8 +2,10 @@
 //! edition, 4.3).
 
 use super::chromaticities::{Chromaticities, is_identity};
+use super::conversion::Conversion;
 use super::curve::Curve;
-use super::{Conversion, Space, cicp, icc};
+use super::space::Space;
+use super::{cicp, icc};
 use crate::error::Result;
 use crate::image::containers::png_chunks;
 

@@ -2,7 +2,7 @@
 
 use super::ifd::{Directory, Field};
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::io::{MAX_COMPRESSION, check_size};
+use crate::image::limits::{MAX_COMPRESSION, check_size};
 
 /// The tags that describe the layout of pixels (TIFF 6.0).
 mod tag {

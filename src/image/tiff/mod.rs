@@ -15,7 +15,7 @@ mod layout;
 mod tests;
 
 use super::colour::{srgb_to_linear, srgb8_table};
-use super::io::Encoding;
+use super::limits::Encoding;
 use super::photo::{Orientation, Upright};
 use super::{Image, memory, try_vec};
 use crate::error::{Error, Result};
