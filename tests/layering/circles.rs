@@ -54,7 +54,8 @@ fn reached<'a>(from: &str, uses: &'a BTreeMap<&str, BTreeSet<String>>) -> BTreeS
 
 /// Identifiers and punctuation of the code before the unit tests; comments, strings and attributes are left out.
 fn tokens(text: &str) -> Vec<String> {
-    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+    let code = ["#[cfg(test)]\nmod tests {", "#[cfg(test)]\npub mod tests {"];
+    let code = code.iter().fold(text, |code, tests| code.split(tests).next().unwrap());
     let code: Vec<char> = code.lines().map(without_comment).collect::<Vec<_>>().join("\n").chars().collect();
     let mut out = Vec::new();
     let mut at = 0;
