@@ -1,6 +1,7 @@
-//! Emissive textures: how well patterns go on, against patches alone and another program, and what it costs.
+//! Emissive textures: quality of continued patterns against patches alone and another program, and their time and
+//! memory.
 //!
-//! Designs of known statistics are cut from a larger ceiling, continued, and held against what they were made by.
+//! Designs with known statistics are cut from a larger ceiling, continued, and compared with their own statistics.
 //! `cargo bench --bench emission -- SECTION …` runs some sections only.
 
 mod harness;
@@ -34,7 +35,7 @@ fn main() {
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let wants = |section: &str| chosen.is_empty() || chosen.iter().any(|c| c == section);
     let pool = Pool::new(2).expect("two threads");
-    // The peak of memory first: a process keeps some of what it has once had.
+    // The section that measures peak memory runs first: a process keeps some of the memory that it has once used.
     let sections: [(&str, fn()); 8] = [
         ("tiles", tiles::tiles),
         ("patterns", patterns),
@@ -57,13 +58,14 @@ fn main() {
     }
 }
 
-/// A design: a lattice with a lamp of one of two kinds at each place, or at random places.
+/// A design: a lattice with a lamp of one of two kinds at each node, or lamps at random places.
 struct Design {
     name: &'static str,
     periods: [DVec2; 2],
-    /// Whether a point relative to a lamp's place belongs to it, by the place's numbers; and the lamp's area.
+    /// Whether a point, relative to the place of a lamp with these indices, belongs to the lamp; and the area of the
+    /// lamp.
     lamp: fn(DVec2, [i64; 2]) -> bool,
-    /// Mean area and least and largest area of a lamp, in pixels.
+    /// Mean, minimum and maximum area of a lamp, in pixels.
     areas: [f64; 3],
     /// Share of places that have a lamp.
     filled: f64,
@@ -130,7 +132,7 @@ struct Exemplar {
 }
 
 impl Design {
-    /// Whether a point of the ceiling, in pixels, is light.
+    /// Whether a point of the ceiling, in pixels, is on a lamp.
     fn is_lit(&self, p: DVec2) -> bool {
         let p = p - ORIGIN;
         let base = (DMat2::from_cols(self.periods[0], self.periods[1]).inverse() * p).floor();
@@ -154,7 +156,7 @@ impl Design {
             .collect()
     }
 
-    /// The share of the places shown by an exemplar that have a lamp: of a design with lamps missing at random it shows one draw.
+    /// Share of the places in an exemplar that have a lamp: designs with random gaps differ from exemplar to exemplar.
     fn filled_in(&self, exemplar: &Exemplar) -> f64 {
         let (width, height) = (exemplar.valid.width as f64, exemplar.valid.height as f64);
         let is_shown = |p: DVec2| {
@@ -168,7 +170,8 @@ impl Design {
         f64::from(lit as u32) / f64::from(all)
     }
 
-    /// A part of the ceiling with the noise of a photo, the mask unsure by it, and two corners off the photo.
+    /// A part of the ceiling with the noise of a photo, a mask that is uncertain by this noise, and two corners
+    /// outside the photo.
     fn exemplar(&self, side: usize) -> Exemplar {
         let is_lit = |x: usize, y: usize| self.is_lit(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         let noise = |x: usize, y: usize, c: u64| 0.1 * Rng::new(9, &[x as u64, y as u64, c]).next_f32();
@@ -198,12 +201,12 @@ impl Exemplar {
     }
 }
 
-/// Of a lamp of a synthetic exemplar, its noise included.
+/// Luminance of a lamp of a synthetic exemplar, with its noise.
 fn luminance() -> f64 {
     f64::from(luxfer::image::colour::luminance(glam::Vec3::new(0.95, 0.85, 0.75)))
 }
 
-/// Every design by three methods, over all sizes of patches.
+/// Every design by three methods, for all sizes of patches.
 fn patterns() {
     let methods: [(&str, Params); 3] = [
         ("default", Params::default()),
@@ -240,7 +243,7 @@ fn patterns() {
     figure("emission.behind_quilting", behind as f64, "statistics");
 }
 
-/// Time over the size of the texture.
+/// Time over texture size.
 fn seconds() {
     let exemplar = DESIGNS[1].exemplar(512);
     let sides = [512, 1024, 2048, 4096];
@@ -261,8 +264,8 @@ fn seconds() {
     figure("emission.2048.seconds", times.median(2), "s");
 }
 
-/// Quality against time over the working resolution, the size of patches and the candidates of each, where patches go anywhere and so
-/// do the work.
+/// Quality against time over the working resolution, the size of patches and the number of candidates for each, with
+/// patches at free positions, which take all of the time.
 fn knobs() {
     let mut plot = Plot::new("Emission: statistics against time", "seconds", "worst statistic");
     let mut table =
@@ -293,7 +296,7 @@ fn knobs() {
     }
 }
 
-/// The program of the crate texture-synthesis, on the same exemplar.
+/// Runs the program of the crate texture-synthesis on the same exemplar.
 fn peer(pool: &Pool) -> Result<(), String> {
     let program = Path::new("target/peers/texture_synthesis/bin/texture-synthesis");
     if !program.exists() {
@@ -317,16 +320,16 @@ fn peer(pool: &Pool) -> Result<(), String> {
     let (ours, result) = pool.run(|| time(Clock::Wall, || exemplar.run(&params)));
     let bytes = std::fs::read("out/bench/emission_peer.png").map_err(|e| e.to_string())?;
     let picture = io::decode(&bytes, io::Encoding::Srgb).map_err(|e| e.to_string())?;
-    // Lamps are what is brighter than halfway.
+    // Lamps are pixels brighter than one half.
     let mut lamps = picture.to_rgb().map_err(|e| e.to_string())?;
     for pixel in lamps.data.chunks_exact_mut(3) {
         if pixel[1] < 0.5 {
             pixel.fill(0.0);
         }
     }
-    let rival = emission::given(&lamps, Monitor::default().job()).map_err(|e| e.to_string())?;
+    let peer_result = emission::given(&lamps, Monitor::default().job()).map_err(|e| e.to_string())?;
     let mut table = Table::new(["program", "seconds"].into_iter().chain(STATISTICS).chain(["broken"]));
-    let programs = [("luxfer", ours, &result), ("texture-synthesis", theirs, &rival)];
+    let programs = [("luxfer", ours, &result), ("texture-synthesis", theirs, &peer_result)];
     let scores = programs.map(|(name, seconds, result)| {
         let score = Score::of(result, design, design.filled, luminance());
         table.row([name.to_string(), format!("{seconds:.2}")].into_iter().chain(score.columns()));

@@ -1,9 +1,9 @@
-//! Whether the renderer knows its own error, and what it does with it.
+//! Accuracy of the renderer's own error estimates, and their uses.
 //!
-//! Intervals and errors stated by single renders against a reference of many times as many paths; what a target saves and
-//! how much it darkens; whether time budgets hold; what the preview filter gains and costs, and how far its mean is from
-//! the truth; what a path costs that meets nothing. Means over seeds come with the half width of their 95 % interval
-//! (Student's t). About two minutes on two idle cores.
+//! Compares intervals and errors stated by single renders with a reference of many more paths; measures the saving and
+//! the bias of an error target, the accuracy of time budgets, the gain, cost and bias of the preview filter, and the
+//! cost of a path that hits nothing. Means over seeds have the half width of their 95 % interval (Student's t). Takes
+//! about two minutes on two idle cores.
 
 mod harness;
 
@@ -19,11 +19,11 @@ use luxfer::scene::{Camera, Environment, Material, Mesh, Scene};
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// Renders per scene and number of paths that the coverage of intervals is counted over.
+/// Renders per scene and number of paths for the coverage of intervals.
 const SEEDS: u64 = 32;
 /// Renders per scene and target.
 const TARGETED: u64 = 10;
-/// Renders per scene and number of paths that the bias of previews is measured over.
+/// Renders per scene and number of paths for the bias of previews.
 const PREVIEWS: u64 = 10;
 /// Paths per pixel of references.
 const REFERENCE: u32 = 2048;
@@ -71,7 +71,7 @@ fn squared_distance(a: &Image, b: &Image) -> f64 {
     a.data.iter().zip(&b.data).map(|(&a, &b)| f64::from(a - b).powi(2)).sum::<f64>() / a.data.len() as f64
 }
 
-/// The same relative to what each pixel of the truth shows, as `relative_error` has it.
+/// Mean squared difference relative to the pixels of the truth, as `relative_error` defines it.
 fn squared_relative_distance(image: &Image, truth: &Image) -> f64 {
     let least = 0.01 * mean(truth);
     let pixels = image.data.chunks_exact(3).zip(truth.data.chunks_exact(3));
@@ -88,13 +88,14 @@ fn mean_and_interval(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    // The two-sided 5 % point of Student's t to 1 % (Abramowitz and Stegun 26.7.5, from the normal one).
+    // The two-sided 5 % point of Student's t, accurate to 1 % (Abramowitz and Stegun 26.7.5, from the normal
+    // quantile).
     let (z, f) = (1.96f64, n - 1.0);
     let t = z + (z.powi(3) + z) / (4.0 * f) + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * f * f);
     (mean, t * (variance / n).sqrt())
 }
 
-/// The share of pixels whose interval holds the truth, where anything is random.
+/// The share of pixels whose interval contains the truth, among pixels with noise.
 fn coverage(ready: &[Ready]) {
     let mut table =
         Table::new(["scene", "paths", "in interval", "±", "least quarter", "own 1.96", "error stated / true"]);
@@ -104,8 +105,8 @@ fn coverage(ready: &[Ready]) {
         let truth = shoot(world, camera, &Params { samples: REFERENCE, seed: 1 << 40, ..size.clone() }).beauty;
         for samples in [8, 16, 64] {
             let (mut squares, mut stated) = (0.0, 0.0);
-            // Per pixel and channel: how often inside, by the interval and by its own variance alone; and by the interval
-            // in each render.
+            // Count per pixel and channel the renders whose interval contains the truth: for the stated interval and
+            // for one from the pixel's own variance. Count per render the pixels too.
             let mut inside = vec![[0u32; 2]; truth.data.len()];
             let mut random = vec![false; truth.data.len()];
             let mut renders = Vec::new();
@@ -155,7 +156,7 @@ fn coverage(ready: &[Ready]) {
     figure("render.interval_coverage.worst_distance", worst, "%");
 }
 
-/// Paths and bias of a target against as many paths everywhere.
+/// Paths and bias with an error target, against the same number of paths in every pixel.
 fn targets(ready: &[Ready]) {
     let mut table = Table::new(["scene", "target", "paths", "true error", "even", "saved", "bias", "±"]);
     let (mut gains, mut most) = ([Vec::new(), Vec::new()], 0.0f64);
@@ -176,7 +177,8 @@ fn targets(ready: &[Ready]) {
                 squares += distance(&film) / TARGETED as f64;
                 shifts.push(100.0 * (mean(&film.beauty) / mean(&truth) - 1.0));
             }
-            // As many everywhere: between powers of two, where points are stratified best, on a line of logarithms.
+            // The error of that number of paths everywhere: interpolate logarithms between powers of two, where points
+            // are stratified best.
             let below = 1u32 << (paths as u32).max(1).ilog2();
             let [low, high] = [below, 2 * below].map(|samples| {
                 let seeds = TARGETED / 2;
@@ -185,7 +187,8 @@ fn targets(ready: &[Ready]) {
             });
             let even = low * (high / low).powf((paths / f64::from(below)).log2());
             let (bias, interval) = mean_and_interval(&shifts);
-            // A target on every pixel buys no less error of the whole: it asks for something else.
+            // A target on every pixel does not reduce the error of the whole image, because it optimises another
+            // error.
             let saved = even / squares;
             if pixel_error == 0.0 {
                 gains[usize::from(relative_error > 0.0)].push(saved);
@@ -216,7 +219,7 @@ fn targets(ready: &[Ready]) {
     figure("render.adaptive.bias", most, "%");
 }
 
-/// Error of previews against a reference, how far their mean is from it, and their time.
+/// Error of previews against a reference, their bias, and their time.
 fn previews(ready: &[Ready]) {
     let mut table = Table::new([
         "scene",
@@ -286,8 +289,8 @@ fn previews(ready: &[Ready]) {
     figure("render.preview.ms", 1e3 * times.iter().copied().fold(f64::INFINITY, f64::min), "ms");
 }
 
-/// How far the mean of images is from the truth: root mean square over squares of pixels, relative to the mean of the
-/// truth, less what the scatter of the images adds.
+/// Bias of the mean of images: root mean square over squares of pixels, relative to the mean of the truth, minus the
+/// contribution of the scatter of the images.
 fn bias(images: &[Image], truth: &Image, side: usize) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0);
     for top in (0..truth.height).step_by(side) {
@@ -326,11 +329,11 @@ fn relative_error(image: &Image, truth: &Image) -> f64 {
 /// Side of a pixel of the pictures of previews.
 const ZOOM: usize = 4;
 
-/// Before, after and truth above each other in `out/bench`.
+/// Saves the image before and after the filter and the truth, one above the other, in `out/bench`.
 fn save(name: &str, before: &Image, after: &Image, truth: &Image) {
     let (width, height) = (truth.width, truth.height);
     let exposure = (0.3 / mean(truth)) as f32;
-    // Each pixel as a square, to be looked at.
+    // Enlarge each pixel to a square, for inspection.
     let all = Image::from_fn(ZOOM * width, 3 * ZOOM * height, |x, y| {
         [before, after, truth][y / ZOOM / height].rgb(x / ZOOM, y / ZOOM % height).to_array()
     });
@@ -340,7 +343,7 @@ fn save(name: &str, before: &Image, after: &Image, truth: &Image) {
     std::fs::write(folder.join(format!("preview_{name}.png")), bytes).expect("out/bench can be written to");
 }
 
-/// Time taken against time given. What it takes at least is one path for one pixel in many, and an image of them.
+/// Time used against the time budget. The minimum is one path for one pixel in many, and an image from them.
 fn budgets((_, world, camera): &Ready) {
     let mut table = Table::new(["image", "budget", "least", "taken", "paths per pixel", "over"]);
     let (mut ratios, mut over) = (Vec::new(), 0.0f64);
@@ -353,7 +356,7 @@ fn budgets((_, world, camera): &Ready) {
         for budget in [20, 40, 100, 500] {
             let (seconds, film) = shoot_for(budget);
             let given = f64::from(budget) / 1e3;
-            // Where there is time at all.
+            // Only budgets above the minimum count.
             if given > 1.5 * least {
                 ratios.push(seconds / given);
                 over = over.max(seconds - given);
@@ -373,7 +376,7 @@ fn budgets((_, world, camera): &Ready) {
     figure("render.budget.over_most", 1e3 * over, "ms");
 }
 
-/// A path that meets nothing: what the numbers, the camera and the sums cost.
+/// Cost of a path that hits nothing: random numbers, camera and sums.
 fn empty() {
     let pool = Pool::new(1).expect("a thread");
     let scene = Scene { environment: Some(Environment::Constant(Vec3::ONE)), ..Scene::default() };
@@ -386,7 +389,7 @@ fn empty() {
     });
 }
 
-/// A box with a metal block and a polished floor under a small lamp: light comes over mirrors, too.
+/// A box with a metal block and a polished floor under a small lamp: some light arrives over mirrors.
 fn glossy() -> Setting {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     let mut meshes: Vec<Mesh> = vec![

@@ -1,5 +1,5 @@
-//! Features: the time of a megapixel, normals against Open3D's, on rooms whose normals are known and on RGB-D pairs, and the
-//! room laid out from the lines of those pairs, and from strokes. `knobs` alone: normals over their window.
+//! Features: time per megapixel; normals against Open3D on rooms with known normals and on RGB-D pairs; the room
+//! layout from the lines of those pairs, and from strokes. `knobs`: normals over their window alone.
 
 mod harness;
 
@@ -19,7 +19,8 @@ use luxfer::segment::{StrokeSet, strokes};
 use std::path::{Path, PathBuf};
 
 const SIZE: [usize; 2] = [1152, 868];
-/// Open3D's usual number of neighbours, and more: its accuracy with noise rises with them, its time too.
+/// Open3D's usual number of neighbours, and a larger one: its accuracy with noise rises with the number, and so does
+/// its time.
 const NEIGHBOURS: [usize; 2] = [30, 100];
 const ROUNDS: usize = 5;
 /// Half-widths of the windows that normals are fitted in.
@@ -32,7 +33,7 @@ struct Case {
     depth: Image,
     camera: Perspective,
     truth: Option<Vec<Vec3>>,
-    /// On one of its planes and elsewhere.
+    /// Strokes on one of its planes and elsewhere.
     strokes: StrokeSet,
 }
 
@@ -52,7 +53,7 @@ fn main() {
     pool.run(|| layouts(&pairs));
 }
 
-/// The built-in depth, from the lines of the photo, with strokes and without lines, beside the measured one. Its scale is free.
+/// The built-in depth from lines and strokes, with and without lines, against the measured depth. The scale is free.
 fn layouts(pairs: &[&Case]) {
     if pairs.is_empty() {
         return absent("features.layout.depth_error", "the RGB-D pairs are not there");
@@ -86,7 +87,7 @@ fn layouts(pairs: &[&Case]) {
         ];
         for (name, segments, strokes) in sources {
             let found = of(None, segments, strokes);
-            // Eq. 1 undone: screen depth to inverse depth.
+            // Invert Eq. 1: from screen depth to inverse depth.
             let Params { near, far, .. } = Params::default();
             let inverse = |i: usize| (1.0 - found.image.data[i * 10 + 3] * (far - near) / far) / near;
             let pixels = case.measured();
@@ -100,7 +101,7 @@ fn layouts(pairs: &[&Case]) {
                 let of_half = pixels.iter().zip(&logs).filter(|p| (trust(*p.0) > typical) == trusted);
                 of_half.map(|p| *p.1).collect()
             };
-            // Where nothing is seen all pixels are trusted alike.
+            // Without any lines or strokes all pixels have equal confidence.
             let percent = |values: &[f64]| match values.is_empty() {
                 true => "-".into(),
                 false => format!("{:.0}", 100.0 * (median(values).exp() - 1.0)),
@@ -132,12 +133,13 @@ fn looking(focal: f64, principal: DVec2, axes: DMat3) -> Perspective {
     Perspective { focal, focal_source: FocalSource::Given, principal, axes }
 }
 
-/// A box with a table in it, seen aslant; depth along z with noise of a share that grows with depth, as sensors have it.
+/// A box with a table in it, seen at an angle; z depth with noise whose relative size grows with depth, as sensors
+/// have it.
 fn room(noise: f64) -> Case {
     let [width, height] = SIZE;
     let axes = DMat3::from_rotation_y(0.4) * DMat3::from_rotation_x(-0.2);
     let camera = looking(900.0, DVec2::new(width as f64, height as f64) / 2.0, DMat3::IDENTITY);
-    // Faces as axis, where on it, and the bounds of the other two.
+    // Faces as axis, position on the axis, and bounds on the other two axes.
     let all = [(-9.0, 9.0), (-9.0, 9.0)];
     let faces = [
         (0, -2.0, all),
@@ -148,7 +150,7 @@ fn room(noise: f64) -> Case {
         (1, 0.4, [(2.2, 3.4), (-0.8, 0.9)]),
         (2, 2.2, [(-0.8, 0.9), (0.4, 0.55)]),
     ];
-    // Depth and normal of what a pixel sees.
+    // Depth and normal of the surface at a pixel.
     let seen = |x: usize, y: usize| {
         let toward = camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         let ray = axes.transpose() * toward;
@@ -175,7 +177,7 @@ fn room(noise: f64) -> Case {
     Case { name, photo, depth: depth.unwrap(), camera, truth: Some(truth), strokes: StrokeSet::default() }
 }
 
-/// The RGB-D pairs, if they are there.
+/// The RGB-D pairs, if the data is present.
 fn pairs() -> Vec<Case> {
     let root = std::env::var_os("LUXFER_TEST_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from)
@@ -213,7 +215,7 @@ impl Case {
         (0..self.depth.data.len()).filter(|&i| self.depth.data[i] > 0.0).collect()
     }
 
-    /// Their points in camera space.
+    /// Points of these pixels in camera space.
     fn cloud(&self) -> Vec<[f32; 3]> {
         let point = |i: usize| {
             let at = DVec2::new((i % self.depth.width) as f64 + 0.5, (i / self.depth.width) as f64 + 0.5);
@@ -223,8 +225,8 @@ impl Case {
         self.measured().into_iter().map(point).collect()
     }
 
-    /// Angles in degrees to the truth; where there is none, between normals eight pixels apart, which mostly share a
-    /// surface: a bound of the noise, but not of what is wrong alike.
+    /// Angles in degrees to the truth. Without truth: between normals eight pixels apart, which mostly share a
+    /// surface; a bound of the noise, but not of common errors.
     fn angles(&self, normal_of: &dyn Fn(usize) -> Vec3) -> Vec<f64> {
         let angle = |a: Vec3, b: Vec3| f64::from(a.cross(b).length().atan2(a.dot(b).abs()).to_degrees());
         let measured = self.measured();
@@ -239,13 +241,13 @@ impl Case {
     }
 }
 
-/// The last three of a pixel's ten features.
+/// The normal: the last three of a pixel's ten features.
 fn normal(features: &Image, pixel: usize) -> Vec3 {
     Vec3::from_slice(&features.data[pixel * 10 + 7..pixel * 10 + 10])
 }
 
-/// All features over the window of the normals, which is their only setting and costs next to no time: sums run along with it. The mean
-/// angle, not the median: what wide windows round off are few pixels.
+/// All features over the window of the normals, the only setting; its cost is nearly constant, because sums are
+/// updated along a row. Reports the mean angle, not the median, because wide windows round off few pixels.
 fn knobs(rooms: &[Case]) {
     let mut plot = Plot::new("Normals of a megapixel", "half-width of the window, pixels", "mean error, degrees");
     let mut table = Table::new(["half-width of the windows of normals", "ms, all features"]);
@@ -305,7 +307,7 @@ fn normals(cases: &[Case]) -> Result<(), String> {
         let bytes: Vec<u8> = case.cloud().iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
         std::fs::write(&points, bytes).map_err(|e| e.to_string())?;
         let measured = case.measured();
-        // Turns: all of our channels, not the normals alone, against the peer's normals.
+        // Timed in turns: all of our channels, not only the normals, against the peer's normals.
         let (mut ours, mut theirs) = (Vec::new(), [Vec::new(), Vec::new()]);
         let mut errors = [0.0; 3];
         for round in 0..if case.truth.is_some() { ROUNDS } else { 1 } {

@@ -1,8 +1,8 @@
-//! What many lights cost: the error of irradiance at equal time against the number of lamps, as meshes of their own and as
-//! spots of one texture, all of the same total flux; and how long the lights of a scene take to prepare. One thread.
+//! Cost of many lights: the error of irradiance at equal time against the number of lamps, as separate meshes and as
+//! spots of one texture, with equal total flux; and the time to prepare the lights of a scene. One thread.
 //!
-//! The room is 30 × 30 × 4 m with grey walls. The error is that of single paths, relative to the mean, over points all over
-//! the floor; at equal time it goes with the root of the variance times the time of a path.
+//! The room is 30 × 30 × 4 m with grey walls. The error is that of single paths, relative to the mean, over points of
+//! the whole floor; at equal time it is proportional to the root of the variance times the time of a path.
 
 mod harness;
 
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 const SIDE: f32 = 30.0;
 const HEIGHT: f32 = 4.0;
-/// Share of the ceiling that shines.
+/// Share of the ceiling that emits light.
 const LIT: f32 = 0.01;
 /// Texels along the side of a texture of lamps.
 const TEXELS: usize = 2048;
@@ -27,7 +27,7 @@ const POINTS: u32 = 64;
 const PATHS: u32 = 1024;
 const ROUNDS: u64 = 3;
 
-/// The light of one path.
+/// The radiance of one path.
 #[derive(Default)]
 struct Path(f64);
 
@@ -44,7 +44,7 @@ struct Measured {
 }
 
 impl Measured {
-    /// Error at equal time, relative to another.
+    /// Error at equal time, relative to another measurement.
     fn error_over(&self, other: &Self) -> f64 {
         (self.variance * self.seconds_per_path / (other.variance * other.seconds_per_path)).sqrt()
     }
@@ -60,7 +60,7 @@ fn main() {
     ] {
         let mut table = Table::new(["lamps", "build ms", "us per path", "variance", "error at equal time"]);
         let worlds: Vec<(f64, World)> = counts.iter().map(|&n| build(scene(n))).collect();
-        // In turns, so that what else the machine does weighs on all alike.
+        // Measured in turns, so that other work on the machine affects all equally.
         let mut measured: Vec<Vec<Measured>> = worlds.iter().map(|_| Vec::new()).collect();
         for round in 0..ROUNDS {
             for (world, results) in worlds.iter().zip(&mut measured) {
@@ -91,7 +91,7 @@ fn main() {
     if let Err(error) = plot.write("lights") {
         println!("# no plot: {error}");
     }
-    // All of a large texture lit, each texel differently.
+    // A large texture, all of it lit, with a different value in each texel.
     let (seconds, _) = build(textured(
         Image::from_fn(4096, 4096, |x, y| [0.5 + ((x * 7 + y * 13) % 11) as f32 / 10.0]).expect("an image"),
         1.0,
@@ -106,7 +106,7 @@ fn build(scene: Scene) -> (f64, World) {
     (seconds, world.expect("the scene is valid"))
 }
 
-/// Paths from points of the floor, each a sample of its own.
+/// Traces paths from points of the floor, each a separate sample.
 fn measure(world: &World, round: u64) -> Measured {
     let (seconds, relative) = time(Clock::Thread, || {
         let mut relative = 0.0;
@@ -131,7 +131,7 @@ fn measure(world: &World, round: u64) -> Measured {
     Measured { seconds_per_path: seconds / f64::from(POINTS * PATHS), variance: relative }
 }
 
-/// The floor comes first, the ceiling last; material 1 shines.
+/// The floor is the first mesh, the ceiling the last; material 1 emits light.
 fn room() -> Scene {
     let (x, y, z) = (Vec3::X * SIDE, Vec3::Y * HEIGHT, Vec3::Z * SIDE);
     let sides = [(Vec3::ZERO, z, x), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y), (y, x, z)];
@@ -143,11 +143,11 @@ fn room() -> Scene {
     }
 }
 
-/// Where lamps hang: `count` of the cells of the smallest square grid that has as many.
+/// Positions of the lamps: `count` cells of the smallest square grid with at least as many cells.
 fn places(count: usize) -> impl Iterator<Item = Vec2> {
     let grid = (count as f64).sqrt().ceil() as usize;
     (0..count).map(move |i| {
-        // Spread evenly over the cells, the last of which stay empty.
+        // Spread the lamps evenly over the cells.
         let cell = i * grid * grid / count;
         (Vec2::new((cell % grid) as f32, (cell / grid) as f32) + 0.5) / grid as f32
     })
@@ -180,7 +180,7 @@ fn texture_lamps(count: usize) -> Scene {
             image.pixel_mut(x.min(TEXELS - 1), y.min(TEXELS - 1))[0] = 1.0;
         }
     }
-    // Rounding of the sides changes the flux; the emission makes up for it.
+    // The sides are rounded to texels, which changes the flux; scale the emission to compensate.
     let lit = image.data.iter().sum::<f32>() / (TEXELS * TEXELS) as f32;
     textured(image, LIT / lit)
 }

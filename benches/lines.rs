@@ -1,5 +1,5 @@
-//! Line detection beside OpenCV's `LineSegmentDetector` (LSD): recall within a pixel on drawings whose edges are known,
-//! lines that run to the true vanishing points of re-projected panoramas, and time, in turns.
+//! Line detection against OpenCV's `LineSegmentDetector` (LSD), in turns: recall within a pixel on drawings with known
+//! edges, the share of lines that run to the true vanishing points of re-projected panoramas, and time.
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
@@ -17,14 +17,15 @@ use luxfer::rng::Rng;
 use std::path::{Path, PathBuf};
 use truth::labelled_photos;
 
-/// One megapixel of cells with a rectangle each, and the steps and noise of its edges in grey levels of 255.
+/// Size of a drawing of one megapixel, with a rectangle in each cell, and the contrasts and noise levels of its edges
+/// in grey levels of 255.
 const SIZE: [usize; 2] = [1152, 864];
 const CELL: usize = 96;
 const STEPS: [f64; 4] = [15.0, 20.0, 30.0, 60.0];
 const NOISES: [f64; 3] = [0.0, 3.0, 8.0];
 
-/// Largest distance of a segment from its edge in pixels, and angle between them in radians.
-const NEAR: f64 = 1.0;
+/// Maximum distance of a segment from its edge in pixels, and maximum angle between them in radians.
+const MAX_DISTANCE: f64 = 1.0;
 const TURNED: f64 = 0.09;
 
 const ROUNDS: usize = 5;
@@ -33,8 +34,8 @@ const ROUNDS: usize = 5;
 const HALF: DVec2 = DVec2::splat(0.5);
 
 fn main() {
-    let mut rivals = match Rivals::start() {
-        Ok(rivals) => rivals,
+    let mut detectors = match Detectors::start() {
+        Ok(detectors) => detectors,
         Err(reason) => {
             for name in ["recall.ours", "recall.lsd", "panorama.length_vs_lsd", "vs_lsd", "one_thread_vs_lsd"] {
                 absent(&format!("lines.{name}"), &reason);
@@ -42,39 +43,39 @@ fn main() {
             return;
         }
     };
-    if let Err(reason) = drawings(&mut rivals).and_then(|()| panoramas(&mut rivals)) {
+    if let Err(reason) = drawings(&mut detectors).and_then(|()| panoramas(&mut detectors)) {
         absent("lines", &reason);
     }
 }
 
-/// Ours with two threads and with one, and theirs, which has one.
-struct Rivals {
+/// Our detector with two threads and with one, and OpenCV's, which has one.
+struct Detectors {
     pools: [Pool; 2],
     peer: Peer,
     folder: PathBuf,
 }
 
-/// Milliseconds of ours with two threads, ours with one, and theirs, over the rounds; segments of ours and theirs.
+/// Milliseconds over the rounds of ours with two threads, ours with one, and OpenCV's; segments of both.
 struct Found {
     ms: [Vec<f64>; 3],
     segments: [Vec<Segment>; 2],
 }
 
 impl Found {
-    /// Their time over that of ours with two threads and with one.
+    /// OpenCV's time over ours with two threads and with one.
     fn ratios(&self) -> [f64; 2] {
         [0, 1].map(|k| median(&self.ms[2].iter().zip(&self.ms[k]).map(|(t, o)| t / o).collect::<Vec<_>>()))
     }
 }
 
-impl Rivals {
+impl Detectors {
     fn start() -> Result<Self, String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("out/bench/lines");
         std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
         Ok(Self { pools: [2, 1].map(|n| Pool::new(n).unwrap()), peer: Peer::start("segment", "lsd.py")?, folder })
     }
 
-    /// Segments in grey levels of 255, in turns.
+    /// Detects segments in 8-bit grey levels with all of them, in turns.
     fn run(&mut self, grey: &[u8], photo: &Image) -> Result<Found, String> {
         let [image, out] = ["image", "segments"].map(|name| self.folder.join(name));
         std::fs::write(&image, grey).map_err(|e| e.to_string())?;
@@ -105,13 +106,13 @@ impl Rivals {
     }
 }
 
-impl Drop for Rivals {
+impl Drop for Detectors {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }
 
-/// Grey levels of turned rectangles on grey, a white margin on the right, and the edges.
+/// Grey levels of rotated rectangles on grey, with a white margin on the right; and their edges.
 fn drawing(step: f64, noise: f64) -> (Vec<u8>, Vec<Segment>) {
     let [width, height] = SIZE;
     let mut rng = Rng::new(7, &[]);
@@ -155,14 +156,14 @@ fn drawing(step: f64, noise: f64) -> (Vec<u8>, Vec<Segment>) {
     ((0..width * height).map(pixel).collect(), edges)
 }
 
-/// Shares of `a` that lie along some segment of `b`, by length.
+/// Share of the length of `a` that lies along some segment of `b`.
 fn covered(a: &[Segment], b: &[Segment]) -> f64 {
     let (mut hits, mut all) = (0usize, 0usize);
     for s in a {
         let direction = (s.b - s.a).normalize_or_zero();
         let reach = s.length() / 2.0;
         let near: Vec<&Segment> = (b.iter())
-            .filter(|t| t.midpoint().distance(s.midpoint()) < reach + t.length() / 2.0 + NEAR)
+            .filter(|t| t.midpoint().distance(s.midpoint()) < reach + t.length() / 2.0 + MAX_DISTANCE)
             .filter(|t| direction.perp_dot((t.b - t.a).normalize_or_zero()).abs() < TURNED.sin())
             .collect();
         let points = (s.length().round() as usize).max(1);
@@ -172,7 +173,8 @@ fn covered(a: &[Segment], b: &[Segment]) -> f64 {
             .filter(|&p| {
                 near.iter().any(|t| {
                     let (along, d) = ((t.b - t.a).normalize_or_zero(), p - t.a);
-                    along.perp_dot(d).abs() <= NEAR && (-NEAR..=t.length() + NEAR).contains(&along.dot(d))
+                    along.perp_dot(d).abs() <= MAX_DISTANCE
+                        && (-MAX_DISTANCE..=t.length() + MAX_DISTANCE).contains(&along.dot(d))
                 })
             })
             .count();
@@ -184,14 +186,14 @@ fn linear(grey: u8) -> f32 {
     colour::srgb_to_linear(f32::from(grey) / 255.0)
 }
 
-fn drawings(rivals: &mut Rivals) -> Result<(), String> {
+fn drawings(detectors: &mut Detectors) -> Result<(), String> {
     let mut table = Table::new(["step, noise", "recall", "LSD", "precision", "LSD", "ms", "one thread", "LSD"]);
     let mut recalls = [Vec::new(), Vec::new()];
     let mut ratios = [Vec::new(), Vec::new()];
     for (step, noise) in STEPS.iter().flat_map(|&s| NOISES.map(|n| (s, n))) {
         let (grey, edges) = drawing(step, noise);
         let photo = Image::from_fn(SIZE[0], SIZE[1], |x, y| [linear(grey[y * SIZE[0] + x]); 3]).unwrap();
-        let found = rivals.run(&grey, &photo)?;
+        let found = detectors.run(&grey, &photo)?;
         let mut cells = vec![format!("{step}, {noise}")];
         for (k, recalls) in recalls.iter_mut().enumerate() {
             recalls.push(covered(&edges, &found.segments[k]));
@@ -210,7 +212,7 @@ fn drawings(rivals: &mut Rivals) -> Result<(), String> {
     Ok(())
 }
 
-fn panoramas(rivals: &mut Rivals) -> Result<(), String> {
+fn panoramas(detectors: &mut Detectors) -> Result<(), String> {
     let photos = labelled_photos();
     if photos.is_empty() {
         ["panorama.length_vs_lsd", "vs_lsd", "one_thread_vs_lsd"]
@@ -229,10 +231,10 @@ fn panoramas(rivals: &mut Rivals) -> Result<(), String> {
         };
         let grey: Vec<u8> =
             (0..image.width * image.height).map(|i| encoded(i % image.width, i / image.width)).collect();
-        let found = rivals.run(&grey, image)?;
+        let found = detectors.run(&grey, image)?;
         let points: Vec<DVec3> = photo.directions.iter().map(|&d| photo.intrinsics * d).collect();
         let length = [0, 1].map(|k| {
-            let runs = |s: &&Segment| points.iter().any(|&p| end_distance(s, p) < NEAR);
+            let runs = |s: &&Segment| points.iter().any(|&p| end_distance(s, p) < MAX_DISTANCE);
             found.segments[k].iter().filter(runs).map(Segment::length).sum::<f64>()
         });
         lengths.push(length[0] / length[1]);
@@ -250,7 +252,7 @@ fn panoramas(rivals: &mut Rivals) -> Result<(), String> {
     Ok(())
 }
 
-/// Distance of a segment's ends from the line through its midpoint and a homogeneous point.
+/// Distance of the ends of a segment from the line through its midpoint and a homogeneous point.
 fn end_distance(s: &Segment, point: DVec3) -> f64 {
     let away = point.truncate() - s.midpoint() * point.z;
     (s.b - s.a).perp_dot(away.normalize_or_zero()).abs() / 2.0

@@ -1,7 +1,7 @@
-//! What images of light by its way cost beside the main image, and how well a complete set of them adds up to it.
+//! Cost of images by light path expression beside the main image, and the error of the sum of a complete set.
 //!
-//! The five images of StyLit (section 3.2) on a sphere on a table and on rooms, against the main image alone, in turns on
-//! one thread; so with sixteen expressions and with all images of surfaces. The pictures go to `out/bench/`.
+//! The five images of StyLit (section 3.2) on a sphere on a table and on rooms are compared with the main image alone,
+//! in turns on one thread; so are sixteen expressions and all surface images. The pictures go to `out/bench/`.
 
 mod harness;
 
@@ -17,7 +17,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The paper's images, the whole included.
+/// The paper's images, including the full image.
 const FIVE: [(&str, &str); 5] =
     [("FULL", "L.*E"), ("LDE", "LDE"), ("LSE", "LSE"), ("LDDE", "L.*DDE"), ("LD12E", "LD{1,2}E")];
 /// A complete set without overlap.
@@ -45,7 +45,7 @@ const ROUNDS: usize = 7;
 const SAMPLES: u32 = 16;
 
 fn main() {
-    // On its only thread the thread's own clock sees all the work, and nothing else.
+    // With one thread, the thread's own clock measures all of the work.
     let pool = Pool::new(1).expect("a thread");
     let settings: [(&str, Result<Setting, Absent>); 4] = [
         ("table", Ok(sphere_on_table())),
@@ -83,20 +83,20 @@ fn measure(setting: &Setting, table: &mut Table) -> (f64, f64) {
     let world = World::build(Arc::new(setting.scene.clone()), monitor.job()).expect("a world");
     let render =
         |params: &Params| render::run(&world, &setting.camera, params, monitor.job(), &mut |_| ()).expect("an image");
-    let rivals = [
+    let contenders = [
         params(setting, &[], &[]),
         params(setting, &FIVE, &[]),
         params(setting, &SIXTEEN, &[]),
         params(setting, &[], &Aov::ALL),
     ];
     let run = |i: usize| {
-        black_box(render(&rivals[i]));
+        black_box(render(&contenders[i]));
     };
     let times =
         interleaved(Clock::Thread, ROUNDS, &mut [&mut || run(0), &mut || run(1), &mut || run(2), &mut || run(3)]);
     let cost = |i: usize| 100.0 * (times.ratio(i, 0) - 1.0);
     let parts = render(&params(setting, &PARTS, &[]));
-    let same = parts.beauty == render(&rivals[0]).beauty;
+    let same = parts.beauty == render(&contenders[0]).beauty;
     let sum = sum_error(&parts);
     table.row([
         setting.name.to_string(),
@@ -113,7 +113,7 @@ fn measure(setting: &Setting, table: &mut Table) -> (f64, f64) {
     (cost(1), sum)
 }
 
-/// Largest difference of a pixel's sum over the layers from the image, relative to it.
+/// Largest relative difference of a pixel between the image and the sum of the layers.
 fn sum_error(film: &Film) -> f64 {
     let errors = film.beauty.data.iter().enumerate().map(|(i, &whole)| {
         let sum: f64 = film.layers.iter().map(|layer| f64::from(layer.image.data[i])).sum();
@@ -122,7 +122,7 @@ fn sum_error(film: &Film) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// Writes the layers as pictures: light at the exposure of the whole, the others scaled to their range.
+/// Writes the layers as pictures: light at the exposure of the full image, the others scaled to their range.
 fn save(setting: &Setting, film: &Film) {
     let exposure = 0.3 / mean(&film.beauty).max(1e-9);
     for layer in &film.layers {

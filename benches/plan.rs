@@ -1,12 +1,12 @@
-//! Whether plans come true: seconds and errors that `plan` expects against those of the runs it plans.
+//! Accuracy of plans: seconds and errors that `plan` expects, against those of the planned runs.
 //!
-//! Of renderings, of the light of whole transfers and of stylisations, on scenes, sizes and photos of all kinds; nothing was fitted to any.
-//! Times are of one thread, by its own clock, so that what else the machine does weighs on neither side; time budgets, which
-//! are of the clock on the wall, are taken off for that, and the paths that they bound stay. The error of a picture is that
-//! of two pictures of different seeds, which needs no reference: half the mean square of their difference; that of a stylisation
-//! the root of its energy.
+//! Plans renderings, the light of whole transfers, and stylisations, on scenes, sizes and photos to which nothing was
+//! fitted. Times are processor times of one thread, so other work on the machine does not count; time budgets, which
+//! use the wall clock, are removed, and the limits of paths that they imply remain. The error of a picture needs no
+//! reference: it is half the mean square of the difference of two pictures with different seeds. The error of a
+//! stylisation is the root of its energy.
 //!
-//! `cargo bench --bench plan -- renderings`, `-- transfers` or `-- stylisations` makes one of them alone.
+//! `cargo bench --bench plan -- renderings`, `-- transfers` or `-- stylisations` runs one section.
 
 mod harness;
 #[path = "plan/outcomes.rs"]
@@ -48,7 +48,7 @@ fn main() {
     });
 }
 
-/// Expected and found, and their ratio.
+/// Expected value, actual value, and their ratio.
 fn columns([expected, found]: [f64; 2]) -> [String; 3] {
     [format!("{expected:.4}"), format!("{found:.4}"), format!("{:.2}", found / expected)]
 }

@@ -1,9 +1,9 @@
-//! Why each quantity is kept in the precision it is: what a narrower and a wider number would cost and buy.
+//! Precision of each quantity: error and time of a narrower and a wider number type.
 //!
-//! Each kernel is written once, for any type of number, after the arithmetic of the stage that it stands for, and runs in f32 and in
-//! f64 on the same data; distances of patches run in the library's own integers, in f32 and in halves. Errors are against what is
-//! exact, or against f64 where that cannot be had. Times are of one thread, interleaved, relative to what the library keeps; no code is written
-//! for wider registers here, so that types differ only where the compiler makes them.
+//! Each kernel is generic over the number type, follows the arithmetic of its stage, and runs in f32 and in f64 on the
+//! same data; distances of patches run in the library's integers, in f32 and in halves. Errors are against the exact
+//! value, or against f64 where the exact value is unknown. Times are of one thread, interleaved, relative to the
+//! library's choice; no kernel is written for wide registers, so types differ only by the compiler's vectorisation.
 
 #[path = "precision/film.rs"]
 mod film;
@@ -27,7 +27,7 @@ mod vanishing;
 use harness::{Clock, Table, interleaved};
 use std::hint::black_box;
 
-/// One way to keep numbers: its name, bytes of what there are many of, error, and the work to be timed.
+/// One number format: its name, bytes per stored element, error, and the timed work.
 struct Way<'a> {
     name: &'a str,
     bytes: usize,
@@ -35,7 +35,7 @@ struct Way<'a> {
     work: &'a mut dyn FnMut(),
 }
 
-/// Work whose result nobody needs, done all the same.
+/// Wraps work so that the compiler does not remove it.
 fn timed<T>(mut work: impl FnMut() -> T) -> impl FnMut() {
     move || {
         black_box(work());
@@ -46,7 +46,7 @@ fn timed<T>(mut work: impl FnMut() -> T) -> impl FnMut() {
 struct Study(Table);
 
 impl Study {
-    /// The ways to keep one quantity; `kept` is the library's.
+    /// Adds the formats of one quantity; `kept` is the index of the library's choice.
     fn add(&mut self, what: &str, error_of: &str, kept: usize, ways: &mut [Way]) {
         let mut work: Vec<&mut dyn FnMut()> = Vec::new();
         let mut about = Vec::new();

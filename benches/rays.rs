@@ -1,9 +1,9 @@
 //! Rays per second and building time against Embree 3, in one process, in turns.
 //!
-//! Three kinds of ray per scene: camera rays (coherent), rays of a path after its first hit, cosine-distributed over the
-//! surfaces they leave (incoherent), and shadow rays between surfaces and lights or other surfaces (any hit). All are
-//! traced on one thread. Embree stands at its defaults, whose triangle test is not watertight; the ratio against its
-//! robust mode, which is what this library always does, is given beside it.
+//! Three kinds of rays per scene: camera rays (coherent), rays after the first hit of a path, cosine-distributed over
+//! the surfaces (incoherent), and shadow rays between surfaces and lights or other surfaces (any hit). All are traced
+//! on one thread. The main ratio is against Embree with default settings, whose triangle test is not watertight; the
+//! ratio against its robust mode, which corresponds to this library, is printed beside it.
 
 mod harness;
 
@@ -28,7 +28,7 @@ use std::sync::Arc;
 const RAYS: usize = 100_000;
 const ROUNDS: usize = 9;
 
-/// What this program is told when it is to do nothing but load a scene of ten million triangles.
+/// Argument for the process that only loads a scene of ten million triangles.
 const LOAD_10M: &str = "--load-10m";
 
 fn main() {
@@ -39,7 +39,8 @@ fn main() {
     // Names on the command line choose among the scenes: `cargo bench --bench rays -- demo kitchen`.
     let chosen: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with("--")).collect();
     let all = chosen.is_empty();
-    // On a thread of the pool, where the library builds: handing work to it takes as long as building 38 triangles.
+    // Run on a thread of the pool, as the library builds: handing over the work takes as long as building 38
+    // triangles.
     pool.run(|| compare(|name| all || chosen.iter().any(|c| c == name)));
     if all {
         ties(&pool);
@@ -47,7 +48,7 @@ fn main() {
     }
 }
 
-/// Everything that is measured against Embree.
+/// All measurements against Embree.
 fn compare(is_chosen: impl Fn(&str) -> bool) {
     let engines = Embree::open(2);
     if let Err(reason) = &engines {
@@ -83,7 +84,7 @@ fn compare(is_chosen: impl Fn(&str) -> bool) {
     built.print("Building on two threads; ratios are our time over Embree's");
 }
 
-/// Peak memory of a scene of ten million triangles made ready for rendering, in a process of its own.
+/// Peak memory of preparing a scene of ten million triangles for rendering, in a separate process.
 fn peak_of_10m() {
     const NAME: &str = "peak.scene_10m_tris.mb";
     let run = || {
@@ -103,9 +104,9 @@ fn load_10m(pool: &Pool) {
     println!("{:.0}", peak_memory().map_or(f64::NAN, |bytes| bytes as f64 / 1e6));
 }
 
-/// The case that makes binary trees slow on rooms: on regular grids all merges of neighbours cost the same. The trees of
-/// obvhs over exact boxes, and over boxes enlarged by up to 1/1000 so that no two are equal, both traced by obvhs itself;
-/// this library's own structure over the same triangles, whose boxes are exact, beside them.
+/// The hardest case for binary trees on rooms: on regular grids all merges of neighbours have equal cost. Compares
+/// trees of obvhs over exact boxes and over boxes enlarged by up to 1/1000 (so that no two are equal), both traced by
+/// obvhs, with this library's structure over the exact boxes.
 fn ties(pool: &Pool) {
     const TIE_RAYS: usize = 5_000;
     let mut table =
@@ -155,7 +156,7 @@ fn enlarged(shape: Aabb, index: usize, amount: f32) -> Aabb {
     Aabb::new(shape.min - grow, shape.max + grow)
 }
 
-/// Boxes that a random line through the scene is expected to meet (the surface area heuristic without constants).
+/// Expected number of boxes that a random line through the scene hits (the surface area heuristic without constants).
 fn tree_cost(tree: &Bvh2) -> f32 {
     tree.nodes.iter().map(|node| node.aabb().half_area()).sum::<f32>() / tree.nodes[0].aabb().half_area()
 }
@@ -175,7 +176,7 @@ fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Tabl
     let build = || Accel::build(&triangles, monitor.job()).expect("a scene to trace");
     let accel = build();
 
-    // Building.
+    // Time building.
     let mut row = vec![setting.name.to_string(), triangles.len().to_string()];
     let per_triangle = |bytes: usize| format!("{:.1}", bytes as f64 / triangles.len() as f64);
     match &embree {
@@ -207,7 +208,7 @@ fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Tabl
     row.push(accel.dropped().to_string());
     built.row(row);
 
-    // Tracing.
+    // Time tracing.
     let rays = Rays::new(setting, &accel, &triangles);
     let peers = embree.map(|e| [false, true].map(|robust| e.build(&positions, &indices, robust)));
     for (kind, rays, any) in
@@ -269,7 +270,7 @@ fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Tabl
     }
 }
 
-/// Both must do the same work: hits at other distances, or of one only, may come from rounding alone.
+/// Check that both do equal work: hits at other distances, or in one of them only, may come only from rounding.
 fn check(kind: &str, scene: &str, accel: &Accel, robust: &embree::Scene, rays: &[Ray], any: bool) {
     let mut differ = 0;
     for ray in rays {
@@ -304,7 +305,7 @@ impl Rays {
             let direction = setting.camera.direction(x / side as f32, y / side as f32, setting.aspect());
             camera.push(Ray::new(setting.camera.position, direction.normalize()));
         }
-        // Paths of up to five bounces; where one leaves the scene the next starts at the camera again.
+        // Paths of up to five bounces; a path that leaves the scene is followed by the next from the camera.
         let (low, high) = accel.bounds();
         let step = (high - low).length() * 1e-5;
         let lights = setting.light_points();
@@ -336,7 +337,7 @@ impl Rays {
     }
 }
 
-/// A direction about a normal, its density the cosine.
+/// A cosine-distributed direction about a normal.
 fn cosine(normal: Vec3, rng: &mut Rng) -> Vec3 {
     let z = 2.0 * rng.next_f32() - 1.0;
     let (sin, cos) = (std::f32::consts::TAU * rng.next_f32()).sin_cos();
@@ -344,7 +345,7 @@ fn cosine(normal: Vec3, rng: &mut Rng) -> Vec3 {
     (normal + Vec3::new(r * cos, r * sin, z) * 0.9999).normalize_or(normal)
 }
 
-/// The whole scene as one mesh, as Embree is given it.
+/// The whole scene as one mesh, for Embree.
 fn one_mesh(setting: &Setting) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for mesh in &setting.scene.meshes {

@@ -1,5 +1,6 @@
-//! The solve of the emission: error against time in the demonstration room and in scenes of others, whether its intervals hold,
-//! and what many lamps cost. Two threads; times include the preparation of the scene, but where they are told apart.
+//! Solving for the emission: error against time in the demonstration room and in scenes of others, coverage of the
+//! intervals, and the cost of many lamps. Two threads; times include the preparation of the scene unless stated
+//! separately.
 
 mod harness;
 
@@ -20,17 +21,17 @@ use std::sync::Arc;
 
 /// Solves per target of the curve.
 const ROUNDS: usize = 5;
-/// Solves that the coverage is counted over, and the error they ask for.
+/// Number of solves for the coverage, and their target error.
 const SEEDS: u64 = 1000;
 const COVERAGE_ERROR: f32 = 0.05;
 /// Targets of the curve.
 const ERRORS: [f32; 6] = [0.1, 0.05, 0.02, 0.01, 0.005, 0.002];
 
-/// What the demonstration room is for.
+/// Figures of the demonstration room.
 const FIGURES: [&str; 4] =
     ["relight.to_1pct.seconds", "relight.to_5pct.seconds", "relight.coverage", "relight.vs_mitsuba_prb"];
 
-/// A room, what shines in it, and the surface that is to look as asked.
+/// A room, its emitter, and the target surface.
 struct Case {
     scene: Arc<Scene>,
     emitter: usize,
@@ -83,7 +84,7 @@ fn demo() -> Result<Case, String> {
     Ok(Case { scene: Arc::new(setting.scene), emitter, target: ceiling.triangles })
 }
 
-/// The answer of very many paths.
+/// The result with very many paths.
 fn truth(case: &Case) -> DVec3 {
     let params = Params { paths: 1 << 22, target_error: 0.0, seed: 1 << 40, ..Params::default() };
     let (seconds, solution) = time(Clock::Wall, || case.solve(&case.world(), &params));
@@ -91,7 +92,7 @@ fn truth(case: &Case) -> DVec3 {
     solution.scale
 }
 
-/// Returns the seconds to 1 %.
+/// Measures error against time; returns the seconds to 1 %.
 fn curve(case: &Case, truth: DVec3) -> f64 {
     let mut table =
         Table::new(["asked for %", "seconds", "paths", "interval %", "worst channel off %", "colour dE2000 95 %"]);
@@ -136,8 +137,8 @@ fn curve(case: &Case, truth: DVec3) -> f64 {
     to_one_percent
 }
 
-/// What 5 % and 1 % take in scenes that others have made: the target is what looks up of the mesh with most of that which the
-/// light of the lamp over it reaches, a floor or the ground.
+/// Time to 5 % and 1 % in scenes of others. The target is the upward-facing part of the mesh that receives most of the
+/// light of the lamp above it: a floor or the ground.
 fn others() {
     let heads = ["scene", "triangles", "scene ready s", "then to 5 % s", "then to 1 % s", "paths", "interval %"];
     let mut table = Table::new(heads);
@@ -183,7 +184,7 @@ fn others() {
     table.print("scenes of others");
 }
 
-/// What looks up of each mesh, the largest first.
+/// The upward-facing triangles of each mesh, the largest first.
 fn floors(scene: &Scene, emitter: usize) -> Vec<Vec<(usize, usize)>> {
     let up = |mesh: usize| {
         let all = 0..scene.meshes[mesh].triangles.len();
@@ -200,15 +201,15 @@ fn floors(scene: &Scene, emitter: usize) -> Vec<Vec<(usize, usize)>> {
     sized.into_iter().map(|(_, mesh)| up(mesh).map(|(triangle, _)| triangle).collect()).collect()
 }
 
-/// Gradient descent through Mitsuba's adjoint (`prb`) on the same room: the best of its settings. Ours states an interval of
-/// 1 %, theirs is within 1 % of the truth without knowing it.
+/// Gradient descent through Mitsuba's adjoint (`prb`) in the same room, with its best settings. Ours states an
+/// interval of 1 %; the peer is stopped within 1 % of the known truth.
 fn adjoint(case: &Case, ours: f64) -> Result<(), String> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let python = root.join("target/peers/mitsuba/bin/python");
     if !python.exists() {
         return Err("mitsuba is not installed; `make peers` installs it".into());
     }
-    // The ceiling gets a material of its own, by which it is found.
+    // Give the ceiling its own material, by which the peer's script finds it.
     let mut scene = (*case.scene).clone();
     let (ceiling, _) = *case.target.first().ok_or("the room has no ceiling")?;
     let paint = scene.materials[scene.meshes[ceiling].material].clone();
@@ -243,7 +244,7 @@ fn adjoint(case: &Case, ours: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// Share of intervals that hold the truth, over seeds and channels.
+/// Share of intervals that contain the truth, over seeds and channels.
 fn coverage(case: &Case, truth: DVec3) {
     let world = case.world();
     let mut inside = [0u32; 3];
@@ -264,9 +265,9 @@ fn coverage(case: &Case, truth: DVec3) {
     figure("relight.coverage", inside.iter().map(|&c| share(c)).sum::<f64>() / 3.0, "%");
 }
 
-/// What a map of the importance costs, and one look at it.
+/// Time of a map of the importance, and of one lookup in it.
 fn map(case: &Case) {
-    // The ceiling's own importance needs texture coordinates: the lamp gets some.
+    // The map needs texture coordinates, so the lamp gets some.
     let mut scene = (*case.scene).clone();
     for mesh in scene.meshes.iter_mut().filter(|m| m.material == case.emitter) {
         mesh.uvs[0] = mesh.positions.iter().map(|p| Vec2::new((p.x - 2.2) / 1.6, (p.z - 1.2) / 1.6)).collect();
@@ -304,13 +305,13 @@ fn map(case: &Case) {
     );
 }
 
-/// Texels along the side of a texture of lamps, and the side of a hall that hangs them.
+/// Texels along the side of a texture of lamps, and the side of the hall in metres.
 const TEXELS: usize = 2048;
 const SIDE: f32 = 30.0;
-/// Share of the ceiling that shines.
+/// Share of the ceiling that emits light.
 const LIT: f32 = 0.01;
 
-/// From scene to the powers of all lamps, for 1 and for 10,000 lamps of the same total flux, to 1 %.
+/// Time from the scene to the powers of all lamps to 1 %, for 1 and for 10,000 lamps of equal total flux.
 fn lamps() {
     let halls = [1usize, 100, 10_000].map(|count| (count, Arc::new(hall(count))));
     let floor = [(0, 0), (0, 1)];
@@ -363,7 +364,7 @@ fn hall(count: usize) -> Scene {
             image.pixel_mut(corner[0] + i % side, corner[1] + i / side)[0] = 1.0;
         }
     }
-    // Rounding of the sides changes the flux; the emission makes up for it.
+    // The sides are rounded to texels, which changes the flux; scale the emission to compensate.
     let lit = image.data.iter().sum::<f32>() / (TEXELS * TEXELS) as f32;
     let shining = Material {
         emission: Vec3::splat(1e4 * LIT / lit),

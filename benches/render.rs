@@ -1,14 +1,14 @@
-//! Error against time of path tracing, beside Mitsuba 3 (`llvm_ad_rgb`, `scalar_rgb`) and Cycles.
+//! Error against time of path tracing, against Mitsuba 3 (`llvm_ad_rgb`, `scalar_rgb`) and Cycles.
 //!
-//! Every renderer gets the same GLB, the same size of image and the same two threads, and they render in turns. The error
-//! is measured without a reference: several images that differ in the seed alone scatter about their mean, and the
-//! relative error is the root of the mean over the pixels of that variance divided by the square of the pixel's value
-//! (that of the mean of all images, plus 1 % of the mean pixel, for pixels near black). That all renderers converge to
-//! the same picture is printed beside it: mean values, and how far the means of blocks of pixels differ.
+//! All renderers get the same GLB, image size and two threads, and render in turns. The error needs no reference:
+//! several images that differ only in the seed scatter about their mean. The relative error is the root of the mean
+//! over the pixels of the variance divided by the square of the pixel's value (the value of the mean image, plus 1 %
+//! of the mean pixel for pixels near black). The bench also checks that all renderers converge to the same picture: it
+//! prints mean values, and the difference of the means of blocks of pixels.
 //!
-//! Ours is asked for the least such error that so many paths per pixel allow on the average (`relative_error`), and as
-//! "luxfer, even" for as many paths in every pixel, as Mitsuba makes them. Loading the scene, building trees and compiling
-//! kernels are not counted.
+//! "luxfer" gets the minimum error target that a mean number of paths per pixel allows (`relative_error`), and
+//! "luxfer, even" a fixed number in every pixel, like Mitsuba. Loading the scene, building acceleration structures and
+//! compiling kernels are not counted.
 
 mod harness;
 
@@ -28,13 +28,13 @@ use std::time::Instant;
 
 /// Paths per pixel of the points of a curve.
 const LADDER: [u32; 4] = [16, 64, 256, 1024];
-/// A relative error that no number of paths of the ladder brings about.
-const LEAST: f32 = 1e-6;
+/// A relative error that no number of paths in the ladder reaches.
+const UNREACHED_ERROR: f32 = 1e-6;
 /// Images per point.
 const SEEDS: u32 = 4;
-/// Seconds that an image may take: from the third point on, a renderer is not asked for four times as many paths if they
+/// Maximum seconds per image: from the third point on, a renderer is not asked for four times as many paths if they
 /// would take longer.
-const ENOUGH: f64 = 10.0;
+const MAX_SECONDS: f64 = 10.0;
 
 fn main() {
     let names = ["mitsuba_llvm", "mitsuba_scalar", "cycles"];
@@ -68,7 +68,8 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
     std::fs::create_dir_all(&folder).expect("out/bench can be made");
     let bytes = gltf::export(&scene).expect("the scene is written");
     std::fs::write(&path, bytes).expect("out/bench can be written to");
-    let mut renderers: Vec<Renderer> = vec![ours(setting, "luxfer", LEAST), ours(setting, "luxfer_even", 0.0)];
+    let mut renderers: Vec<Renderer> =
+        vec![ours(setting, "luxfer", UNREACHED_ERROR), ours(setting, "luxfer_even", 0.0)];
     for name in names {
         match peer(name, &path, setting.size) {
             Ok(renderer) => renderers.push(renderer),
@@ -79,7 +80,7 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
     let mut curves: Vec<Curve> = renderers.iter().map(|_| Curve::default()).collect();
     for spp in LADDER {
         for curve in &mut curves {
-            curve.done |= curve.points.len() > 1 && curve.points.last().is_some_and(|p| 4.0 * p.seconds > ENOUGH);
+            curve.done |= curve.points.len() > 1 && curve.points.last().is_some_and(|p| 4.0 * p.seconds > MAX_SECONDS);
             if !curve.done {
                 curve.points.push(Point::default());
             }
@@ -100,8 +101,8 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
     report(setting, key, &renderers, &mut curves);
 }
 
-/// Makes an image of at most so many paths per pixel with a seed; gives the seconds it took, its pixels, and how many paths
-/// they have on the average.
+/// Renders an image with a maximum number of paths per pixel and a seed; returns the seconds, the pixels, and the mean
+/// number of paths per pixel.
 type Render = Box<dyn FnMut(u32, u32) -> (f64, Vec<Vec3>, f64)>;
 
 struct Renderer {
@@ -117,7 +118,7 @@ struct Curve {
 
 #[derive(Default)]
 struct Point {
-    /// Paths per pixel.
+    /// Mean number of paths per pixel.
     paths: f64,
     seconds: f64,
     images: Vec<Vec<Vec3>>,
@@ -142,7 +143,7 @@ fn ours(setting: &Setting, name: &str, relative_error: f32) -> Renderer {
     Renderer { name: name.into(), render: Box::new(render) }
 }
 
-/// Another renderer, in a process of its own that takes jobs line by line.
+/// Another renderer, in a separate process that takes jobs line by line.
 struct Peer {
     process: Child,
     jobs: Option<ChildStdin>,
@@ -187,7 +188,7 @@ fn peer(name: &str, scene: &Path, [width, height]: [usize; 2]) -> Result<Rendere
 }
 
 impl Peer {
-    /// The next line of JSON; other lines are what libraries print.
+    /// The next line of JSON; skips lines that libraries print.
     fn answer(&mut self) -> Result<serde_json::Value, Absent> {
         let mut line = String::new();
         loop {
@@ -230,7 +231,7 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
     }
     table.print(&format!("{key}, {width} x {height}, 2 threads"));
     plot.write(&format!("render_{key}")).expect("out/bench can be written to");
-    // Do they agree?
+    // Compare the means of the images.
     let reference = mean_image(&curves[0]);
     for (renderer, curve) in renderers.iter().zip(curves.iter()) {
         let image = mean_image(curve);
@@ -242,7 +243,7 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
             100.0 * blocks
         );
     }
-    // Time to an error.
+    // Compute the time to reach an error.
     for percent in [5, 1] {
         let error = f64::from(percent) / 100.0;
         let times: Vec<(f64, bool)> = curves.iter().map(|c| time_to(&c.points, error)).collect();
@@ -297,8 +298,8 @@ fn block_difference(a: &[Vec3], b: &[Vec3], [width, height]: [usize; 2]) -> f64 
     harness::median(&differences)
 }
 
-/// When a curve comes down to an error, and whether it was seen to: paths against error on straight lines of the logarithms,
-/// the last one prolonged, times what a path takes as a rule. (Errors scatter less than single times do.)
+/// Time at which a curve reaches an error, and whether that was measured or extrapolated. Interpolates paths against
+/// error linearly in logarithms, and multiplies by the usual time per path (errors scatter less than single times).
 fn time_to(points: &[Point], error: f64) -> (f64, bool) {
     let logs: Vec<[f64; 2]> = points.iter().map(|p| [p.paths.ln(), p.error.ln()]).collect();
     let target = error.ln();

@@ -1,7 +1,7 @@
-//! How time and memory grow with triangles and with pixels. (Growth with lights: the bench `lights`.)
+//! Growth of time and memory with triangles and with pixels. (For growth with lights see the bench `lights`.)
 //!
-//! The room of tessellated sheets is rendered with the same paths at every number of triangles, and the office at every
-//! size of image. The last column is the local exponent of the time per path: 0 where it does not grow.
+//! The room of tessellated sheets is rendered with a fixed number of paths for every number of triangles, and the
+//! office for every image size. The last column is the local exponent of the time per path: 0 for constant time.
 
 mod harness;
 
@@ -80,7 +80,7 @@ fn resolution(pool: &Pool) {
     table.print("resolution: the office, 4 paths per pixel, 2 threads");
 }
 
-/// Exponent of the growth between the last two points.
+/// Exponent of growth between the last two points.
 fn exponent(points: &[[f64; 2]]) -> String {
     match points {
         [.., [x0, y0], [x1, y1]] => format!("{:.2}", (y1 / y0).ln() / (x1 / x0).ln()),

@@ -1,5 +1,5 @@
-//! Segmentation: time of a megapixel; masks against grabCut, a random forest and an RBF support vector machine on the same
-//! strokes; calibration; and the paper's Figs. 5 (samples) and 6 (channels) on rooms with exact masks.
+//! Segmentation: time per megapixel; masks against GrabCut, a random forest and an RBF support vector machine with the
+//! same strokes; calibration; and the paper's Figs. 5 (samples) and 6 (channels) on rooms with exact masks.
 
 mod harness;
 
@@ -22,13 +22,13 @@ const SIZE: [usize; 2] = [1152, 868];
 const PEERS: [&str; 3] = ["grabcut", "rf", "svm"];
 const ROUNDS: usize = 5;
 
-/// A mask to be found, with its strokes.
+/// A true mask with its strokes.
 struct Case {
     name: String,
     photo: Image,
     features: Image,
     strokes: Vec<Stroke>,
-    /// For lights: the strokes of the plane they are to be looked for in.
+    /// For lights: the strokes of the plane that contains them.
     plane: Option<Vec<Stroke>>,
     truth: Image,
 }
@@ -71,8 +71,8 @@ fn iou(a: &Image, b: &Image) -> f64 {
     both as f64 / pairs().filter(|(a, b)| *a || *b).count().max(1) as f64
 }
 
-/// A room with lamps in its ceiling, whose walls are nearly the ceiling's colour; once with a stroke on every surface, once
-/// with strokes on the ceiling, its lamps and one wall alone.
+/// A room with lamps in its ceiling, whose walls are nearly the ceiling's colour; once with a stroke on every surface,
+/// once with strokes only on the ceiling, its lamps and one wall.
 fn room(seed: u64) -> [Case; 2] {
     let [width, height] = SIZE;
     let mut draw = Rng::new(seed, &[]);
@@ -103,7 +103,7 @@ fn room(seed: u64) -> [Case; 2] {
         if face == LAMP {
             return [1.0; 3];
         }
-        // Light falls off towards the corners and along the room.
+        // Illumination decreases towards the corners and along the room.
         let shade = 0.5 + 0.5 * (-(p.x * p.x + p.y * p.y) / 8.0 - (p.z - 2.0).powi(2) / 20.0).exp();
         std::array::from_fn(|c| ((paints[face][c] * shade) as f32 * (1.0 + 0.04 * rng.normal() as f32)).clamp(0.0, 1.0))
     });
@@ -114,7 +114,7 @@ fn room(seed: u64) -> [Case; 2] {
     let features = features::run(&input, &Default::default(), Monitor::default().job()).unwrap().image;
     let truth = Image::from_fn(width, height, |x, y| [f32::from(matches!(face_of[y * width + x], 0 | LAMP))]).unwrap();
 
-    // A straight stroke that stays on its surface, the longest of some at random.
+    // A straight stroke that stays on its surface: the longest of several random ones.
     let stroke = |face: usize, turn: u64| {
         let mut rng = Rng::new(seed, &[face as u64, turn, 7]);
         let mut pick = || DVec2::new(rng.next_f64() * width as f64, rng.next_f64() * height as f64);
@@ -143,7 +143,7 @@ fn room(seed: u64) -> [Case; 2] {
     })
 }
 
-/// Lights of real photos, with the strokes that the tests use.
+/// Lights of real photos, with the strokes of the tests.
 fn photos() -> Vec<Case> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let data = std::env::var_os("LUXFER_TEST_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from);
@@ -170,13 +170,13 @@ fn photos() -> Vec<Case> {
     names.iter().filter_map(case).collect()
 }
 
-/// Milliseconds of a run, and of a run with one stroke more.
+/// Milliseconds of a run, and of a run with an additional stroke.
 fn timing(case: &Case) -> f64 {
     let [width, height] = SIZE;
     let line = [DVec2::new(100.0, 700.0), DVec2::new(300.0, 760.0)];
     let mut more = case.strokes.clone();
     more.push(Stroke::polyline(&line, 5.0, false, width, height).unwrap());
-    // Many more strokes of the same pixels.
+    // Split strokes into many over the same pixels.
     let pieces = |s: &Stroke| {
         s.pixels.chunks(s.pixels.len().div_ceil(20)).map(|p| Stroke { pixels: p.to_vec(), ..*s }).collect::<Vec<_>>()
     };
@@ -203,7 +203,7 @@ fn timing(case: &Case) -> f64 {
     1e3 * timings.median(0)
 }
 
-/// What the peers are given, as files.
+/// Files for the exchange with the peers.
 struct Exchange {
     folder: PathBuf,
     peer: Peer,
@@ -251,7 +251,7 @@ impl Exchange {
         Ok((seconds, mask.map_err(|e| e.to_string())?))
     }
 
-    /// Seconds and mask of a case, in as many phases as ours has.
+    /// Seconds and mask of a case, in as many phases as our method has.
     fn run(&mut self, case: &Case, method: &str) -> Result<(f64, Image), String> {
         let floats = case.features.data.iter().flat_map(|v| v.to_le_bytes()).collect();
         self.write("features", floats)?;
@@ -260,7 +260,8 @@ impl Exchange {
         self.write("photo", bgr.collect())?;
         let Some(plane) = &case.plane else { return self.phase(case, method, &case.strokes, None) };
         if method == "grabcut" {
-            // It has no features to tell a plane by: what is not the plane is no light either.
+            // The peer has no features that describe the plane, so all strokes outside the plane count as negative for
+            // lights.
             let others = plane.iter().filter(|s| !s.positive);
             let all: Vec<Stroke> = others.chain(&case.strokes).cloned().collect();
             return self.phase(case, method, &all, None);
@@ -295,7 +296,7 @@ fn masks(pool: &Pool, cases: &[Case], ours_ms: f64) {
         let mut cells = vec![case.name.clone()];
         cells.extend(found.iter().map(|f| format!("{:.4}", f.1)));
         cells.extend(found.iter().map(|f| format!("{:.0}", 1e3 * f.0)));
-        // Peers take minutes: what there is so far is shown.
+        // Peers take minutes: print the results so far.
         println!("# {}", cells.join("  "));
         table.row(cells);
     }
@@ -318,7 +319,7 @@ fn masks(pool: &Pool, cases: &[Case], ours_ms: f64) {
     }
 }
 
-/// Wrong pixels within four of the true border, as a share of all pixels there.
+/// Share of wrong pixels within four pixels of the true border.
 fn border_error(mask: &Image, truth: &Image) -> f64 {
     let [width, height] = [truth.width, truth.height];
     let is_in = |x: usize, y: usize| truth.data[y * width + x] > 0.5;
@@ -332,7 +333,7 @@ fn border_error(mask: &Image, truth: &Image) -> f64 {
     wrong as f64 / at.len().max(1) as f64
 }
 
-/// The edge-aware refinement, over its knobs.
+/// The edge-aware refinement over its settings.
 fn refinement(cases: &[Case]) {
     let mut table = Table::new(["radius", "tolerance", "IoU rooms", "photos", "border error % rooms", "photos", "ms"]);
     let kinds: [Vec<&Case>; 2] =
@@ -386,7 +387,7 @@ fn refinement(cases: &[Case]) {
     table.print("Edge-aware refinement");
 }
 
-/// How often pixels of a stated probability are positive, all rooms together.
+/// Share of positive pixels for each stated probability, over all rooms.
 fn calibration(rooms: &[&Case]) {
     const BINS: usize = 10;
     let mut bins = [[0.0f64; 3]; BINS];
@@ -422,7 +423,7 @@ fn written(plot: &Plot, name: &str) {
 const STROKES: [&str; 2] = ["every surface", "one wall only"];
 const SAMPLES: [usize; 8] = [5, 10, 25, 100, 250, 1000, 5000, 25_000];
 
-/// Median seconds and mean error, 1 - IoU, of every other room.
+/// Median seconds and mean error (1 - IoU) of every other room.
 fn seconds_and_error(rooms: &[&Case], half: usize, params: &Params) -> [f64; 2] {
     let run = |case: &&Case| {
         let (seconds, found) = time(Clock::Wall, || segmented(case, params));
@@ -455,7 +456,7 @@ fn samples(rooms: &[&Case]) {
     written(&took, "segment_samples_time");
 }
 
-/// Error against time over the samples of each class, with channels that are chosen and with all of them, and over the
+/// Error against time over the samples of each class, with selected channels and with all of them, and over the
 /// refinement's windows.
 fn knobs(rooms: &[&Case]) {
     let mut plot = Plot::new("Segmentation of a megapixel", "seconds", "1 - IoU");

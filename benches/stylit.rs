@@ -1,16 +1,15 @@
 //! Stylisation of the real pair in the test data (ebsynth's StyLit example, 1200 × 912, four guides): time and quality
-//! of the presets; time and memory up to 16 megapixels; side by side with plain EM and with ebsynth; the methods it is
-//! compared with in the same engine; and quality against time over every knob. Arguments pick some of the sections
-//! `presets`, `update`, `sizes`, `rivals`, `methods` and `knobs`.
+//! of the presets; time and memory up to 70 megapixels; comparison with plain EM and ebsynth; other methods in the
+//! same engine; quality against time over every setting. Arguments select sections: `presets`, `update`, `sizes`,
+//! `rivals`, `methods` and `knobs`.
 //!
-//! Pictures are judged by `tools/stylit_judge.py` beside the test data, which sees images only, and by `harness/judge.rs`.
-//! The first runs where `LUXFER_PYTHON`, `target/peers/judge` or `python3` has numpy, scipy and pillow. It looks for nearest
-//! patches at even offsets of the exemplar only: three of four patches of a perfect copy lie between them, so the artwork
-//! itself, judged as a result (`stylit.artwork.*`), is the floor of its `coherence` (117) and near that of its `guide` (731);
-//! lower ones tell of smoother paint. (Softened until its worst shade keeps 95.5 % of the finest texture, by a fortieth of its
-//! blur of 3 pixels, it still has 113.6.) Its samples lie anywhere in the picture, so they fall into 44.3 % of its cells on
-//! average when all exemplar patches are used alike, and into fewer otherwise (`stylit.bound.used`): no picture reaches 45.
-//! Its `guide` has a standard error of 13, and most of it is that patches which look alike lie in different light: see
+//! Pictures are scored by `tools/stylit_judge.py` beside the test data, which sees images only, and by
+//! `harness/judge.rs`. The script runs where `LUXFER_PYTHON`, `target/peers/judge` or `python3` has numpy, scipy and
+//! pillow. It searches nearest patches at even offsets of the exemplar only, so three of four patches of a perfect
+//! copy lie between them: the scores of the artwork itself (`stylit.artwork.*`) are the floor of `coherence` (117) and
+//! near the floor of `guide` (731). Lower values come from smoother paint. Its samples fall on 44.3 % of its cells on
+//! average if all exemplar patches are used equally (`stylit.bound.used`), and on fewer otherwise, so no picture
+//! reaches 45 %. `guide` has a standard error of 13 and consists mostly of similar patches under different light: see
 //! `docs/notes/stylize.md`. Pictures go to `out/bench/`.
 
 mod harness;
@@ -63,7 +62,7 @@ fn main() {
     if wants("rivals") {
         rivals(&pair, &pool);
     }
-    // Knobs and methods at half size, where a run takes a quarter of the time.
+    // Settings and methods at half size, where a run takes a quarter of the time.
     let half = Pair::load(2).expect("it was there before");
     if wants("methods") {
         methods(&half, &pool);
@@ -86,7 +85,7 @@ impl Pair {
         Ok(Self { artwork: read("source_style.png".into())?, guides, folder: folder.clone() })
     }
 
-    /// The pair with guides of so many bits for each channel, as they are displayed.
+    /// The pair with guides reduced to a number of bits per channel, with display encoding.
     fn coarsened(&self, bits: u32) -> Self {
         let steps = ((1 << bits) - 1) as f32;
         let coarse = |image: &Image| {
@@ -114,18 +113,18 @@ fn input<'a>(artwork: &'a Image, guides: &'a [Guide<'a>]) -> Input<'a> {
     Input::new(artwork, guides)
 }
 
-/// Time of each preset, in turns, and what it comes to.
+/// Time of each preset, in turns, and its results.
 fn presets(pair: &Pair, pool: &Pool) {
     let presets = [("full", Params::default()), ("fast", Params::fast()), ("preview", Params::preview())];
     let outputs = std::cell::RefCell::new([None, None, None]);
-    let mut rivals: Vec<Box<dyn FnMut()>> = Vec::new();
+    let mut contenders: Vec<Box<dyn FnMut()>> = Vec::new();
     for (i, (_, params)) in presets.iter().enumerate() {
         let outputs = &outputs;
-        rivals.push(Box::new(move || outputs.borrow_mut()[i] = Some(pair.stylise(params, pool))));
+        contenders.push(Box::new(move || outputs.borrow_mut()[i] = Some(pair.stylise(params, pool))));
     }
-    let mut turns: Vec<&mut dyn FnMut()> = rivals.iter_mut().map(|r| &mut **r as &mut dyn FnMut()).collect();
+    let mut turns: Vec<&mut dyn FnMut()> = contenders.iter_mut().map(|r| &mut **r as &mut dyn FnMut()).collect();
     let timings = interleaved(Clock::Wall, ROUNDS, &mut turns);
-    drop(rivals);
+    drop(contenders);
 
     let mut table = Table::new(["preset", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
     let outputs = outputs.into_inner();
@@ -144,7 +143,7 @@ fn presets(pair: &Pair, pool: &Pool) {
         Ok(line) => judged("full", &line),
         Err(reason) => judged_absent(&reason),
     }
-    // What a perfect copy is judged as, and the most cells that the judge's samples can fall into, whatever the picture.
+    // The scores of a perfect copy, and the maximum number of cells on which the script's samples can fall.
     if let Ok(line) = judge(pair, &pair.folder.join("source_style.png")) {
         judged("artwork", &line);
     }
@@ -191,7 +190,7 @@ fn save(name: &str, image: &Image) {
     println!("picture out/bench/{name}.png");
 }
 
-/// What the judge says of a picture made of the pair: its one line. The artwork itself is judged as made for its own scene.
+/// The line that the script prints for a picture of the pair. The artwork itself is scored against its own scene.
 fn judge(pair: &Pair, picture: &Path) -> Result<String, String> {
     let program = scenes::data("../tools/stylit_judge.py")?;
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers/judge/bin/python");
@@ -215,7 +214,7 @@ fn judge(pair: &Pair, picture: &Path) -> Result<String, String> {
     }
 }
 
-/// The judge's figures: where its line has each number, and its unit.
+/// Figures of the script: the text before each number in its line, and its unit.
 const JUDGED: [(&str, &str, &str); 5] = [
     ("coherence", "coherence ", "-"),
     ("guide", "guide ", "-"),
@@ -224,7 +223,7 @@ const JUDGED: [(&str, &str, &str); 5] = [
     ("hf_worst", "(min ", "-"),
 ];
 
-/// Patches of the picture that the judge looks up.
+/// Number of patches of the picture that the script samples.
 const JUDGE_SAMPLES: f64 = 40_000.0;
 
 /// The number that follows `before` in the judge's line.
@@ -232,7 +231,7 @@ fn number<'a>(line: &'a str, before: &str) -> Option<&'a str> {
     line.split(before).nth(1)?.split([' ', '%', ')', '\n']).next()
 }
 
-/// Prints what the judge says of the picture called `of`.
+/// Prints the scores of the picture called `of`.
 fn judged(of: &str, line: &str) {
     for (name, before, unit) in JUDGED {
         match number(line, before).and_then(|n| n.parse().ok()) {
@@ -248,7 +247,7 @@ fn judged_absent(reason: &str) {
     }
 }
 
-/// Following a brush stroke in the artwork, in preview.
+/// Time to follow a brush stroke in the artwork, in preview.
 fn update(pair: &Pair, pool: &Pool) {
     let guides = pair.guides();
     let monitor = Monitor::default();
@@ -274,8 +273,8 @@ fn update(pair: &Pair, pool: &Pool) {
     figure("stylit.update.seconds", harness::median(&seconds), "s");
 }
 
-/// Time and memory as the target grows, at fast quality, up to 70 megapixels; the exemplar stays. The bytes are those that a
-/// pixel of the target adds to the smallest one's.
+/// Time and memory over the size of the target, at fast quality, up to 70 megapixels, with a fixed exemplar. Bytes per
+/// pixel are relative to the smallest target.
 fn sizes(pair: &Pair, pool: &Pool) {
     let mut smallest = None;
     let mut table = Table::new([
@@ -302,7 +301,7 @@ fn sizes(pair: &Pair, pool: &Pool) {
         let megapixels = (width * height) as f64 * 1e-6;
         let input: usize = larger.guides.iter().map(|(a, b)| 4 * (a.data.len() + b.data.len())).sum();
         let mib = |bytes: u64| format!("{:.0}", bytes as f64 / f64::from(1 << 20));
-        // What the run itself took, before others are timed.
+        // Read the peak of the run before the other runs are timed.
         let peak = harness::peak_memory();
         let here = peak.map(|peak| (megapixels * 1e6, peak as f64 - input as f64));
         smallest = smallest.or(here);
@@ -324,8 +323,8 @@ fn sizes(pair: &Pair, pool: &Pool) {
     table.print("fast quality, 2 threads");
 }
 
-/// The longest that a run goes on after it was told to stop, in seconds, asked while it reads the input, on the coarse levels
-/// and early and late on the finest.
+/// The longest time in seconds from a cancel request to the end of the run. Requests come while it reads the input, on
+/// the coarse levels, and early and late on the finest.
 fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
     let guides = pair.guides();
     let wait = |after: f64| {
@@ -346,14 +345,14 @@ fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
     [0.0, 0.02, 0.15, 0.3, 0.45].into_iter().map(wait).fold(0.0, f64::max)
 }
 
-/// Plain EM in which usage costs (Kaspar et al. 2015).
+/// Plain EM with a cost for usage (Kaspar et al. 2015).
 fn occurrence(weight: f32) -> Params {
     let params = Params { mode: Mode::Occurrence, occurrence: weight, ..Params::default() };
     Params { vote: Vote::Plain, final_vote: Vote::Plain, ..params }
 }
 
-/// Ours beside plain EM, uniform usage and ebsynth, by the judge, by Eq. 3, and to look at. Ours runs before and after the
-/// others, so that what else the machine does weighs on all.
+/// Ours against plain EM, uniform usage and ebsynth, by the script's scores, by Eq. 3, and as pictures. Ours runs
+/// before and after the others, so that other work on the machine affects all.
 fn rivals(pair: &Pair, pool: &Pool) {
     let mut made: Vec<(&str, Option<f64>, PathBuf)> = Vec::new();
     let stylise = |file: &str, params: &Params| {
@@ -363,7 +362,7 @@ fn rivals(pair: &Pair, pool: &Pool) {
     };
     let (before, ours) = stylise("stylit_full", &Params::default());
 
-    // Plain EM with our iterations, and with as many more as fit into our time.
+    // Plain EM with our number of iterations, and with as many as fit into our time.
     let plain =
         Params { mode: Mode::Nearest, sweeps: 3, vote: Vote::Plain, final_vote: Vote::Plain, ..Params::default() };
     let (seconds, file) = stylise("stylit_plain_em", &plain);
@@ -380,7 +379,7 @@ fn rivals(pair: &Pair, pool: &Pool) {
     let (seconds, file) = stylise("stylit_plain_em_long", &longer);
     made.push((&name, Some(seconds), file));
 
-    // Uniform usage, by force and as a cost.
+    // Uniform usage, enforced and as a cost.
     let uniform = Params { mode: Mode::Uniform, ..Params::default() };
     for (name, file, params) in [
         ("uniform (Jamriska 2015)", "stylit_uniform", uniform),
@@ -431,7 +430,7 @@ fn rivals(pair: &Pair, pool: &Pool) {
     table.print("rivals, 1200 x 912, 2 threads; five columns by stylit_judge.py, three by harness/judge.rs");
 }
 
-/// ebsynth with its defaults and guides that weigh as ours do: its time, and where its picture is.
+/// Runs ebsynth with its defaults and the weights of our guides; returns its time and the path of its picture.
 fn ebsynth(pair: &Pair) -> Result<(f64, PathBuf), String> {
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers/ebsynth/bin/ebsynth");
     if !program.exists() {
@@ -454,7 +453,7 @@ fn ebsynth(pair: &Pair) -> Result<(f64, PathBuf), String> {
     }
 }
 
-/// Other ways to make the matches, in the same engine.
+/// Other methods of matching in the same engine.
 fn methods(pair: &Pair, pool: &Pool) {
     let mut table = Table::new(["method", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
     let of = |mode| Params { mode, ..Params::default() };
@@ -476,8 +475,8 @@ fn methods(pair: &Pair, pool: &Pool) {
     table.print("methods, 600 x 456");
 }
 
-/// Energy against time, one knob at a time. The energy is that of the picture, measured alike for all, so that it can be
-/// compared where a knob changes what the run itself adds up.
+/// Energy against time, one setting at a time. The energy is computed from the picture, because some settings change
+/// the sum that a run itself reports.
 fn knobs(pair: &Pair, pool: &Pool) {
     let mut knobs: Vec<(&str, Vec<(String, Params)>)> = Vec::new();
     let mut knob = |name: &'static str, values: &[usize], set: fn(&mut Params, usize)| {

@@ -1,6 +1,6 @@
-//! The whole transfer, from a photo to a lit picture: how long it takes, what memory, and how its error falls with time.
+//! The whole transfer from a photo to a lit picture: time, memory, and error against time.
 //!
-//! `cargo bench --bench transfer -- demonstration` or `-- curves` makes one of them alone.
+//! `cargo bench --bench transfer -- demonstration` or `-- curves` runs one section.
 
 #[path = "transfer/curves.rs"]
 mod curves;
@@ -42,9 +42,9 @@ fn run(transfer: &mut Transfer, from: Stage, to: Stage) {
     transfer.run(from, to, Monitor::default().job(), |_| ()).expect("a transfer");
 }
 
-/// What `make demo` makes, but for its files: the photo of an office, and the picture of a room in its light, 640 x 360. Once as
-/// it is to be looked at in the end, and once as a preview: two paths for each pixel, filtered, and the strength to 5 %; the
-/// latter also from a photo that is there.
+/// The work of `make demo` without its files: the photo of an office, and the picture of a room in its light, 640 x
+/// 360. Once at final quality, and once as a preview: two paths per pixel, filtered, and the strength to 5 %; the
+/// preview also from an existing photo.
 fn demonstration() {
     let final_quality = |params: &mut Params| {
         (params.render.width, params.render.height, params.render.samples) = (640, 360, 12);

@@ -1,5 +1,5 @@
-//! Vanishing points: accuracy on labelled sets of segments and from the pixels of re-projected panoramas, by method, and
-//! error against time as lines or pixels are left out; the last also on generated rooms, whose directions are exact.
+//! Vanishing points: accuracy by method on labelled sets of segments and on the pixels of re-projected panoramas, and
+//! error against time with fewer lines or pixels; the latter also on generated rooms, whose directions are exact.
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
@@ -18,16 +18,16 @@ use luxfer::scene::Camera;
 use std::sync::Arc;
 use truth::{GivenSet, Labelled, area, errors, given_set, labelled_photos};
 
-/// Segments of which `vp.ms` tells the time, and images that it is the median of.
+/// Number of segments for the figure `vp.ms`, and number of images for its median.
 const SEGMENTS: usize = 500;
 const TIMED: usize = 25;
-/// Shares of their sides that photos are reduced to.
+/// Factors by which the sides of photos are reduced.
 const SCALES: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 /// Size of generated photos.
 const SIZE: [usize; 2] = [900, 600];
-/// How generated cameras are turned: to the left and up, in radians.
+/// Rotations of the generated cameras, to the left and up, in radians.
 const TURNS: [[f32; 2]; 4] = [[0.0, 0.0], [0.3, 0.1], [-0.25, -0.15], [0.8, 0.0]];
-/// How often a photo is looked at for the time it takes.
+/// Number of timed runs per photo.
 const ROUNDS: usize = 3;
 
 fn main() {
@@ -85,15 +85,16 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
         row(name, "default, camera known", set, &known);
     }
     if let Some(set) = given_set("yud_dev") {
-        // York Urban's own labels (Denis et al. 2008) are three directions a photo, and so are the figures known of it. A few
-        // photos carry further ones of YUD+, some of them with half a dozen lines.
+        // York Urban's own labels (Denis et al. 2008) are three directions per photo, and published figures refer to
+        // them. A few photos have further directions in YUD+, some with half a dozen lines.
         let auc = row("yud_dev", "default, its first three directions only", &set.first_three(), &Params::default());
         headline.push(("vp.yud_dev.auc10".into(), auc));
     }
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
-        let told = set.told_which_lines();
+        let bounds = set.from_labelled_lines();
         let angles = |from: usize, to: usize| {
-            let mut all: Vec<f64> = told.iter().flat_map(|i| &i[from.min(i.len())..to.min(i.len())]).copied().collect();
+            let mut all: Vec<f64> =
+                bounds.iter().flat_map(|i| &i[from.min(i.len())..to.min(i.len())]).copied().collect();
             all.sort_by(f64::total_cmp);
             all
         };
@@ -105,7 +106,7 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
         }
     }
     table.print("From given segments, focal length unknown");
-    bound.print("What lines can say at most: told which of them run along each labelled direction, the camera known");
+    bound.print("What lines can say at most: bounds which of them run along each labelled direction, the camera known");
     headline.iter().for_each(|(name, auc)| figure(name, *auc, "%"));
 
     let Some(set) = &sets[0] else { return absent("vp.ms", "the labelled segments are not there") };
@@ -127,7 +128,7 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     println!("\n{} segments: {:.1} to {:.1} ms", SEGMENTS, quantile(&ms, 0.0), quantile(&ms, 1.0));
     figure("vp.ms", quantile(&ms, 0.5), "ms");
 
-    // The shortest left out.
+    // Leave out the shortest lines.
     let mut plot = Plot::new("Vanishing points from the longest segments", "seconds", "100 - AUC@10, %");
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
         for (method, params) in &methods()[..2] {
@@ -143,15 +144,15 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     plot.write("vp_segments").unwrap();
 }
 
-/// The longest segments, at most so many, in their order.
-fn longest(segments: &[Segment], most: usize) -> Vec<Segment> {
+/// The longest segments, at most `count`, in their original order.
+fn longest(segments: &[Segment], count: usize) -> Vec<Segment> {
     let mut lengths: Vec<f64> = segments.iter().map(Segment::length).collect();
     lengths.sort_by(|a, b| b.total_cmp(a));
-    let least = lengths.get(most).copied().unwrap_or(0.0);
-    segments.iter().filter(|s| s.length() > least).copied().collect()
+    let min_length = lengths.get(count).copied().unwrap_or(0.0);
+    segments.iter().filter(|s| s.length() > min_length).copied().collect()
 }
 
-/// Errors in degrees of the directions found in a photo, each with the error that was stated for it.
+/// Errors in degrees of the directions found in a photo, each with its stated error.
 fn found(photo: &Labelled, params: &Params) -> (f64, Vec<[f64; 2]>) {
     let monitor = Monitor::default();
     let (seconds, view) = time(Clock::Wall, || rectify::find_view(&photo.photo, params, monitor.job()));
@@ -202,8 +203,8 @@ fn panoramas(photos: &[Labelled]) {
     figure("vp.megapixel.ms", megapixel(photos), "ms");
 }
 
-/// Milliseconds from the pixels of a photo of one megapixel to its vanishing points: the median of the photos, each the
-/// median of five.
+/// Milliseconds from the pixels of a photo of one megapixel to its vanishing points: the median over the photos, each
+/// the median of five runs.
 fn megapixel(photos: &[Labelled]) -> f64 {
     let params = Params::default();
     let each = photos.iter().map(|photo| {
@@ -217,7 +218,7 @@ fn megapixel(photos: &[Labelled]) -> f64 {
     quantile(&ms, 0.5)
 }
 
-/// Error against time as photos are reduced, by method.
+/// Error against time over the reduction of photos, by method.
 fn reductions(plot: &mut Plot, photos: &[Labelled]) {
     for (method, params) in methods().iter().filter(|(_, params)| params.metric == Metric::Segment) {
         plot.add(method, SCALES.map(|scale| reduced(photos, params, scale)));
@@ -236,7 +237,8 @@ fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
     [quantile(&seconds, 0.5), quantile(&angles, 0.5)]
 }
 
-/// Photos of the generated rooms: what is not furniture runs along the axes of the world, as the camera sees them.
+/// Photos of the generated rooms: everything except furniture is parallel to the axes of the world, which give the
+/// true directions in camera space.
 fn rooms() -> Vec<Labelled> {
     let settings = [scenes::demo_office(), scenes::demo_room()].into_iter().flatten();
     settings
@@ -270,13 +272,13 @@ fn intrinsics(camera: &Camera) -> DMat3 {
     DMat3::from_cols(DVec3::X * focal, DVec3::Y * focal, DVec3::new(width / 2.0, height / 2.0, 1.0))
 }
 
-/// The axes of the world as a camera sees them: to the right, down, ahead.
+/// The axes of the world in camera space: right, down, forward.
 fn axes(camera: &Camera) -> Vec<DVec3> {
     let [right, down, ahead] = [camera.forward.cross(camera.up), -camera.up, camera.forward].map(|v| v.as_dvec3());
     DVec3::AXES.map(|axis| DVec3::new(right.dot(axis), down.dot(axis), ahead.dot(axis)).normalize()).to_vec()
 }
 
-/// A photo with its sides times `scale`.
+/// A photo with its sides scaled by `scale`.
 fn resized(photo: &Labelled, scale: f64) -> Labelled {
     let [width, height] = [photo.photo.width, photo.photo.height].map(|side| (side as f64 * scale).round() as usize);
     let small = pyramid::resize(&photo.photo, width, height, Monitor::default().job()).unwrap();

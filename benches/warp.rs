@@ -1,11 +1,11 @@
-//! Warping through homographies beside OpenCV's `warpPerspective`: time, and the difference from the exact picture where
-//! the source is magnified and where it is minified.
+//! Warping by homographies against OpenCV's `warpPerspective`: time, and the difference from the exact picture for
+//! magnification and for minification.
 //!
-//! Both have the same image of three floats a pixel, the same size of the result and two threads. Ours interpolates and
-//! averages as it has to; OpenCV's warps know no averaging (`INTER_AREA` is taken as linear there): its linear and its
-//! cubic interpolation are timed, the figure is beside the cubic, which is what ours is where nothing is minified. The
-//! truth is the mean of a hundred points of each pixel. The filter has no settings; whether it wants any is what its
-//! error against time shows where more pixels are made than are wanted, and averaged, or fewer, and enlarged.
+//! Both get an image of three floats per pixel, equal result sizes and two threads. Ours interpolates or averages as
+//! needed; OpenCV's warp does not average (it takes `INTER_AREA` as linear). Its linear and its cubic interpolation
+//! are timed; the headline figure compares with the cubic one, which equals ours without minification. The truth is
+//! the mean of a hundred points in each pixel. The filter has no settings; the curve of error against time, with more
+//! pixels than needed and averaging, or with fewer and enlarging, shows whether one would help.
 
 mod harness;
 
@@ -25,11 +25,11 @@ const OUT: [usize; 2] = [1024, 768];
 const ROUNDS: usize = 7;
 const INTERPOLATIONS: [&str; 2] = ["linear", "cubic"];
 
-/// Source pixels to a pixel, along a side, from which on a pixel counts as minified, and up to which as magnified.
+/// Source pixels per result pixel, along a side: minimum of minification, and maximum of magnification.
 const MINIFIED: f64 = 1.5;
 const MAGNIFIED: f64 = 1.0;
 
-/// Sides that are warped to, relative to those wanted.
+/// Sides of the result relative to the wanted ones.
 const DENSITIES: [f64; 6] = [0.25, 0.5, 0.75, 1.0, 2.0, 3.0];
 
 fn main() {
@@ -57,7 +57,7 @@ fn picture(p: DVec2) -> [f32; 3] {
     }
 }
 
-/// The mean of the picture over the pixel at (x, y) of what a map shows of it.
+/// Mean of the picture over the pixel (x, y) of a warped image.
 fn exact(to_picture: &Homography, x: usize, y: usize, sub: usize) -> [f32; 3] {
     let mut sum = [0.0f32; 3];
     for k in 0..sub * sub {
@@ -68,7 +68,7 @@ fn exact(to_picture: &Homography, x: usize, y: usize, sub: usize) -> [f32; 3] {
     sum.map(|s| s / (sub * sub) as f32)
 }
 
-/// Planes seen aslant, and one that shrinks everywhere.
+/// Planes seen at an angle, and one that is minified everywhere.
 fn maps() -> [(&'static str, Homography); 3] {
     let [w, h] = OUT.map(|v| v as f64);
     let [sw, sh] = SOURCE.map(|v| v as f64);
@@ -94,14 +94,14 @@ fn keystone(w: f64, h: f64) -> DMat3 {
     Homography::from_corners(from, to).unwrap().0
 }
 
-/// Source pixels to a pixel of the result, along a side.
+/// Source pixels per pixel of the result, along a side.
 fn minification(map: &Homography, p: DVec2) -> f64 {
     let at = |d: DVec2| map.apply(p + d);
     let [u, v] = [DVec2::X, DVec2::Y].map(|d| at(d / 2.0) - at(-d / 2.0));
     u.perp_dot(v).abs().sqrt()
 }
 
-/// Source pixels to each pixel of the result, along a side; of those whose surroundings lie wholly inside the source.
+/// Source pixels per result pixel, along a side, for pixels whose neighbourhood lies inside the source.
 fn minifications(map: &Homography) -> Vec<f64> {
     let limit = DVec2::new(SOURCE[0] as f64, SOURCE[1] as f64) - 16.0;
     let inside = |p: DVec2| {
@@ -114,12 +114,12 @@ fn minifications(map: &Homography) -> Vec<f64> {
     places.map(|p| if inside(p) { minification(map, p) } else { f64::NAN }).collect()
 }
 
-/// What a map shows of the picture, exactly.
+/// The exact warped picture.
 fn truth(map: &Homography) -> Image {
     Image::from_fn(OUT[0], OUT[1], |x, y| exact(map, x, y, 10)).unwrap()
 }
 
-/// Error against time as more or fewer pixels are made than are wanted.
+/// Error against time over the number of computed pixels.
 fn densities(source: &Image) {
     let monitor = Monitor::default();
     let mut plot = Plot::new("Warping, 1024 x 768 from 2048 x 1536", "seconds", "root mean square error");
@@ -146,7 +146,7 @@ fn densities(source: &Image) {
     plot.write("warp_density").unwrap();
 }
 
-/// Peak signal-to-noise ratio in dB of the pixels that a condition admits.
+/// Peak signal-to-noise ratio in dB of the pixels that the mask admits.
 fn psnr(found: &[f32], truth: &[f32], admitted: &[bool]) -> f64 {
     let mut squares = (0.0, 0.0);
     for ((a, b), _) in found.chunks_exact(3).zip(truth.chunks_exact(3)).zip(admitted).filter(|p| *p.1) {

@@ -53,7 +53,7 @@ int main(void) {
     check(luxfer_illuminance_get_report(illuminance, &report), "report");
     /* --8<-- [end:grid] */
     printf("mean %.0f lux (+- %.1f, 95 %%), least %.0f, largest %.0f, uniformity %.2f\n", report.mean, 1.96 * report.mean_error,
-           report.least, report.largest, report.least / report.mean);
+           report.minimum, report.maximum, report.minimum / report.mean);
 
     /* Read the values, one channel, into an array. */
     check(luxfer_illuminance_get_image(illuminance, LUXFER_ILLUMINANCE_LUX, &image), "lux");

@@ -556,7 +556,7 @@ typedef struct luxfer_surface {
      * Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, as
      * those of a vault; they receive no emission.
      */
-    float bent;
+    float sloped_area;
 } luxfer_surface;
 
 /** Creates an empty scene. The caller releases *scene. Any thread. */
@@ -1839,7 +1839,7 @@ luxfer_status luxfer_features_release(luxfer_features *features);
 /** A segmentation by strokes. See luxfer_segment_create. */
 typedef struct luxfer_segment luxfer_segment;
 
-/** What is segmented: a LUXFER_SUBJECT_ value. */
+/** The subject of a segmentation: a LUXFER_SUBJECT_ value. */
 typedef int32_t luxfer_subject;
 
 /** Settings of a segmentation. Fill them with luxfer_segment_params_init. */
@@ -1870,8 +1870,8 @@ typedef struct luxfer_segment_params {
      */
     double refine_tolerance;
     /**
-     * What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. Of lamps the settings above do not
-     * matter.
+     * The subject of the positive strokes: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. For lamps the
+     * settings above have no effect.
      */
     luxfer_subject subject;
     /** Must be 0. */
@@ -1917,7 +1917,7 @@ typedef struct luxfer_segment_report {
  */
 #define LUXFER_SEGMENT_UNSEEN 2
 
-/** Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a surface. */
+/** Lamps if luxfer_segment_set_region gave a mask and the features are those of luxfer_features; else a surface. */
 #define LUXFER_SUBJECT_AUTO 0
 
 /** A surface, such as the plane that carries the lamps: each pixel is judged by its features. */
@@ -1925,7 +1925,7 @@ typedef struct luxfer_segment_report {
 
 /**
  * Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
- * without a stroke that look like them and lie in the mask of luxfer_segment_set_within are found as well. Negative strokes are
+ * without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as well. Negative strokes are
  * not needed. The first three channels of the features must be CIELAB.
  */
 #define LUXFER_SUBJECT_LAMPS 2
@@ -1947,11 +1947,11 @@ luxfer_status luxfer_segment_set_features(luxfer_segment *segment,
                                           luxfer_image *features);
 
 /**
- * Restricts the segmentation to the pixels where within is 1, such as the mask of the plane when you segment lights; 0
- * elsewhere; 1 channel, the size of the features. within may be NULL: no restriction. Any thread.
+ * Restricts the segmentation to the pixels where region is 1, such as the mask of the plane when you segment lights; 0
+ * elsewhere; 1 channel, the size of the features. region may be NULL: no restriction. Any thread.
  */
-luxfer_status luxfer_segment_set_within(luxfer_segment *segment,
-                                        luxfer_image *within);
+luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
+                                        luxfer_image *region);
 
 /**
  * Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the centre of the
@@ -2802,12 +2802,12 @@ typedef struct luxfer_illuminance_report {
     uint32_t struct_size;
     /** Number of points; on a mesh, the texels that the surface covers. */
     uint32_t points;
-    /** Smallest illuminance; least / mean is the uniformity U0. */
-    double least;
+    /** Smallest illuminance; minimum / mean is the uniformity U0. */
+    double minimum;
     /** Mean illuminance. */
     double mean;
     /** Largest illuminance. */
-    double largest;
+    double maximum;
     /** Standard error of the mean. */
     double mean_error;
 } luxfer_illuminance_report;
@@ -2917,11 +2917,11 @@ typedef struct luxfer_relight_params {
     uint64_t seed;
 } luxfer_relight_params;
 
-/** Whether light should equal its target value, or stay above or below it: a LUXFER_SENSE_ value. */
-typedef int32_t luxfer_sense;
+/** Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value. */
+typedef int32_t luxfer_constraint;
 
-/** Whether the target is met in a colour channel, and if not, the reason: a LUXFER_REACH_ value. */
-typedef int32_t luxfer_reach;
+/** Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value. */
+typedef int32_t luxfer_outcome;
 
 /** The solution and its confidence. Set struct_size before the call. */
 typedef struct luxfer_relight_report {
@@ -2937,8 +2937,8 @@ typedef struct luxfer_relight_report {
     double response[3];
     /** Mean radiance of the target from all other light, in cd/m². */
     double background[3];
-    /** LUXFER_REACH_ value of each channel. */
-    luxfer_reach reach[3];
+    /** LUXFER_OUTCOME_ value of each channel. */
+    luxfer_outcome outcome[3];
     /** 0. */
     uint32_t reserved;
     /** The largest relative half-width among the channels that meet their target. */
@@ -2967,27 +2967,27 @@ typedef struct luxfer_relight_report {
 #define LUXFER_FIT_LEAST_SQUARES 1
 
 /** The light should equal the value. */
-#define LUXFER_SENSE_EXACTLY 0
+#define LUXFER_CONSTRAINT_EQUAL 0
 
 /**
  * The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a photo shows.
  */
-#define LUXFER_SENSE_AT_LEAST 1
+#define LUXFER_CONSTRAINT_AT_LEAST 1
 
 /** The light should be at most the value, as a limit against glare. */
-#define LUXFER_SENSE_AT_MOST 2
+#define LUXFER_CONSTRAINT_AT_MOST 2
 
 /** The target is met. */
-#define LUXFER_REACH_MET 0
+#define LUXFER_OUTCOME_MET 0
 
 /** The other lights alone exceed the target: the emission is 0 in this channel. */
-#define LUXFER_REACH_TOO_BRIGHT 1
+#define LUXFER_OUTCOME_TOO_BRIGHT 1
 
 /** No light of this channel reaches the target: the emission uses the mean scale of the other channels. */
-#define LUXFER_REACH_DARK 2
+#define LUXFER_OUTCOME_DARK 2
 
 /** All lamps at their largest power are too weak, or two goals contradict each other. */
-#define LUXFER_REACH_TOO_DIM 3
+#define LUXFER_OUTCOME_TOO_DIM 3
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -3016,15 +3016,15 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
 luxfer_status luxfer_relight_set_target(luxfer_relight *relight, float red, float green, float blue);
 
 /**
- * Makes the target a limit, separately in each channel: LUXFER_SENSE_ values. A channel that the photo clips should be
- * LUXFER_SENSE_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
+ * Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips should be
+ * LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
  * respects the limit, else the scale that reaches the limit. Any thread.
- * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_SENSE_ value.
+ * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
  */
-luxfer_status luxfer_relight_set_sense(luxfer_relight *relight,
-                                       luxfer_sense red,
-                                       luxfer_sense green,
-                                       luxfer_sense blue);
+luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
+                                            luxfer_constraint red,
+                                            luxfer_constraint green,
+                                            luxfer_constraint blue);
 
 /**
  * Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
@@ -3060,7 +3060,7 @@ luxfer_status luxfer_relight_release(luxfer_relight *relight);
 typedef struct luxfer_lamps luxfer_lamps;
 
 /**
- * Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission texture, or a
+ * Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture, or a
  * connected piece of the meshes if the emission has no texture.
  */
 typedef int32_t luxfer_group;
@@ -3082,12 +3082,12 @@ typedef struct luxfer_lamps_params {
      */
     uint32_t free_colour;
     /** Largest factor for the emission of a group, >= 0; default infinity. */
-    double most;
+    double max_scale;
     /**
      * Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
      * powers equal; default 1e-6.
      */
-    double evenness;
+    double regularisation;
     /**
      * A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise; default
      * 0.01.
@@ -3197,16 +3197,16 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     double weight);
 
 /**
- * Makes a goal a limit, separately in each channel: LUXFER_SENSE_ values. The three values of a goal in lux must be
- * equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_SENSE_EXACTLY. Any
+ * Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must be
+ * equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL. Any
  * thread.
  * LUXFER_NOT_FOUND if there is no such goal.
  */
-luxfer_status luxfer_lamps_set_sense(luxfer_lamps *lamps,
-                                     uint32_t goal,
-                                     luxfer_sense red,
-                                     luxfer_sense green,
-                                     luxfer_sense blue);
+luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
+                                          uint32_t goal,
+                                          luxfer_constraint red,
+                                          luxfer_constraint green,
+                                          luxfer_constraint blue);
 
 /**
  * Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
@@ -3261,8 +3261,8 @@ typedef struct luxfer_lamp {
 typedef struct luxfer_lamps_goal {
     /** sizeof(luxfer_lamps_goal), set by the caller. */
     uint32_t struct_size;
-    /** LUXFER_REACH_ value of each channel. */
-    luxfer_reach reach[3];
+    /** LUXFER_OUTCOME_ value of each channel. */
+    luxfer_outcome outcome[3];
     /** Mean radiance of the goal, in cd/m²; illuminance / pi for a grid. */
     double target[3];
     /** Mean radiance with the powers found, in cd/m². */
@@ -3474,20 +3474,20 @@ typedef struct luxfer_placement_params {
     /** Number of placements at which the search starts, in [1, 4096]; default 64. */
     uint32_t starts;
     /** Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5. */
-    double least_offset[2];
+    double min_offset[2];
     /**
      * Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value is
      * fixed.
      */
-    double most_offset[2];
+    double max_offset[2];
     /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
-    double least_scale[2];
+    double min_scale[2];
     /** Largest number of repetitions, in [1/64, 64]; default 1. */
-    double most_scale[2];
+    double max_scale[2];
     /** Smallest rotation in radians, in [-2 pi, 2 pi]; default 0. */
-    double least_rotation;
+    double min_rotation;
     /** Largest rotation in radians, in [-2 pi, 2 pi]; default 0. */
-    double most_rotation;
+    double max_rotation;
     /** Seed of the starting placements; default 1. */
     uint64_t seed;
 } luxfer_placement_params;
@@ -3639,9 +3639,9 @@ typedef struct luxfer_false_colour_params {
      * Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the lightest
      * colour; default 0.
      */
-    double least;
-    /** Value of the lightest colour, greater than least; 0, the default, means the largest value of the image. */
-    double most;
+    double minimum;
+    /** Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the image. */
+    double maximum;
 } luxfer_false_colour_params;
 
 /** Linear: equal differences of the value have equal width. */
@@ -3739,14 +3739,14 @@ typedef struct luxfer_preset {
 /**
  * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
  * linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
- * drives receives count drive levels in [0, most]; most may be infinite. If several mixtures give the colour, the one
+ * drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the colour, the one
  * with the smallest sum of squared drive levels is returned. Any thread.
  * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    const double *primaries,
                                    uint32_t count,
-                                   double most,
+                                   double max_drive,
                                    const double *colour,
                                    double *drives,
                                    luxfer_mixture *mixture);
@@ -5072,7 +5072,7 @@ typedef struct luxfer_stylize_report {
     /** Width of the patches, in pixels. */
     uint32_t patch;
     /** Largest number of uses of an exemplar patch. */
-    uint32_t most_used;
+    uint32_t max_uses;
     /**
      * Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
      * channels of the artwork have the weight 1 together, the guides guide_weight.

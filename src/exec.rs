@@ -46,8 +46,8 @@ impl Pool {
         }
     }
 
-    /// Like [`run`](Self::run), but gives the work up, and returns `None`, if `is_cancelled` becomes true while all
-    /// threads are busy with other work. `work` must not panic. It is always dropped before this returns.
+    /// Like [`run`](Self::run), but drops the work and returns `None` if `is_cancelled` becomes true while all threads
+    /// are busy with other work. `work` must not panic. It is always dropped before this returns.
     pub fn run_unless<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
@@ -61,7 +61,7 @@ impl Pool {
     }
 }
 
-/// Work on its way through the queue of a pool.
+/// Work in the queue of a pool.
 struct Queued<W, T> {
     state: Mutex<Progress<W, T>>,
     changed: Condvar,
@@ -69,13 +69,13 @@ struct Queued<W, T> {
 
 enum Progress<W, T> {
     Waiting(W),
-    /// Taken out, by a worker or because it was given up.
+    /// Taken by a worker, or dropped.
     Begun,
     Finished(T),
 }
 
 impl<W: FnOnce() -> T, T> Queued<W, T> {
-    /// Runs the work, unless it was given up.
+    /// Runs the work, unless it was dropped.
     fn run(&self) {
         let begun = std::mem::replace(&mut *lock(&self.state), Progress::Begun);
         let Progress::Waiting(work) = begun else { return };
@@ -84,7 +84,7 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
         self.changed.notify_all();
     }
 
-    /// Waits for the result; gives the work up if `is_cancelled` becomes true before it runs.
+    /// Waits for the result; drops the work if `is_cancelled` becomes true before it runs.
     fn result(&self, is_cancelled: impl Fn() -> bool) -> Option<T> {
         let mut state = lock(&self.state);
         loop {
@@ -100,7 +100,8 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
     }
 }
 
-/// How often queued work looks for cancellation: a fifth of the 100 ms in which a cancel request is answered.
+/// Interval at which queued work checks for cancellation: a fifth of the 100 ms within which a cancel request is
+/// answered.
 const CANCEL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Pools for short work that must not wait for the long work of another pool. Each run has a pool of its own, with as
@@ -110,7 +111,7 @@ pub struct QuickPools {
     idle: Mutex<Vec<Pool>>,
 }
 
-/// Number of pools that stay for the next run: for the few threads of a host that call at the same time.
+/// Maximum number of idle pools that are kept: enough for the few threads of a host that call at the same time.
 const MAX_IDLE: usize = 4;
 
 impl QuickPools {
@@ -123,7 +124,7 @@ impl QuickPools {
         let idle = lock(&self.idle).pop();
         let pool = idle.map_or_else(|| Pool::new(self.num_threads), Ok)?;
         let result = pool.run(work);
-        // End the pool only after the lock is free again.
+        // Drop a surplus pool only after the lock is released.
         let mut surplus = Some(pool);
         let mut idle = lock(&self.idle);
         if idle.len() < MAX_IDLE {
@@ -138,7 +139,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Starts a thread, which is as quiet about panics as the thread that starts it.
+/// Starts a thread, which suppresses messages of panics if the starting thread does.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
     if !reserve::has_room(THREAD_OVERHEAD) {
         return Err(io::ErrorKind::OutOfMemory.into());

@@ -34,7 +34,7 @@
 //! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
 //!   scrambling.
 
-// Nothing that ends or talks past the host.
+// Deny functions that end the process or print.
 #![cfg_attr(
     not(test),
     warn(
@@ -84,6 +84,6 @@ pub mod transfer;
 
 pub mod plan;
 
-// Its comments become a C header, in which brackets are no links and no tags.
+// Its comments become a C header, so brackets in them are neither links nor tags.
 #[allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
 pub mod ffi;

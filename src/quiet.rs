@@ -1,21 +1,21 @@
 //! Defects (Rust's panics) become statuses, and their messages never reach the stderr of the host.
 //!
-//! Rust writes the message of a panic before anything can catch it, unless a hook of its runtime does otherwise. The
-//! hook here is silent on threads that are inside the library: in a call of the host, or started by one. Elsewhere it
-//! hands the message on to the hook that it found. The shared library and the static archive contain a Rust runtime of
-//! their own, so their hook never sees a panic of the host; a host in Rust that links the crate shares it.
+//! Rust writes the message of a panic before the panic can be caught, unless a panic hook prevents it. The hook of
+//! this module is silent on threads that are inside the library: in a call of the host, or started by one. On other
+//! threads it calls the previously installed hook. The shared library and the static archive contain their own Rust
+//! runtime, so their hook never sees a panic of the host; a Rust host that links the crate shares the hook.
 
 use std::cell::Cell;
 use std::panic;
 use std::sync::Once;
 use std::thread;
 
-// Without a destructor, so that nothing of it outlives the library when a host unloads it.
+// Without a destructor, so that a host can unload the library.
 thread_local! {
     static IS_QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Messages of panics are suppressed on this thread while this lives.
+/// Suppresses messages of panics on this thread for its lifetime.
 pub struct Quiet {
     before: bool,
 }
@@ -38,13 +38,13 @@ pub fn is_on() -> bool {
     IS_QUIET.get()
 }
 
-/// Calls a function of the host, whose panics are its own affair.
+/// Calls a function of the host, whose panics print their message.
 pub fn outside<T>(call: impl FnOnce() -> T) -> T {
     let _restored = Quiet { before: IS_QUIET.replace(false) };
     call()
 }
 
-/// Installs the hook, once in a process. A thread that is panicking must not; the next call does it then.
+/// Installs the hook once per process. A panicking thread cannot install it; the next call then does.
 fn install() {
     static INSTALLED: Once = Once::new();
     if !INSTALLED.is_completed() && !thread::panicking() {

@@ -1,6 +1,6 @@
-//! The one warning type: the reason to doubt a result that is no error, and the remedy.
+//! The warning type: a reason to doubt a result, and the remedy.
 //!
-//! A warning compares a figure of a result with a limit, so each stage computes its list from its result alone, and a
+//! A warning compares a figure of a result with a limit. Each stage computes its list from its result alone, and a
 //! scene from its contents (`warnings.rs` in the folder of the stage, with the limits). Nothing is stored.
 
 use glam::DVec2;
@@ -40,7 +40,7 @@ pub enum Code {
     PlaneNearHorizon = 14,
     /// Emission: the statistics of the texture differ from those of the photo.
     PatternUncertain = 15,
-    /// Emission: the photo shows fewer whole lamps than tell a pattern.
+    /// Emission: the photo shows fewer whole lamps than determine a pattern.
     FewLamps = 16,
     /// Emission: many lamps without a lattice, which patches continue imperfectly.
     NoLattice = 17,
@@ -48,7 +48,7 @@ pub enum Code {
     Unreachable = 18,
     /// Relighting: the photo clips the target, which is a lower bound.
     TargetClipped = 19,
-    /// Scene: it is so high that its unit is hardly the metre.
+    /// Scene: it is so high that its unit is probably not the metre.
     ImplausibleSize = 20,
     /// Scene: its file has a feature that is not rendered.
     NotRendered = 21,
@@ -84,15 +84,15 @@ impl Code {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     pub code: Code,
-    /// The figure that raised it.
+    /// The figure that caused the warning.
     pub severity: f64,
-    /// The limit that the figure has passed.
+    /// The limit that the figure has crossed.
     pub limit: f64,
     /// The defect, with the figure.
     pub message: String,
     /// The remedy.
     pub advice: String,
-    /// Where in the photo, in pixels.
+    /// The position in the photo, in pixels.
     pub place: Option<DVec2>,
 }
 
@@ -125,7 +125,7 @@ impl Warning {
         Self { code, severity, limit, message, advice: advice.into(), place: None }
     }
 
-    /// The same warning with a place in the photo; one that is not finite is none.
+    /// The same warning with a position in the photo; a position that is not finite is dropped.
     pub fn at(self, place: Option<DVec2>) -> Self {
         Self { place: place.filter(|p| p.is_finite()), ..self }
     }
@@ -138,7 +138,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// A share in the words of a message.
+/// A share as a percentage, for messages.
 pub fn percent(share: f64) -> String {
     if share.abs() < 0.0995 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
 }

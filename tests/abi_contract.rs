@@ -1,5 +1,5 @@
-//! What the C boundary promises of handles, versioned structs, image views, files, scenes and messages, through its own
-//! functions. Jobs are in `abi_jobs.rs`.
+//! Contract of the C boundary, checked through its functions: handles, versioned structs, image views, files, scenes
+//! and messages. Jobs are in `abi_jobs.rs`.
 
 mod host;
 
@@ -25,7 +25,7 @@ fn handles_that_are_none_are_errors() {
             }
         }
         assert_eq!(luxfer_context_release(image.cast()), LUXFER_INVALID_ARGUMENT);
-        // NULL is nothing to release.
+        // Releasing NULL does nothing.
         assert_eq!(luxfer_context_release(null_mut()), LUXFER_OK);
         assert_eq!(luxfer_image_release(null_mut()), LUXFER_OK);
         assert_eq!(luxfer_scene_release(null_mut()), LUXFER_OK);
@@ -91,7 +91,7 @@ fn views_of_every_size_and_stride_are_read_or_refused() {
         (1, 65_537, LUXFER_INVALID_ARGUMENT),
         (u32::MAX, u32::MAX, LUXFER_INVALID_ARGUMENT),
     ] {
-        // Miri would take half an hour.
+        // Miri would take half an hour for this.
         if cfg!(miri) && (width, height) != (1, 1) && want == LUXFER_OK {
             continue;
         }
@@ -154,7 +154,7 @@ fn pixels_round_trip_through_strides_and_misalignment() {
         let (x, y) = (i % 7, 4 - i / 7);
         assert_eq!(pixel, [0, 1, 2].map(|c| (x * 100 + y * 10 + c) as f32));
     }
-    // One channel of three, back into the strided memory: nothing between the pixels is touched.
+    // Write one of three channels back into the strided memory; the bytes between the pixels stay unchanged.
     let before = bytes.clone();
     let one = luxfer_image_view { channels: 1, data: bytes.as_mut_ptr().wrapping_add(1).cast(), ..strided };
     assert_eq!(unsafe { luxfer_image_read(image, 2, &one) }, LUXFER_OK);
@@ -346,7 +346,7 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(luxfer_scene_find_surface(scene, c"Lamp".as_ptr(), &mut surface), LUXFER_OK);
         assert!((surface.area - 1.0).abs() < 1e-5 && surface.triangles == 2);
 
-        // Out and in again; a writer that gives up is an error.
+        // Save and load again; an error of the writing function ends the save.
         unsafe extern "C" fn collect(user: *mut c_void, data: *const c_void, size: usize) -> i32 {
             unsafe { (*user.cast::<Vec<u8>>()).extend(std::slice::from_raw_parts(data.cast::<u8>(), size)) };
             0

@@ -1,6 +1,6 @@
-//! Files are read within the memory budget of the context, what their decoders take included, and on small stacks.
+//! Files are read within the memory budget of the context, including the memory of decoders, and on small stacks.
 //!
-//! A program of its own, and one test after the other, because it measures its peak of memory.
+//! A separate program whose tests run one after the other, because it measures the peak memory of the process.
 
 mod host;
 
@@ -18,19 +18,19 @@ fn alone() -> MutexGuard<'static, ()> {
     ALONE.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// What the rest of the process may take while a file is read: pages of the program itself, and of its allocator.
+/// Memory that the rest of the process may take while a file is read: pages of the program and of its allocator.
 const NOISE: u64 = 3 << 20;
 
-/// A figure of this process in bytes, where the system states it.
+/// A memory figure of this process in bytes, if the system reports it.
 fn figure(name: &str) -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     Some(line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()? * 1024)
 }
 
-/// The value of some work, and by how much the process grew on its way, where the system states it.
+/// Returns the result of the work and the growth of the process in bytes, if the system reports it.
 fn growth<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
-    // Give freed memory back first.
+    // Return freed memory to the system first.
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     unsafe {
         libc::malloc_trim(0);
@@ -46,7 +46,8 @@ fn with_budget(mib: u64) -> *mut luxfer_context {
     host::made(|out| unsafe { luxfer_context_create(&params, out) })
 }
 
-/// Loads a picture from memory under a budget, and releases it: status, message and growth.
+/// Loads and releases a picture in memory under a budget; returns the status, the message and the growth of the
+/// process.
 fn load(file: &[u8], mib: u64) -> (luxfer_status, String, Option<u64>) {
     let context = with_budget(mib);
     let mut image = null_mut();
@@ -61,7 +62,7 @@ fn load(file: &[u8], mib: u64) -> (luxfer_status, String, Option<u64>) {
     (status, message, grown)
 }
 
-/// A PNG of 2 x 2 pixels with one more chunk before its pixels.
+/// A PNG of 2 x 2 pixels with one additional chunk before its pixels.
 fn png_with(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
     let mut png = Vec::new();
     PngEncoder::new(&mut png).write_image(&[128; 12], 2, 2, ExtendedColorType::Rgb8).unwrap();
@@ -78,7 +79,7 @@ fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
-/// Zeros that deflate has packed a thousand times smaller.
+/// Zeros that deflate has compressed by a factor of 1000.
 fn bomb(len: usize) -> Vec<u8> {
     compress_to_vec_zlib(&vec![0; len], 6)
 }
@@ -96,7 +97,7 @@ fn packed_chunks_of_a_png_stay_within_the_budget() {
             let (status, message, grown) = load(&file, mib);
             let called = String::from_utf8_lossy(name);
             assert!(grown.is_none_or(|grown| grown <= (mib << 20) + NOISE), "{called} of {mib} MiB grew {grown:?}");
-            // Text need not be unpacked, so it may be read.
+            // Text chunks need not be unpacked, so the file may load.
             match (name, status) {
                 (_, LUXFER_OUT_OF_MEMORY) => assert!(message.contains("budget"), "{message}"),
                 (_, status) => assert_eq!(status, LUXFER_OK, "{called} of {mib} MiB: {message}"),
@@ -104,7 +105,7 @@ fn packed_chunks_of_a_png_stay_within_the_budget() {
         }
         assert_eq!(load(&file, 0).0, LUXFER_OK, "without a budget");
     }
-    // A megabyte's worth of a thousand.
+    // A chunk that unpacks to three megabytes, a thousand times its size.
     let small = [b"name\0\0", &bomb(3 << 20)[..]].concat();
     assert_eq!(load(&png_with(b"iCCP", &small), 1).0, LUXFER_OUT_OF_MEMORY);
 }
@@ -155,11 +156,11 @@ fn pictures() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// A TIFF of one strip, as it is.
+/// An uncompressed TIFF of one strip.
 fn tiff(image: &RgbImage) -> Vec<u8> {
     let [width, height] = [image.width(), image.height()];
     let len = 3 * width * height;
-    // Width, height, bits, no compression, RGB, place, samples, rows, length.
+    // Width, height, bits, no compression, RGB, offset, samples, rows, length.
     let tags: [(u16, u16, u32, u32); 9] = [
         (256, 4, 1, width),
         (257, 4, 1, height),
@@ -201,17 +202,17 @@ fn every_decoder_stays_within_the_budget() {
     }
 }
 
-/// The stack that a host's thread must have at least, as the guide says.
-const SMALLEST_STACK: usize = 128 << 10;
+/// Minimum stack of a host's thread, as the guide states it.
+const MIN_STACK: usize = 128 << 10;
 
-/// A glTF file whose scene has data of the host's, nested as deeply as JSON is read.
+/// A glTF file with custom data (extras), nested as deeply as the JSON reader allows.
 fn nested_gltf() -> Vec<u8> {
     let extras = format!("{{\"data\":{}1{}}}", "[".repeat(120), "]".repeat(120));
     format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"name":"a","extras":{extras}}}],"scenes":[{{"nodes":[0]}}]}}"#)
         .into()
 }
 
-/// Loads a scene from memory, if it is one.
+/// Loads a scene from memory; NULL if it is invalid.
 fn load_scene(context: *mut luxfer_context, file: &[u8]) -> luxfer_status {
     let mut scene = null_mut();
     unsafe {
@@ -221,14 +222,14 @@ fn load_scene(context: *mut luxfer_context, file: &[u8]) -> luxfer_status {
     }
 }
 
-/// A host's function that collects a file.
+/// A host's function that stores the written file.
 unsafe extern "C" fn collect(file: *mut std::ffi::c_void, data: *const std::ffi::c_void, size: usize) -> i32 {
     let file = unsafe { &mut *file.cast::<Vec<u8>>() };
     file.extend_from_slice(unsafe { std::slice::from_raw_parts(data.cast(), size) });
     0
 }
 
-/// Calls that return when their work is done.
+/// Makes calls that finish their work before they return.
 fn quick_calls(context: *mut luxfer_context) {
     let (image, scene) = (host::image(context, 320, 240, 0.5), host::scene(context));
     let same = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -273,5 +274,5 @@ fn a_thread_with_a_small_stack_can_read_files_and_make_quick_calls() {
         quick_calls(context);
         assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
     };
-    std::thread::Builder::new().stack_size(SMALLEST_STACK).spawn(work).unwrap().join().unwrap();
+    std::thread::Builder::new().stack_size(MIN_STACK).spawn(work).unwrap().join().unwrap();
 }

@@ -64,7 +64,7 @@ fn trace(scene: *mut luxfer_scene) -> (luxfer_status, f32) {
     (unsafe { luxfer_scene_intersect(scene, &ray, 1, &mut hit) }, hit.t)
 }
 
-/// Objects of one context, with a job that runs.
+/// Objects of one context, and a running job.
 struct Objects {
     context: *mut luxfer_context,
     image: *mut luxfer_image,
@@ -81,7 +81,7 @@ impl Objects {
         Self { context, image, scene, render, job }
     }
 
-    /// The status of one call of each kind.
+    /// The status of one call to each kind of object.
     fn call_all(&self) -> Vec<luxfer_status> {
         let (mut pixels, mut place) = ([0.5; 12], [null_mut::<c_void>(); 3]);
         let [made, job, other] = &mut place;
@@ -117,7 +117,7 @@ impl Objects {
         }
     }
 
-    /// Every call is refused at once, with a reason, and every release is fine, twice too.
+    /// Every call is refused at once with a message, and every release succeeds, even repeated.
     fn check_inherited(&self) {
         let clock = Instant::now();
         assert_eq!(self.call_all(), vec![LUXFER_INVALID_OPERATION; 13]);
@@ -133,7 +133,7 @@ fn a_child_cannot_use_the_objects_of_its_parent_and_has_its_own() {
     let objects = Objects::new();
     let written = in_child("child", || {
         objects.check_inherited();
-        // A context of the child's own renders, and takes no object of the parent.
+        // A new context of the child renders, and refuses objects of the parent.
         let own = Objects::new();
         assert_eq!(trace(own.scene), (LUXFER_OK, 2.0));
         let spare = made(|out| unsafe { luxfer_render_create(own.context, out) });
@@ -148,7 +148,7 @@ fn a_child_cannot_use_the_objects_of_its_parent_and_has_its_own() {
         assert_eq!(own.release(), [LUXFER_OK; 5]);
     });
     assert_eq!(written, "");
-    // The parent goes on.
+    // The parent continues to work.
     assert_eq!(trace(objects.scene), (LUXFER_OK, 2.0));
     unsafe {
         assert_eq!(luxfer_job_cancel(objects.job), LUXFER_OK);
@@ -162,7 +162,7 @@ fn a_fork_while_other_threads_are_in_the_library_leaves_no_lock_that_a_child_wai
     let objects = Objects::new();
     let (ends, context) = (AtomicBool::new(false), objects.context as usize);
     std::thread::scope(|scope| {
-        // Fails, which keeps a message under a lock, and makes images.
+        // Failing calls, which store messages under a lock, and image creation.
         scope.spawn(|| {
             let context = context as *mut luxfer_context;
             while !ends.load(Ordering::Relaxed) {
@@ -177,7 +177,7 @@ fn a_fork_while_other_threads_are_in_the_library_leaves_no_lock_that_a_child_wai
     assert_eq!(objects.release(), [LUXFER_OK; 5]);
 }
 
-/// Forks; the child's answer is to go on.
+/// A progress callback that forks once and lets the job continue.
 unsafe extern "C" fn fork_within(forked: *mut c_void, _: f64) -> i32 {
     let forked = unsafe { &mut *forked.cast::<Option<libc::pid_t>>() };
     match *forked {

@@ -1,10 +1,9 @@
-//! The header is generated, complete, and true: it equals what cbindgen makes of the sources, compiles as C99 and C++17
-//! without a warning, its structs have the size and the offsets that Rust gives them, and its functions are what the
-//! library exports.
+//! The header is generated and complete: it equals the output of cbindgen, compiles as C99 and C++17 without warnings,
+//! its structs have the sizes and offsets of the Rust structs, and its functions are the exported ones.
 //!
 //! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h`.
 
-// The header is that of the whole library.
+// The header describes the library with all features.
 #![cfg(feature = "stylize")]
 
 use luxfer::ffi::*;
@@ -65,7 +64,7 @@ const GROUPS: &[&str] = &[
     "demo_photo",
 ];
 
-/// Structs that come in arrays: they carry no size, and never change.
+/// Structs that occur in arrays: they have no size field and never change.
 const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit"];
 
 #[test]
@@ -85,7 +84,7 @@ fn the_header_is_what_the_sources_say() {
     assert_eq!(checked_in.len(), generated.len(), "include/luxfer.h ends early or late; run with LUXFER_BLESS=1");
 }
 
-/// The C program in the README is one that compiles, warnings as errors.
+/// The C program in the README compiles, with warnings as errors.
 #[test]
 fn the_readme_program_compiles() {
     let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
@@ -105,7 +104,7 @@ fn the_header_compiles_as_c99_and_as_cpp17_without_a_warning() {
     }
 }
 
-/// Compiles a file against the header, warnings as errors.
+/// Checks a file against the header with a compiler, with warnings as errors.
 fn check_syntax(compiler: &str, standard: &str, file: &Path) {
     run(Command::new(compiler)
         .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", "-I"])
@@ -133,7 +132,7 @@ fn structs_have_the_same_layout_in_c_and_rust() {
     let structs = structs(&header);
     assert!(structs.len() > 5);
 
-    // A C program that prints what the C compiler makes of each field the header has.
+    // A C program that prints the offset and the size of each field of the header.
     let mut source = "#include \"luxfer.h\"\n#include <stdio.h>\nint main(void) {\n".to_string();
     for (name, fields) in &structs {
         writeln!(source, "printf(\"{name} = %zu\\n\", sizeof({name}));").unwrap();
@@ -159,7 +158,7 @@ fn structs_have_the_same_layout_in_c_and_rust() {
         for (field, offset, field_size) in fields {
             writeln!(seen_by_rust, "{name}.{field} = {offset} + {field_size}").unwrap();
         }
-        // New fields are told from old ones by the size alone, so none may hide in padding at the end.
+        // Only the struct size distinguishes new fields from old ones, so there must be no padding at the end.
         let (_, offset, field_size) = fields.last().unwrap();
         assert_eq!(offset + field_size, *size, "{name} has padding at its end");
         let starts_with_size = fields[0] == ("struct_size", 0, 4);
@@ -207,7 +206,7 @@ fn header() -> String {
     std::fs::read_to_string(root().join("include/luxfer.h")).expect("include/luxfer.h")
 }
 
-/// A file beside the test programs, which are not in the source tree.
+/// Path of a temporary file outside the source tree, beside the test programs.
 fn scratch(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
@@ -222,14 +221,14 @@ fn version() -> [&'static str; 3] {
     [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]
 }
 
-/// Runs a program that must succeed; returns what it prints.
+/// Runs a program that must succeed; returns its output.
 fn run(command: &mut Command) -> String {
     let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
     assert!(output.status.success(), "{command:?}:\n{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// One pass of cbindgen for each file, under the head comment of the file.
+/// Runs cbindgen once for each file and puts the head comment of the file before its output.
 fn generate() -> String {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
     let mut out = config.header.take().unwrap();
@@ -253,7 +252,7 @@ fn generate() -> String {
     (out + &trailer).trim_start().to_string()
 }
 
-/// Puts comments that fit onto one line.
+/// Puts each comment that fits onto one line.
 fn one_line_comments(text: &str) -> String {
     let mut lines = text.lines();
     let mut out = String::new();
@@ -275,7 +274,7 @@ fn one_line_comments(text: &str) -> String {
     out
 }
 
-/// The head comment of a source file, set off by rules.
+/// The head comment of a source file as a section heading.
 fn banner(source: &str) -> String {
     let rule = "=".repeat(116);
     let lines = source.lines().map_while(|l| l.strip_prefix("//!"));
@@ -311,7 +310,7 @@ fn structs(header: &str) -> BTreeMap<&str, Vec<&str>> {
         } else if line.starts_with('}') {
             current = None;
         } else if line.trim_start().starts_with(['*', '/']) {
-            // A comment, whose lines may end with a semicolon too.
+            // Skip comments, whose lines may end with a semicolon too.
         } else if let (Some(fields), Some(declaration)) = (&mut current, line.strip_suffix(';')) {
             let name = declaration.split('[').next().unwrap();
             fields.push(name.rsplit([' ', '*']).next().unwrap());
@@ -324,7 +323,7 @@ type Fields = Vec<(&'static str, usize, usize)>;
 
 macro_rules! layouts {
     ($($type:ident: $($field:ident)*;)*) => {
-        /// Sizes, and offsets and sizes of the fields, as Rust has them.
+        /// For each struct its size, and the offsets and sizes of its fields, as Rust lays them out.
         fn rust_layouts() -> BTreeMap<&'static str, (usize, Fields)> {
             BTreeMap::from([$((stringify!($type), {
                 fn size<T>(_: fn(&$type) -> &T) -> usize {
@@ -343,7 +342,7 @@ layouts! {
     luxfer_photo_metadata: struct_size orientation focal focal_error f_number exposure_time iso white_luminance
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
-    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area bent;
+    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
     luxfer_scene_load_params: struct_size outside unit;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
@@ -379,22 +378,22 @@ layouts! {
     luxfer_render_part: struct_size x y width height first_sample samples;
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
-    luxfer_illuminance_report: struct_size points least mean largest mean_error;
+    luxfer_illuminance_report: struct_size points minimum mean maximum mean_error;
     luxfer_relight_params: struct_size quantity paths target_error time_budget_ms fit seed;
-    luxfer_relight_report: struct_size paths scale half_width response background reach reserved error delta_e;
-    luxfer_lamps_params: struct_size group row_tolerance free_colour most evenness tolerance paths target_error
+    luxfer_relight_report: struct_size paths scale half_width response background outcome reserved error delta_e;
+    luxfer_lamps_params: struct_size group row_tolerance free_colour max_scale regularisation tolerance paths target_error
         time_budget_ms reserved seed;
     luxfer_lamps_report: struct_size lamps groups goals paths met;
     luxfer_lamp: struct_size group centre scale half_width;
-    luxfer_lamps_goal: struct_size reach target achieved half_width background;
+    luxfer_lamps_goal: struct_size outcome target achieved half_width background;
     luxfer_lamps_response: struct_size reserved mean half_width;
     luxfer_importance_params: struct_size width height quantity paths target_error time_budget_ms reserved seed;
     luxfer_importance_report: struct_size paths response half_width band_error;
-    luxfer_placement_params: struct_size aim radiance starts least_offset most_offset least_scale most_scale
-        least_rotation most_rotation seed;
+    luxfer_placement_params: struct_size aim radiance starts min_offset max_offset min_scale max_scale
+        min_rotation max_rotation seed;
     luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
-    luxfer_false_colour_params: struct_size scale unit bar least most;
+    luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size reached colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
     luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
@@ -413,7 +412,7 @@ layouts! {
     luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish sweeps
         coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
         seed coarse_guides coarse_iterations occurrence reserved;
-    luxfer_stylize_report: struct_size finished levels halvings patch most_used energy used entropy guide_error
+    luxfer_stylize_report: struct_size finished levels halvings patch max_uses energy used entropy guide_error
         broken_source broken_target;
     luxfer_stylize_round: struct_size passes energy;
     luxfer_stylize_pass: struct_size reserved knee coverage gained;

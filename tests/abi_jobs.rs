@@ -1,4 +1,4 @@
-//! What the C boundary promises of jobs: progress, cancellation, waiting, and release at any time in any order.
+//! Contract of jobs at the C boundary: progress, cancellation, waiting, and release at any time in any order.
 
 mod host;
 
@@ -9,7 +9,7 @@ use std::ptr::{null, null_mut};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// Tests that count the threads of the process, or start many, take turns.
+/// Tests that count the threads of the process or start many threads run one at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
 fn render_params(side: u32, samples: u32) -> luxfer_render_params {
@@ -33,7 +33,7 @@ fn start(render: *mut luxfer_render, params: &luxfer_render_params) -> *mut luxf
     made(|out| unsafe { luxfer_render_start(render, params, out) })
 }
 
-/// A job far too long to end by itself.
+/// Number of paths of a job that does not end within the test.
 const ENDLESS: u32 = 1 << 20;
 
 fn threads() -> usize {
@@ -66,7 +66,7 @@ fn any_release_order_is_fine() {
     }
 }
 
-/// What a progress callback has seen, and when it should cancel.
+/// Progress that a callback has seen, and the progress at which it cancels.
 struct Watch {
     seen: Vec<f64>,
     thread: std::thread::ThreadId,
@@ -83,7 +83,7 @@ impl Watch {
 unsafe extern "C" fn watch(user: *mut c_void, fraction: f64) -> i32 {
     let watch = unsafe { &mut *user.cast::<Watch>() };
     watch.seen.push(fraction);
-    // A panic would not come through C: anything wrong shows as a fraction that cannot be.
+    // A panic must not cross C: an error is recorded as a fraction that is out of range.
     if std::thread::current().id() != watch.thread || watch.cancelled.is_some() {
         watch.seen.push(-1.0);
     }
@@ -129,14 +129,14 @@ fn a_cancel_is_answered_at_any_point() {
         let mut seen = Watch::new(cancel_at);
         let status = unsafe { luxfer_job_wait(job, -1, Some(watch), (&raw mut seen).cast()) };
         assert_eq!(status, LUXFER_CANCELLED, "at {cancel_at}: {:?}", seen.seen.last());
-        // 100 ms are promised; a crowded machine gets more before this is called a failure.
+        // The promise is 100 ms; a busy machine gets more before the test fails.
         let late = seen.cancelled.unwrap().elapsed();
         assert!(late < Duration::from_millis(500), "{late:?} after {cancel_at}");
         assert!(seen.seen.iter().all(|f| (0.0..1.0).contains(f)), "no call after the cancel, none from elsewhere");
         assert_eq!(unsafe { luxfer_job_status(job) }, LUXFER_CANCELLED);
         assert_eq!(unsafe { luxfer_job_release(job) }, LUXFER_OK);
     }
-    // From another thread while this one waits.
+    // Cancel from another thread while this one waits.
     let job = start(render, &render_params(64, ENDLESS));
     let shared = job as usize;
     let other = std::thread::spawn(move || {
@@ -169,14 +169,14 @@ fn waits_time_out_and_a_busy_object_refuses_changes() {
         assert_eq!(luxfer_render_start(render, null(), &mut second), LUXFER_INVALID_OPERATION);
         assert!(second.is_null());
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_INVALID_OPERATION);
-        // Another object is free, and so is the scene.
+        // Another object is not blocked, nor is the scene.
         let other = renderer(context);
         let small = start(other, &render_params(8, 1));
         assert_eq!(luxfer_scene_set_environment(scene, 1.0, 1.0, 1.0), LUXFER_OK);
         assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
         assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_CANCELLED);
         assert_eq!(luxfer_job_wait(small, -1, None, null_mut()), LUXFER_OK);
-        // Idle again as soon as the wait is over.
+        // The object is idle as soon as the wait ends.
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
         for job in [job, small] {
             assert_eq!(luxfer_job_release(job), LUXFER_OK);
@@ -192,7 +192,7 @@ fn waits_time_out_and_a_busy_object_refuses_changes() {
 #[cfg(target_os = "linux")]
 fn a_thousand_contexts_and_jobs_leave_no_thread_behind() {
     let _alone = ALONE.lock();
-    // Other tests come and go meanwhile; a thousand leaked threads would still show.
+    // Other tests start and end threads meanwhile; a thousand leaked threads would still show.
     let before = threads();
     for i in 0..1000 {
         let context = context(1);

@@ -1,4 +1,5 @@
-//! Calls that return when their work is done never wait for a job, and a job that waits for another can be cancelled.
+//! Calls that finish their work before they return never wait for a job, and a job that waits for another can be
+//! cancelled.
 
 mod host;
 
@@ -8,13 +9,13 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 use std::time::{Duration, Instant};
 
-/// Longest time by which a running job may delay a call.
+/// Maximum delay of a call by a running job.
 const MAX_DELAY: Duration = Duration::from_millis(50);
 
-/// Rounds of calls, of which the best counts: other programs may keep the processors busy for a while.
+/// Number of rounds of calls; the fastest counts, because other programs may occupy the processors for a while.
 const ROUNDS: usize = 5;
 
-/// A rendering in a scene of its own.
+/// Starts a rendering in its own scene.
 fn start_render(context: *mut luxfer_context, samples: u32) -> (*mut luxfer_render, *mut luxfer_job) {
     let (render, scene) = (made(|out| unsafe { luxfer_render_create(context, out) }), scene(context));
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
@@ -34,7 +35,7 @@ struct Endless {
 }
 
 impl Endless {
-    /// Starts it and waits until it runs.
+    /// Starts the job and waits until it runs.
     fn start(context: *mut luxfer_context) -> Self {
         let (render, job) = start_render(context, 1 << 20);
         let mut fraction = 0.0;
@@ -55,7 +56,7 @@ impl Endless {
     }
 }
 
-/// What quick calls work on.
+/// Objects that the quick calls use.
 struct Objects {
     context: *mut luxfer_context,
     image: *mut luxfer_image,
@@ -90,7 +91,7 @@ impl Objects {
     }
 }
 
-/// Traces `count` rays up from the middle of the room; the distance of the first hit.
+/// Traces `count` rays up from the middle of the room; returns the distance of the first hit.
 fn trace(scene: *mut luxfer_scene, count: usize) -> f32 {
     let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
     let mut hits = vec![luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 }; count];
@@ -152,7 +153,7 @@ fn quick_calls_never_wait_for_a_job() {
         let context = context(num_threads);
         let objects = Objects::new(context);
         let times = || CALLS.map(|(_, call)| time(|| call(&objects)));
-        // The first calls start threads.
+        // The first calls start threads, so their times do not count.
         times();
         let idle = times();
         let endless = Endless::start(context);
@@ -173,7 +174,7 @@ fn quick_calls_never_wait_for_a_job() {
 fn a_quick_call_never_waits_for_another() {
     let context = context(1);
     let objects = Objects::new(context);
-    // A warp of many pixels, which takes a while.
+    // A warp of many pixels takes a while.
     let (image, of) = (objects.image as usize, context as usize);
     let other = std::thread::spawn(move || {
         let enlarge = [1e-3, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 1.0];
@@ -190,7 +191,7 @@ fn a_quick_call_never_waits_for_another() {
     assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
 }
 
-/// What a progress function does: it traces a ray.
+/// A progress callback that traces a ray.
 unsafe extern "C" fn trace_one(scene: *mut c_void, _: f64) -> i32 {
     i32::from(trace(scene.cast(), 1) != 2.0)
 }
@@ -210,7 +211,7 @@ fn a_cancel_is_answered_while_a_progress_function_calls_the_library() {
         let status = unsafe { luxfer_job_wait(endless.job, -1, Some(trace_one), scene.cast()) };
         let answered = Instant::now();
         assert_eq!(status, LUXFER_CANCELLED);
-        // 100 ms are promised; a crowded machine gets more before this is called a failure.
+        // The promise is 100 ms; a busy machine gets more before the test fails.
         let late = answered - canceller.join().unwrap();
         assert!(late < Duration::from_millis(500), "{late:?}");
         endless.end();
@@ -232,7 +233,7 @@ fn a_job_that_waits_for_another_is_cancelled_at_once() {
         let clock = Instant::now();
         assert_eq!(luxfer_job_wait(job, 2000, None, null_mut()), LUXFER_CANCELLED);
         assert!(clock.elapsed() < Duration::from_millis(500), "{:?}", clock.elapsed());
-        // Its object is free for the next job, which runs when the first has ended.
+        // The object accepts the next job, which runs when the first one has ended.
         assert_eq!(luxfer_job_release(job), LUXFER_OK);
         let next = made(|out| luxfer_render_start(render, null(), out));
         endless.end();

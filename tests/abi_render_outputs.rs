@@ -1,4 +1,4 @@
-//! What the C boundary promises of a rendering's layers, its OpenEXR file, and of illuminance.
+//! Contract of the layers of a rendering, of its OpenEXR file, and of illuminance at the C boundary.
 
 mod host;
 
@@ -41,7 +41,7 @@ fn layers_are_found_read_and_written() {
         assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
         params = luxfer_render_params { width: 12, height: 8, samples: 8, ..params };
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
-        // What is refused, and where.
+        // Wrong calls are refused, and the message says where the error is.
         assert_eq!(add(c"LDE", c"LDXE"), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("column 3"), "{}", message(context));
         assert_eq!(add(c"a.b", c"LDE"), LUXFER_INVALID_ARGUMENT);
@@ -51,7 +51,7 @@ fn layers_are_found_read_and_written() {
         assert_eq!(luxfer_render_set_emitter_as(render, 3), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_NOT_READY);
         assert_eq!(luxfer_render_write_exr(render, c"/tmp/never.exr".as_ptr()), LUXFER_NOT_READY);
-        // A label that nothing bears ends the job.
+        // A label that no object has ends the job with an error.
         assert_eq!(add(c"lost", c"C<RD'Nothing'>L"), LUXFER_OK);
         assert_eq!(finish(made(|out| luxfer_render_start(render, &params, out))), LUXFER_NOT_FOUND);
         assert!(message(context).contains("'Lamp'"), "{}", message(context));
@@ -78,7 +78,7 @@ fn layers_are_found_read_and_written() {
         let mut image = null_mut();
         assert_eq!(luxfer_render_get_layer(render, 5, &mut image), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_render_find_layer(render, c"LSE".as_ptr(), &mut count), LUXFER_NOT_FOUND);
-        // The room is closed and lit by its lamp alone: that layer is the image.
+        // The room is closed and its lamp is the only light, so this layer equals the image.
         let beauty = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out)));
         let by_lamp = pixels(made(|out| luxfer_render_get_layer(render, 1, out)));
         assert!(beauty.1.iter().zip(&by_lamp.1).all(|(a, b)| (a - b).abs() <= 1e-5 * a));
@@ -87,7 +87,7 @@ fn layers_are_found_read_and_written() {
         let (channels, alpha) = pixels(made(|out| luxfer_render_get_layer(render, 4, out)));
         assert!(channels == 1 && alpha.iter().all(|&a| a == 1.0));
         assert_eq!(pixels(made(|out| luxfer_render_get_layer(render, 3, out))).0, 3);
-        // The file holds the image where programs without layers look for it.
+        // Programs without layers find the image in the file's default channels.
         let path = CString::new(format!("{}/layers.exr", env!("CARGO_TARGET_TMPDIR"))).unwrap();
         assert_eq!(luxfer_render_write_exr(render, path.as_ptr()), LUXFER_OK, "{}", message(context));
         let read = pixels(made(|out| luxfer_image_load(context, path.as_ptr(), LUXFER_COLOUR_LINEAR, out)));
@@ -137,9 +137,9 @@ fn illuminance_comes_with_its_error() {
         report.struct_size = size_of_val(&report) as u32;
         assert_eq!(luxfer_illuminance_get_report(stage, &mut report), LUXFER_OK);
         let mean = lux.1.iter().map(|&v| f64::from(v)).sum::<f64>() / 12.0;
-        assert!(report.points == 12 && (report.mean - mean).abs() < 1e-4 * mean && report.least > 0.0);
+        assert!(report.points == 12 && (report.mean - mean).abs() < 1e-4 * mean && report.minimum > 0.0);
         assert!(report.mean_error > 0.0 && report.mean_error < 0.1 * mean);
-        // What is refused.
+        // Wrong grids are refused.
         let flat = luxfer_illuminance_grid { normal: [0.0; 3], ..plane };
         let refused = |job| assert_eq!(finish(job), LUXFER_INVALID_ARGUMENT);
         refused(made(|out| luxfer_illuminance_start_grid(stage, &flat, &params, out)));
@@ -196,7 +196,8 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
         assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_OK);
         assert_eq!(count, 1, "only what was asked for");
 
-        // In a closed room of albedo up to 0.84, little is left after the bounces that matter; after one, much.
+        // In a closed room of albedo up to 0.84, little light is left after the needed number of bounces, and much
+        // after one.
         let mut needed =
             luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
         assert_eq!(luxfer_scene_requirements(scene, 0.01, &mut needed), LUXFER_OK);
@@ -228,7 +229,7 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
     let context = context(2);
     let scene = made(|out| unsafe { luxfer_scene_create(context, out) });
     let stage = made(|out| unsafe { luxfer_illuminance_create(context, out) });
-    // Twice as bright above as below.
+    // An environment that is twice as bright above the horizon as below.
     let (width, height) = (16u32, 8u32);
     let mut sky: Vec<f32> =
         (0..width * height * 3).map(|i| if i < width * height * 3 / 2 { 2.0 } else { 1.0 }).collect();
@@ -251,7 +252,7 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
             let grid = luxfer_illuminance_grid { normal: [0.0, up, 0.0], ..grid };
             assert_eq!(finish(made(|out| luxfer_illuminance_start_grid(stage, &grid, null(), out))), LUXFER_OK);
             let lux = pixels(made(|out| luxfer_illuminance_get_image(stage, LUXFER_ILLUMINANCE_LUX, out))).1;
-            // The rows at the horizon are interpolated, where it counts little.
+            // The rows at the horizon are interpolated; the cosine is small there.
             let expected = luminance * std::f64::consts::PI;
             assert!((mean(&lux) / expected - 1.0).abs() < 0.02, "{} lx, expected {expected}", mean(&lux));
         }

@@ -1,4 +1,4 @@
-//! Settings of reading a scene's file, and what the library says about a file that it reads.
+//! Parameters for loading the file of a scene, and the warnings about a file.
 
 mod host;
 
@@ -22,7 +22,7 @@ fn gltf(height: f32, uri: &str) -> (String, Vec<u8>) {
     (file, bytes)
 }
 
-/// A folder with such a file in a folder of its own, and its buffer where the file says.
+/// A temporary folder with such a file in a subfolder and the buffer at the path that the file states.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -124,7 +124,7 @@ fn files_outside_the_folder_are_read_only_with_leave() {
         let open = luxfer_scene_load_params { outside: 1, ..params() };
         assert_eq!(luxfer_scene_load_with(context, file.as_ptr(), &open, &mut scene), LUXFER_OK);
         assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        // From memory too, with the folder.
+        // Load from memory too, with the folder as base.
         let bytes = std::fs::read(folder.0.join("scene/room.gltf")).unwrap();
         let base = CString::new(folder.0.join("scene").to_str().unwrap()).unwrap();
         let mut load = |params: *const luxfer_scene_load_params| {

@@ -1,4 +1,4 @@
-//! Scenes through the C functions that read them back and shoot rays at them.
+//! Reading scenes back through the C functions, and tracing rays.
 
 mod host;
 
@@ -7,7 +7,7 @@ use luxfer::ffi::*;
 use std::ptr::{null, null_mut};
 
 fn zeroed<T>() -> T {
-    // SAFETY: only for structs of numbers and pointers.
+    // SAFETY: used only for structs of numbers and pointers.
     unsafe { std::mem::zeroed() }
 }
 
@@ -27,7 +27,7 @@ fn a_mesh_comes_back_as_it_was_described() {
         assert_eq!(read(4, positions.as_mut_ptr(), null_mut(), 2, indices.as_mut_ptr()), LUXFER_OK);
         assert_eq!(positions, [-0.5, 1.9, -0.5, 0.5, 1.9, -0.5, 0.5, 1.9, 0.5, -0.5, 1.9, 0.5]);
         assert_eq!(indices, [0, 1, 2, 0, 2, 3]);
-        // Nothing is written where not all fits.
+        // Nothing is written if the array is too small.
         let (mut positions, mut indices) = ([7.0f32; 12], [7u32; 6]);
         assert_eq!(read(4, positions.as_mut_ptr(), null_mut(), 1, indices.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("room for 1 indices; 2"), "{}", message(context));
@@ -103,11 +103,11 @@ fn rays_hit_what_they_should_after_every_change() {
         assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 5, hits.as_mut_ptr()), LUXFER_OK);
         assert_eq!(hits.map(|h| h.mesh), [1, LUXFER_NONE, LUXFER_NONE, LUXFER_NONE, 0]);
         assert_eq!(hits.map(|h| h.t), [0.95, f32::INFINITY, f32::INFINITY, f32::INFINITY, 1.0]);
-        // At (0.6, 0.7) of the lamp: in its second triangle, whose corners are 0, 2 and 3.
+        // The hit at (0.6, 0.7) of the lamp is in its second triangle, whose corners are 0, 2 and 3.
         assert_eq!(hits[0].triangle, 1);
         assert!((hits[0].u - 0.6).abs() < 1e-5 && (hits[0].v - 0.1).abs() < 1e-5, "{} {}", hits[0].u, hits[0].v);
 
-        // The scene changes: the lamp is covered.
+        // After the scene changes, a quad covers the lamp.
         let positions = [[-1.0f32, 1.5, -1.0], [1.0, 1.5, -1.0], [0.0, 1.5, 2.0]];
         let mut mesh: luxfer_mesh_params = zeroed();
         assert_eq!(luxfer_mesh_params_init(&mut mesh, size_of_val(&mesh)), LUXFER_OK);
@@ -184,7 +184,7 @@ fn materials_are_replaced_and_keep_their_textures() {
         assert_eq!(set(0, LUXFER_TEXTURE_NORMAL, texture, 0, null()), LUXFER_OK);
         assert_eq!(set(0, LUXFER_TEXTURE_NORMAL, LUXFER_NONE, 0, null()), LUXFER_OK);
 
-        // All numbers go there and back; what is wrong changes nothing.
+        // All values are returned as they were set; a refused call changes nothing.
         let mut given: luxfer_material_params = zeroed();
         assert_eq!(luxfer_material_params_init(&mut given, size_of_val(&given)), LUXFER_OK);
         given = luxfer_material_params {

@@ -1,5 +1,5 @@
-//! What the C boundary promises of stylisation: inputs in any order and of any size, pictures while it runs, updates,
-//! half-painted pictures, and errors that say what is wrong.
+//! Contract of stylisation at the C boundary: inputs in any order and of any size, pictures while it runs, updates,
+//! partial masks, and errors that name their cause.
 
 #![cfg(feature = "stylize")]
 
@@ -10,7 +10,7 @@ use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-/// An image of `channels` channels from a function.
+/// An image of `channels` channels, filled from a function.
 fn drawn(
     context: *mut luxfer_context,
     (width, height, channels): (u32, u32, u32),
@@ -34,7 +34,7 @@ fn pixels(image: *mut luxfer_image) -> (u32, u32, Vec<f32>) {
     }
 }
 
-/// A lit disc at a place.
+/// A guide that shows a lit disc.
 fn guide(context: *mut luxfer_context, width: u32, height: u32, cx: f32) -> *mut luxfer_image {
     drawn(context, (width, height, 3), |x, y, c| {
         let (dx, dy) = ((x as f32 - cx) / 14.0, (y as f32 - 20.0) / 14.0);
@@ -64,7 +64,7 @@ fn get(stylize: *mut luxfer_stylize, which: luxfer_stylize_image) -> *mut luxfer
     made(|out| unsafe { luxfer_stylize_get_image(stylize, which, out) })
 }
 
-/// Starts, waits and lets go of the job.
+/// Starts a job, waits for it and releases it.
 fn run(stylize: *mut luxfer_stylize, params: &luxfer_stylize_params) -> luxfer_status {
     let job = made(|out| unsafe { luxfer_stylize_start(stylize, params, out) });
     unsafe {
@@ -74,7 +74,7 @@ fn run(stylize: *mut luxfer_stylize, params: &luxfer_stylize_params) -> luxfer_s
     }
 }
 
-/// A stylisation of the disc moved, ready to start; its images are released.
+/// A stylisation of the moved disc, ready to start; its images are released.
 fn ready(context: *mut luxfer_context, width: u32) -> *mut luxfer_stylize {
     let stylize = made(|out| unsafe { luxfer_stylize_create(context, out) });
     let images = [artwork(context, 60, 44), guide(context, 60, 44, 30.0), guide(context, width, 50, 40.0)];
@@ -119,13 +119,13 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_image(stylize, 0, &mut null_mut()), LUXFER_NOT_READY);
         assert_eq!(run(stylize, &params()), LUXFER_OK, "{}", message(context));
         let all = report(stylize);
-        assert!(all.finished == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.most_used > 0);
+        assert!(all.finished == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
 
-        // Rounds and passes of the level; coverage rises.
+        // Read the rounds of the level and their passes, whose coverage rises.
         let (mut width, mut rounds) = (0, 0);
         assert_eq!(luxfer_stylize_get_level(stylize, 0, &mut width, null_mut(), &mut rounds), LUXFER_OK);
-        // One round under the budget, three of polish without passes.
+        // One round under the error budget and three rounds of polish, which have no passes.
         assert_eq!((width, rounds), (70, 4));
         let mut round = luxfer_stylize_round { struct_size: 16, passes: 0, energy: 0.0 };
         assert_eq!(luxfer_stylize_get_round(stylize, 0, 3, &mut round), LUXFER_OK);
@@ -142,7 +142,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_stylize_get_level(stylize, 1, null_mut(), null_mut(), null_mut()), LUXFER_NOT_FOUND);
 
-        // Every pixel is one of the artwork's, and the sources say which.
+        // Every pixel is copied from the artwork, and the sources state its place.
         let art = artwork(context, 60, 44);
         let (_, _, paint) = pixels(art);
         let images = [get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE), get(stylize, LUXFER_STYLIZE_IMAGE_SOURCES)];
@@ -153,7 +153,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert!(picture.chunks_exact(3).all(|p| palette.contains(&[0, 1, 2].map(|c| (p[c] * 1e4).round() as u32))));
         assert!(sources.chunks_exact(2).all(|s| s[0] > 0.0 && s[0] < 60.0 && s[1] > 0.0 && s[1] < 44.0));
 
-        // Presets: preview is half as large.
+        // The preview preset makes half the size.
         let mut preview = params();
         assert_eq!(luxfer_stylize_params_preset(&mut preview, LUXFER_STYLIZE_PREVIEW), LUXFER_OK);
         assert_eq!(luxfer_stylize_params_preset(&mut preview, 4), LUXFER_INVALID_ARGUMENT);
@@ -169,7 +169,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
     }
 }
 
-/// Cancels once a picture can be read.
+/// Cancels as soon as a picture can be read.
 unsafe extern "C" fn cancel_at_first_picture(user: *mut c_void, _: f64) -> i32 {
     let mut image = null_mut();
     let status = unsafe { luxfer_stylize_get_image(user.cast(), LUXFER_STYLIZE_IMAGE_PICTURE, &mut image) };
@@ -181,7 +181,7 @@ unsafe extern "C" fn cancel_at_first_picture(user: *mut c_void, _: f64) -> i32 {
 fn a_cancelled_run_keeps_the_picture_of_its_last_level() {
     let context = context(1);
     let stylize = ready(context, 2000);
-    // Four levels, the finest a hundred rounds: it is cancelled in time.
+    // Four levels, with a hundred rounds on the finest: the cancel is answered in time.
     let params = luxfer_stylize_params { patch: 3, finest_iterations: 100, iterations: 1, ..params() };
     unsafe {
         let job = made(|out| luxfer_stylize_start(stylize, &params, out));
@@ -207,7 +207,7 @@ fn new_paint_is_followed_where_it_is() {
     let stylize = ready(context, 70);
     let art = artwork(context, 60, 44);
     let red = drawn(context, (60, 44, 3), |_, _, c| if c == 0 { 1.0 } else { 0.0 });
-    // The disc of the exemplar changes.
+    // The pixels whose paint changes: the disc of the exemplar.
     let changed = drawn(context, (60, 44, 1), |x, y, _| f32::from((x as f32 - 30.0).hypot(y as f32 - 20.0) < 14.0));
     let update = |artwork, changed| {
         let job = made(|out| unsafe { luxfer_stylize_update(stylize, artwork, changed, out) });
@@ -242,7 +242,7 @@ fn new_paint_is_followed_where_it_is() {
 fn the_rest_of_a_half_painted_picture_is_painted() {
     let context = context(2);
     let (stylize, art) = (made(|out| unsafe { luxfer_stylize_create(context, out) }), artwork(context, 60, 44));
-    // Left and right half of the scene are alike; only the left is painted.
+    // The left and the right half of the scene are equal; only the left half is painted.
     let scene = drawn(context, (60, 44, 3), |x, y, c| ((x % 30) as f32 / 30.0 + y as f32 / 44.0 + c as f32) / 4.0);
     let painted = drawn(context, (60, 44, 1), |x, _, _| f32::from(x < 30));
     unsafe {
@@ -335,7 +335,8 @@ fn handles_and_settings_that_are_wrong_are_refused() {
     }
 }
 
-/// A disc in `size` stylised from another in `from` with `channels` channels of guides; checks what must hold of any result.
+/// Stylises a disc in `size` after one in `from`, with `channels` channels of guides; checks the properties of any
+/// result.
 fn extreme(from: (u32, u32), size: (u32, u32), channels: u32, weight: f32, broken: Option<f32>) -> luxfer_status {
     let context = context(1);
     let stylize = made(|out| unsafe { luxfer_stylize_create(context, out) });

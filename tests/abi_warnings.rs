@@ -1,4 +1,5 @@
-//! The contract of warnings at the C boundary: a list that stays, texts in the caller's memory, and errors for wrong arguments.
+//! Contract of warnings at the C boundary: a list that does not change, texts in the caller's memory, and errors for
+//! wrong arguments.
 
 mod host;
 
@@ -7,7 +8,7 @@ use luxfer::ffi::*;
 use std::ffi::{CStr, c_char};
 use std::ptr::null_mut;
 
-/// A mask that looks everywhere alike and was painted as two classes: a segmentation that must be doubted.
+/// A segmentation that must warn: a uniform photo with strokes of both classes.
 fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
     let (width, height) = (64u32, 48u32);
     let mut pixels: Vec<f32> = (0..width * height * 3).map(|i| ((i * 7919) % 101) as f32).collect();
@@ -52,7 +53,7 @@ fn list(warnings: *mut luxfer_warnings) -> Vec<luxfer_warning> {
 
 type Text = unsafe extern "C" fn(*mut luxfer_warnings, u32, *mut c_char, usize, *mut usize) -> luxfer_status;
 
-/// A text, asked for its length first.
+/// Reads a text: first its length, then its bytes.
 fn text(read: Text, warnings: *mut luxfer_warnings, index: u32) -> String {
     let mut needed = 0;
     unsafe {
@@ -93,16 +94,16 @@ fn a_doubtful_mask_says_so_with_figure_limit_place_and_advice() {
     assert_eq!(missed.has_place, 1);
     assert!(missed.place[0] > 0.0 && missed.place[0] < 64.0 && missed.place[1] > 0.0 && missed.place[1] < 48.0);
 
-    // Within a mask it is taken for one of lights.
+    // With a mask of the plane, the segmentation takes lights as its subject.
     let mut ones = vec![1.0f32; 64 * 48];
     let within = luxfer_image_view { channels: 1, byte_size: 64 * 48 * 4, ..view(64, 48, &mut ones) };
     let within = made(|out| unsafe { luxfer_image_create(context, &within, out) });
-    assert_eq!(unsafe { luxfer_segment_set_within(segment, within) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_segment_set_region(segment, within) }, LUXFER_OK);
     run(segment);
     let lights = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
     assert!(list(lights).iter().all(|w| w.stage == LUXFER_STAGE_LIGHTS));
 
-    // The first list stays as it was, also when everything else goes.
+    // The first list stays unchanged after everything else is released.
     unsafe {
         assert_eq!(luxfer_warnings_release(lights), LUXFER_OK);
         assert_eq!(luxfer_image_release(within), LUXFER_OK);

@@ -1,12 +1,11 @@
-//! The analytic cases of CIE 171:2006, "Test cases to assess the accuracy of lighting computer programs" (section 5), by the
-//! closed forms that they stand on: each test names its case. Geometry and numbers are our own, so that nothing rests on the
-//! report's tables, of which some are known to be wrong (Ashdown's errata); the phenomenon and the kind of measuring point are
-//! the case's.
+//! The analytic cases of CIE 171:2006, "Test cases to assess the accuracy of lighting computer programs" (section 5),
+//! against their closed forms. Each test names its case. The geometry and the numbers are our own, because some tables
+//! of the report are known to be wrong (Ashdown's errata); phenomena and measuring points follow the report.
 //!
-//! Here: 5.2, 5.3, 5.4, 5.6, 5.7, 5.8, 5.9, 5.11, 5.13 and 5.14. Not here: 5.5, 5.10 and 5.12, which ask for the transmittance
-//! of 6 mm of clear glass by the angle, as a polynomial of measurements: panes here are thin, and transmit what Fresnel's
-//! equations leave; CIE skies other than the uniform one, as an environment is an image and the host's to make; and section 4,
-//! whose cases are measurements in rooms that the report describes, not closed forms.
+//! Covered: 5.2, 5.3, 5.4, 5.6, 5.7, 5.8, 5.9, 5.11, 5.13 and 5.14. Not covered: 5.5, 5.10 and 5.12, which ask for the
+//! angular transmittance of 6 mm of clear glass as a polynomial of measurements (our panes are thin and follow
+//! Fresnel's equations); CIE skies other than the uniform one (an environment is an image of the host's); and section
+//! 4, whose cases are measurements in rooms, not closed forms.
 
 use luxfer::exec::Pool;
 use luxfer::job::Monitor;
@@ -19,7 +18,7 @@ use std::sync::Arc;
 type Vec3 = glam::Vec3;
 type DVec3 = glam::DVec3;
 
-/// A parallelogram, its front the side of `across × down`.
+/// A parallelogram whose front faces along `across × down`.
 fn quad(origin: Vec3, across: Vec3, down: Vec3, material: usize) -> Mesh {
     Mesh {
         positions: vec![origin, origin + across, origin + across + down, origin + down],
@@ -37,7 +36,7 @@ fn point_light(position: Vec3, candela: f32) -> PunctualLight {
     PunctualLight::Point { position, intensity: Vec3::splat(candela) }
 }
 
-/// Illuminance on a grid of points; one column and row is its middle.
+/// Measures the illuminance on a grid of points; a grid of one point is the middle of the place.
 fn measure(scene: Scene, place: &Place, columns: usize, rows: usize, samples: u32) -> Output {
     let monitor = Monitor::default();
     let world = World::build(Arc::new(scene), monitor.job()).unwrap();
@@ -49,7 +48,8 @@ fn grid(origin: Vec3, across: Vec3, down: Vec3, normal: Vec3) -> Place {
     Place::Grid { origin, across, down, normal }
 }
 
-/// Every point of a grid is within its own interval of what is expected there, and that interval is narrow: `share` of it.
+/// Checks that every point of a grid lies within its own confidence interval of the expected value, and that no
+/// interval exceeds the relative width `share`.
 fn compare(output: &Output, place: &Place, expected: impl Fn(DVec3) -> f64, share: f64) {
     let Place::Grid { origin, across, down, .. } = place else { unreachable!() };
     let (columns, rows) = (output.lux.width, output.lux.height);
@@ -58,7 +58,7 @@ fn compare(output: &Output, place: &Place, expected: impl Fn(DVec3) -> f64, shar
             let (u, v) = ((x as f32 + 0.5) / columns as f32, (y as f32 + 0.5) / rows as f32);
             let truth = expected((*origin + *across * u + *down * v).as_dvec3());
             let (lux, error) = (f64::from(output.lux.pixel(x, y)[0]), f64::from(output.error.pixel(x, y)[0]));
-            // Student's t of 15 degrees of freedom, exceeded by one of a hundred points with a chance of 1/1000.
+            // Student's t with 15 degrees of freedom at which one of a hundred points fails with probability 1/1000.
             assert!(
                 (lux - truth).abs() < 6.4 * error + 2e-5 * truth,
                 "point {x}, {y}: {lux} ± {error}, expected {truth}"
@@ -68,8 +68,8 @@ fn compare(output: &Output, place: &Place, expected: impl Fn(DVec3) -> f64, shar
     }
 }
 
-/// Configuration factor of a polygon, all of it above the horizon: its irradiance over that of all of the hemisphere, by
-/// Lambert's formula, a sum over its edges of the angle they are seen under.
+/// Configuration factor of a polygon that lies above the horizon: the share of the hemisphere's irradiance that comes
+/// from it, by Lambert's formula (a sum over the edges of the angle that each subtends).
 fn configuration(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     let edge = |i: usize| {
         let (a, b) = ((polygon[i] - point).normalize(), (polygon[(i + 1) % polygon.len()] - point).normalize());
@@ -123,7 +123,7 @@ fn case_5_3_area_light_sources() {
     }
 }
 
-/// 5.4, luminous flux conservation: what arrives at all sides of a black box is what its lamp sends out.
+/// 5.4, luminous flux conservation: all sides of a black box together receive the flux of its lamp.
 #[test]
 fn case_5_4_luminous_flux_conservation() {
     let lamp = Vec3::new(0.7, 1.1, 0.4);
@@ -141,7 +141,7 @@ fn case_5_4_luminous_flux_conservation() {
     assert!((flux / (4.0 * PI * 50.0) - 1.0).abs() < 5e-4, "{flux}");
 }
 
-/// 5.6, light reflected by a diffuse surface: a square in parallel light lights the points of a ceiling and a wall.
+/// 5.6, light reflected by a diffuse surface: a square in parallel light illuminates points of a ceiling and a wall.
 #[test]
 fn case_5_6_light_reflection_over_diffuse_surfaces() {
     let (albedo, sun) = (0.8, 5000.0);
@@ -161,8 +161,8 @@ fn case_5_6_light_reflection_over_diffuse_surfaces() {
     }
 }
 
-/// 5.7, diffuse reflection with an internal obstruction: a black screen hides a part of the square, which is what the corners
-/// say that it hides.
+/// 5.7, diffuse reflection with an internal obstruction: a black screen hides a part of the square, which follows from
+/// its corners.
 #[test]
 fn case_5_7_diffuse_reflection_with_internal_obstructions() {
     let (albedo, sun) = (0.8, 5000.0);
@@ -178,7 +178,7 @@ fn case_5_7_diffuse_reflection_with_internal_obstructions() {
     };
     let place = grid(Vec3::new(1.0, 2.0, 0.0), Vec3::X * 3.0, Vec3::Z * 2.0, -Vec3::Y);
     let expected = |p: DVec3| {
-        // The ray over the screen's edge meets the square here; what lies between that and the screen is hidden.
+        // The ray over the screen's edge meets the square at this height; the part below it is hidden.
         let edge = (screen - high * (p.x - screen) / (p.y - high)).max(from);
         let seen = |low: f64, high: f64| {
             if high <= low { 0.0 } else { configuration(p, -DVec3::Y, &horizontal([low, 0.0], [high, 2.0], 0.0)) }
@@ -188,8 +188,8 @@ fn case_5_7_diffuse_reflection_with_internal_obstructions() {
     compare(&measure(scene, &place, 4, 3, 1 << 14), &place, expected, 0.04);
 }
 
-/// 5.8, internal reflected component: in a closed room of one reflectance all walls together absorb what the lamp sends out,
-/// `E = Φ / (S (1 - ρ))`, and each of a cube's the same where the lamp hangs in its centre.
+/// 5.8, internal reflected component: in a closed room of one reflectance all walls together absorb the flux of the
+/// lamp, `E = Φ / (S (1 - ρ))`; a lamp in the centre of a cube gives all walls this mean.
 #[test]
 fn case_5_8_internal_reflected_component() {
     for albedo in [0.1, 0.5, 0.8, 0.95] {
@@ -209,7 +209,7 @@ fn case_5_8_internal_reflected_component() {
         let place = grid(Vec3::ZERO, Vec3::X * 4.0, Vec3::Z * 4.0, Vec3::Y);
         let output = measure(scene, &place, 24, 24, 256);
         let expected = 4.0 * PI * 100.0 / (96.0 * (1.0 - f64::from(albedo)));
-        // The grid's own error: the direct light is not even, and 24 cells see it to 1e-3.
+        // The error of the grid itself: direct light is not uniform, and 24 cells integrate it to 1e-3.
         let off = (output.mean - expected).abs();
         assert!(off < 4.0 * output.mean_error + 1e-3 * expected, "{albedo}: {} ± {}", output.mean, output.mean_error);
         assert!(output.mean_error < 0.005 * expected, "{albedo}: {}", output.mean_error);
@@ -264,7 +264,7 @@ fn behind_a_facade() -> Vec<Mesh> {
         wall([2.0, 40.0], [-60.0, 60.0]),
         wall([1.0, 2.0], [-60.0, -1.0]),
         wall([1.0, 2.0], [1.0, 60.0]),
-        // The room's other sides, far enough to hide nothing of the window.
+        // The other sides of the room, far enough away to hide no part of the window.
         quad(Vec3::new(0.0, -1.0, -5.0), Vec3::X * 6.0, Vec3::Z * 10.0, 0),
         quad(Vec3::new(0.0, 4.0, -5.0), Vec3::X * 6.0, Vec3::Z * 10.0, 0),
         quad(Vec3::new(6.0, -1.0, -5.0), Vec3::Y * 5.0, Vec3::Z * 10.0, 0),
@@ -273,13 +273,13 @@ fn behind_a_facade() -> Vec<Mesh> {
     ]
 }
 
-/// The part of its window between two heights.
+/// The part of the window between two heights.
 fn window([low, high]: [f64; 2]) -> [DVec3; 4] {
     [[low, -1.0], [low, 1.0], [high, 1.0], [high, -1.0]].map(|[y, z]| DVec3::new(0.0, y, z))
 }
 
-/// 5.11, sky component and external reflected component through an unglazed façade opening, of a uniform sky above a darker
-/// ground: the floor has its light from the sky alone, the ceiling from the ground alone.
+/// 5.11, sky component and external reflected component through an unglazed façade opening, with a uniform sky above a
+/// darker ground: only the sky lights the floor, and only the ground lights the ceiling.
 #[test]
 fn case_5_11_sky_and_ground_through_a_facade_opening() {
     // The ground is the lower half of the environment.
@@ -299,8 +299,9 @@ fn case_5_11_sky_and_ground_through_a_facade_opening() {
     }
 }
 
-/// The floor behind the façade under a uniform sky, of which an endless mask outside hides a part. The line over the mask's
-/// edge, `distance` before the façade and `height` up, parts the window; the mask is what is `above` it, or below.
+/// The floor behind the façade under a uniform sky, with an endless mask outside that hides a part of it. The line
+/// over the edge of the mask, which is `distance` before the façade and `height` high, divides the window; the mask
+/// fills the part `above` this line, or the part below.
 fn behind_a_mask(mask: Mesh, [distance, height]: [f64; 2], above: bool) {
     let (sky, luminance) = (3000.0, 400.0);
     let scene = Scene {
@@ -320,15 +321,15 @@ fn behind_a_mask(mask: Mesh, [distance, height]: [f64; 2], above: bool) {
     compare(&measure(scene, &place, 4, 3, 1 << 16), &place, expected, 0.04);
 }
 
-/// 5.13, sky and external reflected component behind a façade opening with a continuous horizontal mask: an overhang at the
-/// window's upper edge, of a known luminance, as what it reflects is the case's given.
+/// 5.13, sky and external reflected component behind a façade opening with a continuous horizontal mask: an overhang
+/// at the upper edge of the window. The case states the luminance of the overhang.
 #[test]
 fn case_5_13_facade_opening_with_a_horizontal_mask() {
     let overhang = quad(Vec3::new(-1.0, 2.0, -60.0), Vec3::X, Vec3::Z * 120.0, 1);
     behind_a_mask(overhang, [1.0, 2.0], true);
 }
 
-/// 5.14, the same with a continuous vertical mask: a wall opposite.
+/// 5.14, a façade opening with a continuous vertical mask: a wall opposite.
 #[test]
 fn case_5_14_facade_opening_with_a_vertical_mask() {
     let opposite = quad(Vec3::new(-4.0, -1.0, -60.0), Vec3::Y * 5.0, Vec3::Z * 120.0, 1);

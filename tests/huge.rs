@@ -1,7 +1,8 @@
-//! A photo of 100 megapixels through line detection, features and segmentation: read as the small photo it is made of, in
-//! the time per pixel of a tenth of it, and within the stated memory.
+//! A photo of 100 megapixels through line detection, features and segmentation: the result is that of the small photo
+//! from which it is made, the time per pixel is that of 10 megapixels, and the memory stays within the stated bytes.
 //!
-//! Each pixel of a drawn room becomes a square of pixels. A program of its own, because it measures its peak of memory.
+//! Each pixel of a drawn room becomes a square of pixels. A separate program, because it measures the peak memory of
+//! the process.
 
 use glam::{DMat3, DVec2};
 use luxfer::exec::Pool;
@@ -13,28 +14,29 @@ use luxfer::rectify::{self, View};
 use luxfer::segment::{self, Input, Params, Segmentation, Stroke};
 use std::time::Instant;
 
-/// The small photo, and how many times its sides the photos have: 10 and 100 megapixels.
+/// Size of the small photo, and the factors by which the photos of 10 and 100 megapixels are larger.
 const SIZE: [usize; 2] = [480, 320];
 const TIMES: [usize; 2] = [8, 26];
 
-/// Bytes for each pixel at the peak: 4 of the photo and 40 of the features, which are the caller's and the answer, and
-/// what laying the room out needs besides.
+/// Bytes per pixel at the peak: 4 of the photo, 40 of the features (the result), and working memory of the room
+/// layout.
 const FEATURES: f64 = 4.0 + 40.0 + 28.0;
-/// Those two, the mask, the confidence and the unseen, and what finding them needs besides.
+/// The photo and the features, 12 of the mask, the confidence and the unseen mask, and working memory of the
+/// segmentation.
 const SEGMENTATION: f64 = 4.0 + 40.0 + 12.0 + 8.0;
 
-/// A figure in bytes that the system tells of this process or of itself, if it does.
-fn told(file: &str, name: &str) -> Option<f64> {
+/// A memory figure in bytes from a file of the system, if the system reports it.
+fn memory_figure(file: &str, name: &str) -> Option<f64> {
     let text = std::fs::read_to_string(file).ok()?;
     let line = text.lines().find_map(|l| l.strip_prefix(name))?;
     Some(line.trim().trim_end_matches("kB").trim().parse::<f64>().ok()? * 1024.0)
 }
 
-/// What a stage took of each pixel.
+/// Cost of a stage.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
     nanoseconds: f64,
-    /// Bytes at the peak.
+    /// Bytes per pixel at the peak.
     bytes: Option<f64>,
 }
 
@@ -43,7 +45,7 @@ fn cost<T>(pixels: usize, work: impl FnOnce() -> T) -> (Cost, T) {
     let start = Instant::now();
     let value = work();
     let nanoseconds = start.elapsed().as_secs_f64() * 1e9 / pixels as f64;
-    (Cost { nanoseconds, bytes: told("/proc/self/status", "VmHWM:").map(|b| b / pixels as f64) }, value)
+    (Cost { nanoseconds, bytes: memory_figure("/proc/self/status", "VmHWM:").map(|b| b / pixels as f64) }, value)
 }
 
 /// A box room with tiles on its faces, their gaps darker.
@@ -95,7 +97,7 @@ struct Reading {
     plane: Segmentation,
 }
 
-/// Everything that is read from the photo when each pixel is `times` pixels wide and high.
+/// The results for the photo whose pixels are `times` as wide and as high.
 fn read(small: &Image, times: usize) -> Reading {
     let monitor = Monitor::default();
     let (width, height) = (small.width * times, small.height * times);
@@ -117,7 +119,7 @@ fn read(small: &Image, times: usize) -> Reading {
 #[test]
 fn a_hundred_megapixels_are_read_as_ten_and_cost_no_more_each() {
     let needed = 1.2 * FEATURES * (SIZE[0] * SIZE[1] * TIMES[1] * TIMES[1]) as f64;
-    if told("/proc/meminfo", "MemAvailable:").is_some_and(|free| free < needed) {
+    if memory_figure("/proc/meminfo", "MemAvailable:").is_some_and(|free| free < needed) {
         eprintln!("skipped: {:.0} GB of memory are not free", needed / 1e9);
         return;
     }
@@ -126,14 +128,15 @@ fn a_hundred_megapixels_are_read_as_ten_and_cost_no_more_each() {
     let [large, huge] = TIMES.map(|times| pool.run(|| read(&small, times)));
     for (name, (large, huge)) in ["lines", "features", "segmentation"].iter().zip(large.costs.iter().zip(&huge.costs)) {
         println!("{name}: {huge:.1?} of each pixel, {:.1} ns in a tenth of them", large.nanoseconds);
-        // A factor for what else the machine does: what grows with the square would take ten times as long.
+        // The factor allows for other work on the machine; quadratic growth would take ten times as long.
         assert!(huge.nanoseconds < 4.0 * large.nanoseconds, "{name}");
     }
     for (cost, bound) in huge.costs[1..].iter().zip([FEATURES, SEGMENTATION]) {
         assert!(cost.bytes.is_none_or(|bytes| bytes < bound), "{cost:?}, {bound}");
     }
 
-    // Both see the same room and the same plane: a pixel of the one is a square of the other.
+    // Both photos give the same room and the same plane: each pixel of the small one is a square of pixels of the
+    // other.
     let [a, b] = [&large, &huge].map(|r| r.view.perspective.axes);
     for axis in 0..3 {
         assert!(a.col(axis).cross(b.col(axis)).length() < 0.005, "axis {axis}");

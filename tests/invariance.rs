@@ -1,8 +1,8 @@
-//! Answers do not depend on the unit of length, the place and the orientation a scene comes in, nor on the exposure of the photo
-//! and which way round it lies.
+//! Results do not depend on the unit of length, the place and the orientation of a scene, nor on the exposure of the
+//! photo or on mirroring and turning it.
 //!
-//! Powers of two scale floating-point numbers without rounding, so where nothing absolute is left in the formulas the answers
-//! are the same to the bit.
+//! Powers of two scale floating-point numbers without rounding, so results are equal to the bit where the formulas
+//! contain no absolute length.
 
 use glam::{DVec3, Mat3, Vec3, vec3};
 use luxfer::demo::{self, photo};
@@ -53,7 +53,7 @@ fn room() -> (Scene, Camera) {
     (scene, Camera::look_at(vec3(2.0, 1.25, 4.75), vec3(2.0, 1.0, 0.0), 1.0))
 }
 
-/// The scene and its camera, every point moved by `to`, in units of which one is `unit` metres.
+/// The scene and its camera with every point turned and moved by `to`, in a unit of length of `unit` metres.
 fn mapped((scene, camera): &(Scene, Camera), turn: Mat3, unit: f32, to: Vec3) -> (Scene, Camera) {
     let point = |p: Vec3| turn * p * unit + to;
     let mut scene = scene.clone();
@@ -63,7 +63,7 @@ fn mapped((scene, camera): &(Scene, Camera), turn: Mat3, unit: f32, to: Vec3) ->
     }
     for light in &mut scene.lights {
         if let PunctualLight::Point { position, intensity } = light {
-            // Candela are luminance times area.
+            // The intensity in candela is luminance times area.
             (*position, *intensity) = (point(*position), *intensity * unit * unit);
         }
     }
@@ -83,15 +83,15 @@ fn picture((scene, camera): &(Scene, Camera), samples: u32) -> Film {
     pool.run(|| render::run(&world, camera, &params, monitor.job(), &mut |_| ()).unwrap())
 }
 
-/// Paths where the same are taken again.
-const FEW: u32 = 1 << 12;
+/// Number of paths for comparisons in which the paths are identical.
+const IDENTICAL_PATHS: u32 = 1 << 12;
 
 /// The material of the ceiling with its lamps.
 fn emitter(scene: &Scene) -> usize {
     scene.materials.iter().position(|m| m.emission_texture.is_some()).unwrap()
 }
 
-/// What the lamps have to be multiplied with for a ceiling of 40 cd/m².
+/// Solves for the factor of the lamps at which the ceiling has 40 cd/m².
 fn solution((scene, _): &(Scene, Camera), paths: u32) -> Solution {
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
     let world = World::build(Arc::new(scene.clone()), monitor.job()).unwrap();
@@ -106,27 +106,27 @@ fn solution((scene, _): &(Scene, Camera), paths: u32) -> Solution {
 #[test]
 fn the_unit_of_length_changes_nothing() {
     let metres = room();
-    let (film, solved) = (picture(&metres, 8), solution(&metres, FEW));
+    let (film, solved) = (picture(&metres, 8), solution(&metres, IDENTICAL_PATHS));
     for power in [-20, -10, 10, 20] {
         let scaled = mapped(&metres, Mat3::IDENTITY, 2f32.powi(power), Vec3::ZERO);
         assert_eq!(picture(&scaled, 8).beauty, film.beauty, "2^{power}");
-        assert_eq!(solution(&scaled, FEW).scale, solved.scale, "2^{power}");
+        assert_eq!(solution(&scaled, IDENTICAL_PATHS).scale, solved.scale, "2^{power}");
     }
 }
 
 #[test]
 fn the_place_changes_nothing() {
     let here = room();
-    let (film, solved) = (picture(&here, 8), solution(&here, FEW));
-    // So far away coordinates are multiples of 1/16 m, as are all lengths of the room.
+    let (film, solved) = (picture(&here, 8), solution(&here, IDENTICAL_PATHS));
+    // At these distances coordinates are multiples of 1/16 m, as are all lengths of the room.
     for place in [vec3(1e6, 0.0, 0.0), vec3(-1e6, 2e5, 1e6)] {
         let moved = mapped(&here, Mat3::IDENTITY, 1.0, place);
         assert_eq!(picture(&moved, 8).beauty, film.beauty, "{place}");
-        assert_eq!(solution(&moved, FEW).scale, solved.scale, "{place}");
+        assert_eq!(solution(&moved, IDENTICAL_PATHS).scale, solved.scale, "{place}");
     }
 }
 
-/// Other paths are taken, so answers agree within their intervals.
+/// The paths differ, so results agree within their confidence intervals.
 #[test]
 fn the_orientation_changes_nothing_but_the_paths() {
     let upright = room();
@@ -136,7 +136,8 @@ fn the_orientation_changes_nothing_but_the_paths() {
         let again = solution(&turned, 1 << 16);
         let joint = (solved.half_width / solved.scale + again.half_width / again.scale) * 1.5;
         assert!((again.scale / solved.scale - 1.0).abs().cmple(joint).all(), "{solved:?} {again:?}");
-        // Pixels share what falls in one, so 4.5 of the mean's standard errors, each pixel's own taken as independent.
+        // Pixels share samples, so the limit is 4.5 standard errors of the mean, with the errors of pixels taken as
+        // independent.
         let other = picture(&turned, 64);
         let mean = |film: &Film| film.beauty.data.iter().map(|v| f64::from(*v)).sum::<f64>();
         let variance = |film: &Film| film.variance.data.iter().map(|v| f64::from(*v)).sum::<f64>();
@@ -153,7 +154,7 @@ fn the_strength_of_the_lamps_changes_nothing_but_the_answer() {
     let emission = scene.materials[emitter].emission;
     let mut scale = |power: i32| {
         scene.materials[emitter].emission = emission * 2f32.powi(power);
-        solution(&(scene.clone(), camera.clone()), FEW).scale * 2f64.powi(power)
+        solution(&(scene.clone(), camera.clone()), IDENTICAL_PATHS).scale * 2f64.powi(power)
     };
     let solved = scale(0);
     for power in [-30, -10, 10, 30] {
@@ -161,7 +162,7 @@ fn the_strength_of_the_lamps_changes_nothing_but_the_answer() {
     }
 }
 
-/// What the photo of the demonstration tells, read with everything as it is by default.
+/// Results of the stages for the photo of the demonstration, with default settings.
 struct Reading {
     /// Directions of the room's axes in camera space.
     axes: [DVec3; 3],
@@ -187,7 +188,7 @@ fn read_with(photo: Image, strokes: StrokeSet, params: Params) -> Reading {
     }
 }
 
-/// The largest angle in degrees between an axis of one reading and the nearest of another, whose directions are mapped.
+/// The largest angle in degrees between an axis of one reading and the nearest axis of the other, which `back` maps.
 fn angle(a: &Reading, b: &Reading, back: impl Fn(DVec3) -> DVec3) -> f64 {
     let nearest = |axis: &DVec3| b.axes.iter().map(|other| back(*other).dot(*axis).abs().min(1.0)).fold(0.0, f64::max);
     a.axes.iter().map(|axis| nearest(axis).acos().to_degrees()).fold(0.0, f64::max)
@@ -210,7 +211,7 @@ fn photograph() -> (Image, StrokeSet) {
     (picture, demo::strokes(&room, size.width, size.height).unwrap())
 }
 
-/// The image whose pixel (x, y) is the one of `image` that `from` tells; strokes go with it.
+/// The image whose pixel (x, y) is the pixel `from(x, y)` of `image`, with its strokes.
 fn rearranged(
     (image, strokes): &(Image, StrokeSet),
     [width, height]: [usize; 2],
@@ -234,7 +235,7 @@ fn rearranged(
     (picture.unwrap(), StrokeSet { plane: moved(&strokes.plane), lights: moved(&strokes.lights) })
 }
 
-/// How one reading differs from another: the axes by an angle, the masks by what they share.
+/// Difference of two readings: angle of the axes, and intersection over union of the masks.
 struct Difference {
     degrees: f64,
     plane: f64,
@@ -242,7 +243,8 @@ struct Difference {
 }
 
 impl Reading {
-    /// To a reading of the photo rearranged so that its pixel (x, y) is at `place(x, y)`; `turn` leads its axes back.
+    /// Difference to a reading of the rearranged photo, whose pixel (x, y) is at `place(x, y)`; `turn` maps its axes
+    /// back.
     fn differs(
         &self,
         other: &Self,
@@ -264,8 +266,8 @@ impl Reading {
     }
 }
 
-/// Lines are found in relative brightness. Lab is nonlinear, and its dark end linear: masks of underexposed photos may differ at
-/// their edges.
+/// Line detection uses relative brightness. CIELAB is nonlinear with a linear dark end, so masks of underexposed
+/// photos may differ at their edges.
 #[test]
 fn the_exposure_changes_nothing() {
     let (photo, strokes) = photograph();
@@ -280,8 +282,8 @@ fn the_exposure_changes_nothing() {
     }
 }
 
-/// By colour alone, and with the depth and the normals of the room that is laid out from the photo's lines and strokes: of two
-/// boxes that fit them about as well, a mirrored photo gets the one that is the mirror's.
+/// By colour alone, and with the depth and the normals of the room layout: of two boxes that fit about equally well,
+/// the mirrored photo must get the mirrored box.
 #[test]
 fn a_photo_may_lie_any_way_round() {
     let shot = photograph();

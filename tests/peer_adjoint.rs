@@ -1,11 +1,12 @@
-//! The importance of a lamp's points, and the slopes of a texture's placement, against the adjoint of Mitsuba 3 (`prb`), which
-//! differentiates the same light of the same room by other means, within the joint confidence interval.
+//! The importance of a lamp's points and the gradient of a texture's placement against the adjoint of Mitsuba 3
+//! (`prb`), which differentiates the light of the same room by other means, within the joint confidence interval.
 //!
-//! Both are estimated from independent seeds, whose scatter gives the variance of their means; each number then is a Welch's
-//! t-test, at 0.1 % for all of them together (Šidák). The seeds are fixed, so a pass is a pass every time.
+//! Both are estimated from independent seeds, whose scatter gives the variance of their means; each number is then
+//! compared by Welch's t-test, at 0.1 % for all of them together (Šidák). The seeds are fixed, so the outcome is
+//! reproducible.
 //!
-//! `make setup` installs Mitsuba from PyPI into target/peers; its differentiation needs LLVM as a shared library. Without
-//! either there is nothing to compare with: the test says so, except in continuous integration (CI set), where it fails.
+//! `make setup` installs Mitsuba from PyPI into target/peers; its differentiation needs LLVM as a shared library.
+//! Without either the test is skipped with a message; in continuous integration (CI set) it fails.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use luxfer::exec::Pool;
@@ -21,7 +22,7 @@ use std::sync::Arc;
 mod statistics;
 
 const CELLS: usize = 64;
-/// Cells along the side of a block: what they mean together is compared.
+/// Cells along the side of a block; the test compares means over blocks.
 const BLOCK: usize = 8;
 const SEEDS: usize = 16;
 const OUR_PATHS: u32 = 1 << 16;
@@ -35,8 +36,8 @@ fn pattern(u: f64, v: f64) -> f64 {
     1.0 + 0.6 * (TAU * u).sin() + 0.3 * (TAU * v).cos()
 }
 
-/// A room with walls of several colours and a screen, whose ceiling shines: what its points mean to the floor differs from
-/// side to side.
+/// A room with walls of several colours and a screen, whose ceiling emits light; the importance of its points for the
+/// floor differs from side to side.
 fn room() -> Scene {
     let (x, y, z) = (Vec3::X * 3.0, Vec3::Y * 1.5, Vec3::Z * 2.5);
     let matt = |name: &str, colour: [f32; 3]| Material::diffuse(name, Vec3::from_array(colour));
@@ -71,7 +72,7 @@ fn room() -> Scene {
     }
 }
 
-/// What the cells of each block mean together, channel by channel.
+/// Means of the blocks of cells, channel by channel.
 fn blocks(cells: &[f64]) -> Vec<f64> {
     let across = CELLS / BLOCK;
     let mut sums = vec![0.0; 3 * across * across];
@@ -82,7 +83,7 @@ fn blocks(cells: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Of each seed the importance of all blocks, and the slopes of the placed pattern: as mean irradiance.
+/// For each seed the importance of all blocks, and the gradient of the placed pattern, as mean irradiance.
 fn ours(scene: &Scene) -> Vec<Vec<f64>> {
     let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());
     let target = [(0, 0), (0, 1)];
@@ -94,7 +95,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
         sense: [Sense::Exactly; 3],
         weight: 1.0,
     };
-    // As many texels as cells: finer ones would be blurred to the size of cells.
+    // The texture has as many texels as there are cells: finer ones would be blurred to the size of cells.
     let texture = Image::from_fn(CELLS, CELLS, |x, y| {
         let at = |i: usize| (i as f64 + 0.5) / CELLS as f64;
         [pattern(at(x), at(y)) as f32]
@@ -165,7 +166,8 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
     let (mut widest, mut worst, mut total) = (0.0f64, 0.0f64, [0.0; 2]);
     for number in 0..tests {
         let difference = statistics::welch(&ours, &theirs, number, tests);
-        // The slopes of the pattern: the spline that it is looked up by takes 1 / 600 of it away, and its cells as much.
+        // Error of the gradient: the spline that interpolates the pattern loses 1 / 600 of it, and its cells lose
+        // about as much.
         let size = if number < texels { difference.first } else { slope_size(&ours, number, texels) };
         let model = if number < texels { 1e-5 } else { 0.004 } * size;
         assert!(difference.off <= difference.interval + model, "number {number}: {difference:?}");
@@ -184,11 +186,11 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
         total[0],
         total[1]
     );
-    // Too wide an interval would hide what is wrong.
+    // Too wide an interval would hide errors.
     assert!(widest < 0.3 && (total[0] / total[1] - 1.0).abs() < 0.005, "{widest} {total:?}");
 }
 
-/// The largest of the slopes of a channel: one may be 0.
+/// The largest component of the gradient of a channel, because one component may be 0.
 fn slope_size(rows: &[Vec<f64>], number: usize, texels: usize) -> f64 {
     let channel = (number - texels) % 3;
     (0..5).map(|i| statistics::statistics(rows, texels + 3 * i + channel).0.abs()).fold(0.0, f64::max)

@@ -56,7 +56,7 @@ fn cornell() -> Scene {
     ];
     meshes.extend(block(Vec3::new(0.37, 0.0, 0.39), Vec3::new(0.165, 0.165, 0.165), -0.29, 0));
     meshes.extend(block(Vec3::new(0.185, 0.0, 0.2), Vec3::new(0.165, 0.33, 0.165), 0.31, 0));
-    // It shines down alone: the gap above it would be hard for either.
+    // The lamp emits downwards only: light through the gap above it would be noisy in both renderers.
     let emission = Vec3::new(18.4, 15.6, 8.0);
     let lamp = Material { emission, double_sided: false, ..matt("Lamp", [0.78; 3]) };
     let materials = vec![
@@ -100,7 +100,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
     })
 }
 
-/// Means of Mitsuba's images, by its scalar back end: the one that needs nothing else.
+/// Means of Mitsuba's images by its scalar back end, which needs no other software.
 fn theirs(python: &Path, scene: &Scene) -> Vec<Vec<f64>> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let glb = folder.join("cornell.glb");
@@ -172,7 +172,7 @@ fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
         variance.sqrt(),
         other_variance.sqrt()
     );
-    // Too wide an interval would hide what is wrong.
+    // Too wide an interval would hide errors.
     assert!(lit > 90 && widest < 0.15, "{lit} lit, widest interval {widest}");
     assert!((variance + other_variance).sqrt() < 0.004 * mean, "the image's mean is not known well enough");
 }

@@ -1,9 +1,10 @@
-//! Plans come true: on rooms and sizes of picture that nothing was fitted to, what they expect is what comes out.
+//! Plans are accurate: the expected times and errors match the actual ones, on rooms and image sizes to which nothing
+//! was fitted.
 //!
-//! Times are those of one thread, by its own clock, so that what else the machine does weighs on neither side. More cases, and
-//! whole transfers: `make bench ONLY=plan`.
+//! Times are processor times of one thread, so other work on the machine does not count. For more cases and whole
+//! transfers: `make bench ONLY=plan`.
 
-// Benches read other clocks too.
+// Benches use the other clocks.
 #[allow(dead_code)]
 #[path = "../benches/harness/clock.rs"]
 mod clock;
@@ -42,7 +43,7 @@ fn planned(world: &World, camera: &Camera, params: &Params, goal: Goal) -> plan:
     plan::rendering(world, camera, params, goal, &|| Clock::Thread.now(), Monitor::default().job()).unwrap()
 }
 
-/// Seconds and film, however long it takes.
+/// The seconds and the film of a rendering without a time limit.
 fn shot(world: &World, camera: &Camera, params: &Params) -> (f64, Film) {
     let params = Params { time_budget_ms: 0, ..params.clone() };
     time(Clock::Thread, || render::run(world, camera, &params, Monitor::default().job(), &mut |_| ()).unwrap())
@@ -79,8 +80,8 @@ fn renderings_take_the_time_and_leave_the_error_that_was_expected() {
     }
 }
 
-/// A plan looks at a seventh of these pictures, whose error is mostly that of the edges of lamps: which tiles it chances upon
-/// must not matter.
+/// A plan samples a seventh of these pictures, whose error is mostly at the edges of lamps: the choice of the sampled
+/// tiles must not matter.
 #[test]
 fn what_is_expected_does_not_hang_on_the_seed() {
     Pool::new(1).unwrap().run(|| {
@@ -145,7 +146,7 @@ fn the_light_of_a_transfer_is_planned() {
     let solved = transfer.results.solution.as_ref().unwrap().error();
     assert!(solved <= f64::from(planned.relight.target_error), "{solved}: {planned:?}");
 
-    // More time, less error; and none is given to a stage that cannot use it.
+    // More time means less error, and a stage that cannot use time gets none.
     let [short, long] = [1.0, 20.0].map(|seconds| plan(&transfer, Goal::Seconds(seconds)).unwrap());
     assert!(long.whole.error < 0.6 * short.whole.error, "{short:?} {long:?}");
     assert!(long.relight.paths > short.relight.paths && long.render.samples > short.render.samples);
@@ -156,7 +157,7 @@ fn the_light_of_a_transfer_is_planned() {
     };
     assert_eq!(long.render, Params { width: 64, height: 36, target_error: 0.0, ..kept });
 
-    // What cannot be planned is named.
+    // A goal that cannot be planned is an error that names it.
     for goal in [Goal::Error(0.0), Goal::Error(f64::NAN), Goal::Seconds(-1.0)] {
         assert_eq!(plan(&transfer, goal).unwrap_err().kind, ErrorKind::InvalidArgument);
     }

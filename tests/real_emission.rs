@@ -74,7 +74,8 @@ fn the_glass_ceiling_keeps_its_panes() {
     let Some((photo, light)) = ceiling("library", 1.0) else { return };
     let result = doubled("library", &photo, &light);
     assert!(result.error < 0.02, "{}", result.error);
-    // Every pane is one of the photo's, in its own column and as large: frames keep their width, and the lattice its places.
+    // Every pane has the size of a pane of the photo and lies in a column of the photo: frames keep their width, and
+    // the lattice its nodes.
     let valid = Image::from_fn(photo.width, photo.height, |_, _| [1.0]).unwrap();
     let input = Input { unwarped: &photo, light: &light, valid: &valid, photo: None };
     let params = Params { width: photo.width, height: photo.height, ..Params::default() };
@@ -92,7 +93,7 @@ fn the_glass_ceiling_keeps_its_panes() {
         };
         assert!(panes.iter().any(is_same), "{lamp:?}");
     }
-    // Panes measure 60 or 154 by 68 or 167 pixels; none is cut, none runs into the next.
+    // Panes measure 60 or 154 by 68 or 167 pixels; no pane is cut, and no two panes touch.
     let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
     for lamp in &result.luminaires {
         let inside = lamp.outline.iter().all(|p| p.min_element() > 0.0 && (size - *p).min_element() > 0.0);

@@ -1,7 +1,8 @@
-//! Reading real photos: features on RGB-D pairs and ceilings with their lights, from strokes kept beside this file.
+//! Features and segmentation of real photos: RGB-D pairs, and ceilings with their lights, with the strokes in this
+//! folder.
 //!
-//! The pictures are not part of the project; they are looked for in `LUXFER_TEST_DATA`, by default `../shared/data`. With
-//! `LUXFER_TEST_OUTPUT` set to a folder, overlays to look at are written there.
+//! The pictures are not part of the project; they are read from `LUXFER_TEST_DATA` (default `../shared/data`). If
+//! `LUXFER_TEST_OUTPUT` names a folder, overlays for inspection are written there.
 
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use luxfer::exec::Pool;
@@ -70,11 +71,11 @@ fn camera(photo: &serde_json::Value) -> Perspective {
 struct Photo {
     name: &'static str,
     path: &'static str,
-    /// Truth for the lights, with the least intersection over union that must be met.
+    /// True mask of the lights, and the minimum intersection over union.
     lights: Option<(&'static str, f64)>,
 }
 
-/// The bars are two to four hundredths below what is reached, which an edge of pixels makes.
+/// The limits are 0.02 to 0.04 below the measured values, about the effect of one pixel along the edges.
 const PHOTOS: [Photo; 10] = [
     Photo { name: "alma_corridor", path: "photos/alma_corridor.jpg", lights: Some(("alma_corridor_mask.png", 0.93)) },
     Photo {
@@ -138,7 +139,7 @@ fn ceilings_and_their_lights_are_found_in_real_photos() {
         );
         let set = strokes::parse(&text.unwrap(), photo.width, photo.height).unwrap();
 
-        // The camera is known here; lines and room axes are found.
+        // The camera is given; lines and room axes are estimated.
         let monitor = Monitor::default();
         let params =
             rectify::Params { focal: Some(known.focal), principal: Some(known.principal), ..Default::default() };

@@ -39,7 +39,7 @@ fn vanishing_points_of_photos_meet_their_truth() {
                 .map(|v| format!("{:6.2}/{}", v.error.to_degrees(), v.support))
                 .collect::<String>(),
         );
-        // Two families are plain to see in every one of these photos.
+        // Two directions are clearly visible in every one of these photos.
         let mut sorted = e.clone();
         sorted.sort_by(f64::total_cmp);
         assert!(sorted[1] < 5.0, "{}: {sorted:?}", l.name);
@@ -59,15 +59,16 @@ fn vanishing_points_of_photos_meet_their_truth() {
     let failures = all.iter().filter(|&&e| e > 5.0).count();
     println!("median {median:.2} degrees, {failures} of {} beyond 5", all.len());
     assert!(median <= 0.5 && failures == 0, "{median}, {failures}");
-    // Stated errors hold: for a normal direction in the plane half lie below 0.7 to 0.8 of them, 95 % below 2.
+    // Stated errors are calibrated: of normal errors in the plane, half lie below 0.7 to 0.8 stated errors and 95 %
+    // below 2.
     shares.sort_by(f64::total_cmp);
     let at = |p: f64| shares[(p * shares.len() as f64) as usize];
     println!("error / stated: half below {:.2}, 68 % below {:.2}, 90 % below {:.2}", at(0.5), at(0.68), at(0.9));
     assert!((0.4..1.1).contains(&at(0.5)) && at(0.9) < 2.5);
 }
 
-/// Views cut out of panoramas have no distortion, and what is measured of it stays within what is stated; York Urban's camera has
-/// a barrel.
+/// Views cut out of panoramas have no distortion, and the estimate stays within its stated error; York Urban's camera
+/// has barrel distortion.
 #[test]
 fn distortion_is_told_of_lenses_that_have_some() {
     let measured = |name: &str, photo: &Image| {
@@ -89,7 +90,8 @@ fn distortion_is_told_of_lenses_that_have_some() {
     assert!(barrels >= 4 && york.iter().all(|share| *share < 1.0), "{york:.1?}");
 }
 
-/// Values that should be 0, over their stated errors, are hardly larger than such a thing may be.
+/// Checks that values that should be 0 are, relative to their stated errors, hardly larger than a normal distribution
+/// allows.
 fn check_calibration(what: &str, mut shares: Vec<f64>) {
     shares.sort_by(f64::total_cmp);
     let at = |p: f64| shares[(p * shares.len() as f64) as usize];
@@ -98,7 +100,7 @@ fn check_calibration(what: &str, mut shares: Vec<f64>) {
     assert!(half < 1.1 && nearly_all < 2.5);
 }
 
-/// Rooms at right angles are told to be, within what is stated, whether the focal length is known or not.
+/// Rooms with right angles are recognised within the stated errors, with and without a known focal length.
 #[test]
 fn rooms_of_photos_stand_at_right_angles() {
     for knows_focal in [true, false] {
@@ -133,7 +135,7 @@ fn vanishing_points_of_labelled_segments_meet_the_published_protocol() {
     }
 }
 
-/// The photo, dimmed, with its lines in a colour for each axis they run along, grey for none, and a quadrilateral in white.
+/// The photo, dimmed, with its lines in the colour of their axis (grey without an axis), and a quadrilateral in white.
 fn drawn(photo: &Image, view: &rectify::View, quad: [DVec2; 4]) -> Image {
     let mut picture = photo.to_rgb().unwrap();
     picture.data.iter_mut().for_each(|v| *v *= 0.3);

@@ -1,4 +1,4 @@
-//! Scenes made by others: they load, quickly, and their surfaces are found.
+//! Scenes from other authors load quickly, and their surfaces are found.
 
 use glam::Vec3;
 use luxfer::image::Image;
@@ -6,10 +6,10 @@ use luxfer::scene::{Scene, gltf, surface};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Debug assertions, two busy cores: the release build takes a fraction of this.
+/// For debug assertions and two busy cores: the release build takes a fraction of this.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// The path of a test file; `None`, with a line that says so, where the data is absent outside CI.
+/// The path of a test file; without the data `None` and a message, in CI an error.
 fn data(name: &str) -> Option<PathBuf> {
     let root = std::env::var_os("LUXFER_TEST_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
@@ -43,7 +43,7 @@ fn kitchen() {
     let Some(mut scene) = load("scenes/kitchen/country_kitchen.glb") else { return };
     assert_eq!((scene.meshes.len(), scene.materials.len()), (82, 82));
 
-    // The ceiling is a slab from 3.23 to 3.36 m: its lower side counts.
+    // The ceiling is a slab from 3.23 to 3.36 m: its lower side is the surface.
     let start = Instant::now();
     let ceiling = surface::find(&scene, "Ceiling").unwrap();
     println!("Ceiling found in {:.2?}: {ceiling:?}", start.elapsed());
@@ -54,7 +54,7 @@ fn kitchen() {
     let floor = surface::find(&scene, "floor").unwrap();
     assert!((floor.normal - Vec3::Y).length() < 1e-3 && (floor.origin.y + 0.02).abs() < 0.01);
 
-    // Lit, written, and read again.
+    // Light the scene, write it and read it again.
     let lights = Image::from_fn(8, 8, |x, y| [if x % 2 == 0 && y % 2 == 0 { 1.0 } else { 0.0 }; 3]).unwrap();
     let placed = surface::place(&mut scene, &ceiling, lights, Vec3::splat(3000.0)).unwrap();
     let again = gltf::import(&gltf::export(&scene).unwrap(), None, gltf::Options::default()).unwrap();
@@ -67,7 +67,7 @@ fn kitchen() {
 fn sponza() {
     let Some(scene) = load("scenes/sponza/sponza_dabrovic.glb") else { return };
     assert_eq!(scene.meshes.len(), 37);
-    // The courtyard's floor is walked on: it faces up.
+    // The floor of the courtyard faces up, because people walk on it.
     let floor = surface::find(&scene, "sp_00_pod_12").unwrap();
     println!("{floor:?}");
     assert!((floor.normal - Vec3::Y).length() < 1e-2, "{}", floor.normal);

@@ -18,7 +18,7 @@ struct Pair {
     guides: Vec<(Image, Image)>,
 }
 
-/// The pair, or `None` where there is no test data, which is an error in CI.
+/// The pair, or `None` without test data; in CI that is an error.
 fn pair() -> Option<Pair> {
     let root = std::env::var("LUXFER_TEST_DATA").unwrap_or_else(|_| "../shared/data".to_string());
     let folder = PathBuf::from(root).join("stylit/ebsynth_stylit");
@@ -72,7 +72,7 @@ fn the_budget_beats_plain_em_on_usage_and_texture_at_like_energy() {
     assert!(energy(&budget) < 1.3 * energy(&nearest), "{} {}", energy(&budget), energy(&nearest));
     let (kept, washed) = (texture(&budget.image), texture(&nearest.image));
     assert!(kept > washed, "{kept} {washed} of {}", texture(&pair.artwork));
-    // Every pass covers more, and the guides are followed.
+    // Every pass covers more pixels, and the guides are followed.
     for passes in budget.report.levels.iter().flat_map(|l| &l.passes) {
         assert!(passes.windows(2).all(|w| w[1].coverage >= w[0].coverage));
         assert!(passes.last().unwrap().coverage > 0.9, "{passes:?}");

@@ -1,4 +1,4 @@
-//! Photos whose principal point is not their centre: of shifted lenses, as those for buildings are, and cropped ones.
+//! Photos whose principal point is not their centre: from shifted lenses for photos of buildings, and cropped photos.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use luxfer::geometry::{FocalSource, Perspective, Segment};
@@ -10,7 +10,8 @@ use luxfer::rng::Rng;
 const SIZE: [usize; 2] = [800, 600];
 const FOCAL: f64 = 640.0;
 
-/// Looks nearly level; the lens is shifted up so far that its axis meets the plane of the photo below its border.
+/// A camera that looks nearly level, with a lens shifted up so far that its axis meets the image plane below the
+/// photo's border.
 fn camera() -> Perspective {
     Perspective {
         focal: FOCAL,
@@ -28,7 +29,7 @@ fn on_ceiling(camera: &Perspective, pixel: DVec2) -> Option<DVec2> {
     (ray.y < 0.0).then(|| DVec2::new(ray.x, ray.z) / -ray.y)
 }
 
-/// A ceiling of square lamps, and dark beyond it.
+/// A ceiling of square lamps; the surroundings are dark.
 fn photo(camera: &Perspective) -> Image {
     const SUB: usize = 4;
     let shade = |pixel: DVec2| match on_ceiling(camera, pixel) {
@@ -68,8 +69,8 @@ fn segments(camera: &Perspective) -> Vec<Segment> {
         .collect()
 }
 
-/// How far a view's nearest axes are from the true ones, in degrees, and the natural logarithm of its aspect ratio over
-/// the true one.
+/// Largest angle in degrees between a view's axes and the true ones, and the logarithm of its aspect ratio over the
+/// true one.
 fn errors(view: &View, truth: &Perspective, photo: &Image) -> (f64, f64) {
     let axes = [0, 1, 2].map(|k| view.perspective.axes.col(k));
     let off = |axis: DVec3| axes.iter().map(|a| a.dot(axis).abs().min(1.0).acos()).fold(9.0, f64::min);
@@ -95,7 +96,7 @@ fn exact_lines_give_the_camera_where_the_principal_point_is_told() {
     println!("told: focal {:.2}, axes {degrees:.4} degrees, aspect {aspect:.4}", view.perspective.focal);
     assert_eq!(view.perspective.principal, truth.principal);
     assert!((view.perspective.focal / FOCAL - 1.0).abs() < 5e-3 && degrees < 0.1 && aspect < 0.01);
-    // Taken for one whose axis meets its centre it is a photo of another room.
+    // With its centre taken as the principal point, the photo shows another room.
     let view = read(None);
     let (degrees, _) = errors(&view, &truth, &photo);
     println!("not told: focal {:.2}, axes {degrees:.4} degrees", view.perspective.focal);

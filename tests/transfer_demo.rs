@@ -1,4 +1,4 @@
-//! The whole lighting transfer on the generated photo and room, against what is known about them.
+//! The whole lighting transfer on the generated photo and room, compared with the known truth.
 
 use glam::{DVec2, DVec4, Vec3};
 use luxfer::demo::{self, photo};
@@ -12,7 +12,7 @@ use luxfer::render::World;
 use luxfer::transfer::{Input, Params, Pattern, Scale, Stage, Transfer};
 use std::sync::Arc;
 
-/// A transfer with all its input, small enough for a test; and the room the photo shows.
+/// A small transfer with all inputs; and the room of the photo.
 fn prepared(pool: &Pool, samples: u32, seed: u64) -> (Transfer, demo::Exemplar) {
     let room = demo::exemplar_room().unwrap();
     let camera = room.scene.cameras[room.camera].clone();
@@ -58,9 +58,9 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     let whole: Vec<_> = fixtures.iter().filter(|f| f.area > 0.8 * largest).collect();
     let areas: Vec<f64> = fixtures.iter().map(|f| f.area).collect();
     assert!(whole.len() >= 4, "{} whole lamps of {}, in m²: {areas:.3?}", whole.len(), fixtures.len());
-    // The photo shows lamps too large: one fifty times as bright as white is clipped, with its blur and glow, for about two
-    // pixels beyond its edge, and two pixels are 9 cm along the ceiling at the fourth row. Never too small;
-    // the scale itself is allowed 3 %, as the spacing below.
+    // The mask of lamps is too large, never too small: a lamp fifty times as bright as white is clipped, and its blur
+    // and glow reach about two pixels beyond its edge, 9 cm along the ceiling at the fourth row. The scale may be off
+    // by 3 %, as the spacing below.
     let side = f64::from(room.grid.size.x);
     let two_pixels = 2.0 * 4.7f64.powi(2) / (transfer.params.plane_distance * focal);
     let most = 1.03 * ((side + 2.0 * two_pixels) * (side + 2.0 * 2.0 * 4.7 / focal)).sqrt();
@@ -77,7 +77,7 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     let (spacing, period) = (spacings[spacings.len() / 2], f64::from(room.grid.period.min_element()));
     assert!((spacing / period - 1.0).abs() < 0.03, "lamps {spacing} m apart, truly {period}");
 
-    // The colour: measured again with other paths, the ceiling of the lit scene has the photo's.
+    // Colour: measured again with other paths, the ceiling of the lit scene has the colour of the photo's.
     let lit = results.lit.as_ref().unwrap();
     let mesh = lit.placed.mesh;
     let triangles: Vec<_> = (0..lit.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
@@ -106,7 +106,7 @@ fn noise_in_the_photo_does_not_change_the_design() {
         pool.run(|| transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| {})).unwrap();
         let emission = transfer.results.emission.as_ref().unwrap();
         assert!(matches!(emission.continuation, Continuation::Lattice(_)), "{seed}: {:?}", emission.continuation);
-        // As many lamps as the ceiling has room for, and no other pieces of light.
+        // The ceiling has as many lamps as fit, and no other lit regions.
         let ceiling = transfer.results.unsolved.as_ref().unwrap().surface.size.as_dvec2();
         let periods = ceiling / room.grid.period.as_dvec2();
         let (fewest, most) = (periods.floor().element_product(), (periods.floor() + 1.0).element_product());
@@ -134,12 +134,12 @@ fn the_pattern_lies_on_the_surface_as_it_is_told_to() {
         list[list.len() / 2]
     };
 
-    // Lamps of half a metre; of their bounding boxes, so within a texel on each side.
+    // Lamps of half a metre: their bounding boxes are correct within a texel on each side.
     let (lamps, texel, _) = lay(Pattern { scale: Scale::Lamp(0.5), ..Pattern::default() }, &[]);
     let length = median(lamps.iter().map(|l| l.size.x * texel).collect());
     assert!((length - 0.5).abs() < 0.05, "{length} m");
 
-    // At a spacing of 0.6 m, texels of 1 cm, half a metre from every edge, and none beneath a duct.
+    // At a spacing of 0.6 m, with texels of 1 cm, half a metre from every edge, and no lamp under a duct.
     let duct = DVec4::new(2.0, 0.0, 3.0, 4.0);
     let settings = Pattern { scale: Scale::Spacing(0.6), texel_size: 0.01, margin: 0.5, ..Pattern::default() };
     let (lamps, texel, surface) = lay(settings, &[duct]);
@@ -157,7 +157,7 @@ fn the_pattern_lies_on_the_surface_as_it_is_told_to() {
     let spacing = median(lamps.iter().map(nearest).collect());
     assert!((spacing - 0.6).abs() < 0.03, "{spacing} m");
 
-    // Turned: the same lamps along other axes, and the rectangle of the texture around the surface.
+    // Rotated: the same lamps along other axes, and the texture's bounding rectangle around the surface.
     let (_, _, turned) = lay(Pattern { rotation: 0.4, ..Pattern::default() }, &[]);
     assert!((turned.u_axis.dot(surface.u_axis) - 0.4f32.cos()).abs() < 1e-5);
     let (sin, cos) = 0.4f64.sin_cos();
@@ -178,7 +178,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     assert_eq!((late.kind, late.message.contains("run stage Lights")), (ErrorKind::InvalidOperation, true), "{late}");
     let backwards = pool.run(|| transfer.run(Stage::Render, Stage::View, monitor.job(), |_| {})).unwrap_err();
     assert_eq!(backwards.kind, ErrorKind::InvalidArgument);
-    // Settings of the last stage, and the name of the surface, are looked at before anything is done.
+    // Settings of the last stage and the name of the surface are checked before the work starts.
     let mut wrong = transfer.clone();
     wrong.params.render.width = 0;
     let early = pool.run(|| wrong.run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap_err();
@@ -189,7 +189,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     assert_eq!(early.kind, ErrorKind::NotFound);
     assert!(nowhere.results.view.is_none());
 
-    // Cancel when the lights have been found; then go on from there.
+    // Cancel when the lights have been found; then resume from there.
     let cancelling = Monitor::default();
     let run = pool.run(|| {
         transfer.run(Stage::View, Stage::Render, cancelling.job(), |results| {
@@ -203,7 +203,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     pool.run(|| transfer.run(Stage::Unwarp, Stage::Emission, monitor.job(), |_| {})).unwrap();
     assert!(transfer.results.emission.is_some());
 
-    // A texture of the caller's own takes the place of the synthesised one.
+    // A texture of the caller replaces the synthesised one.
     let stripe = Image::from_fn(12, 8, |x, _| if x == 3 { [1.0, 0.9, 0.8] } else { [0.0; 3] }).unwrap();
     transfer.input.texture = Some(Arc::new(stripe.clone()));
     pool.run(|| transfer.run(Stage::Emission, Stage::Relight, monitor.job(), |_| {})).unwrap();
@@ -216,7 +216,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     assert_eq!(black.kind, ErrorKind::Degenerate, "{black}");
     transfer.input.texture = None;
 
-    // A surface that is not there, and a plane without light.
+    // A missing surface, and a plane without light.
     transfer.input.surface = "No such thing".into();
     let wrong = pool.run(|| transfer.run(Stage::Emission, Stage::Emission, monitor.job(), |_| {})).unwrap_err();
     assert_eq!(wrong.kind, ErrorKind::NotFound, "{wrong}");

@@ -1,8 +1,8 @@
-//! The whole loop on a truth that is known: a room is rendered with known lamps, and the transfer from that picture onto the
-//! *same* room gives it its own light back: the colour within the interval that is stated, and the intensity up to exposure.
+//! The whole pipeline on a known truth: a room is rendered with known lamps, and the transfer from that picture onto
+//! the *same* room must reproduce its light: the colour within the stated interval, and the intensity up to exposure.
 //!
-//! The picture is all of the ceiling, from below, as an ideal camera sees it: without glow, noise and white balance, whose
-//! effects `transfer_demo` looks at. Lamps are clipped in it, as in any photo.
+//! An ideal camera sees the whole ceiling from below, without glow, noise and white balance, which `transfer_demo`
+//! tests. Lamps are clipped, as in any photo.
 
 use glam::{Vec3, vec3};
 use luxfer::exec::Pool;
@@ -18,13 +18,13 @@ const WIDE: f32 = 4.0;
 const HIGH: f32 = 2.6;
 /// Pixels along each side of the picture.
 const SIDE: usize = 160;
-/// Of the lamps, in cd/m²: warm.
+/// Warm emission of the lamps in cd/m².
 const EMISSION: Vec3 = vec3(3000.0, 2300.0, 1500.0);
 
-/// A room with a wooden floor, a red curtain and furniture, dark.
+/// A room with a wooden floor, a red curtain and dark furniture.
 fn room() -> Scene {
     let (x, y, z) = (Vec3::X * WIDE, Vec3::Y * HIGH, Vec3::Z * WIDE);
-    // Without gloss, which the mean of a target leaves out.
+    // Without gloss, because the mean of a target ignores it.
     let matt = |name: &str, albedo: Vec3| Material { ior: 1.0, double_sided: false, ..Material::diffuse(name, albedo) };
     let side =
         |name: &str, corner, u, v, material| Mesh { name: name.into(), ..Mesh::parallelogram(corner, u, v, material) };
@@ -103,12 +103,12 @@ fn a_room_gets_its_own_light_back() {
     let interval = solution.half_width / solution.scale;
     println!("recovered {found} of {EMISSION}: off by {off}, stated ± {interval}, ΔE2000 {}", solution.delta_e);
     assert!(interval.max_element() <= 0.005, "{solution:?}");
-    // The picture's own noise, and that pixels beside a lamp are left out of its mean, come on top.
+    // The noise of the picture itself and the pixels beside lamps, which the mean leaves out, add to the error.
     assert!(off.abs().cmple(interval + 0.004).all(), "off by {off}, stated ± {interval}");
     let colour = off - (off.x + off.y + off.z) / 3.0;
     assert!(colour.abs().cmple(interval).all(), "the colour is off by {colour}, stated ± {interval}");
 
-    // Taken twice as bright, nothing but the intensity changes.
+    // A photo that is stated to be twice as bright changes the intensity only.
     let (brighter, _) = run(2.0 * white);
     assert!((brighter / found - 2.0).abs().max_element() < 1e-3, "{brighter} {found}");
 }

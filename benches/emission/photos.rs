@@ -1,4 +1,5 @@
-//! Patterns from photos: a ceiling photographed in perspective and noise, the photos of real rooms, and the glass ceiling.
+//! Patterns from photos: a ceiling photographed in perspective with noise, photos of real rooms, and the glass
+//! ceiling.
 
 use crate::harness::{Table, absent, figure};
 use crate::score::{STATISTICS, Score};
@@ -18,18 +19,18 @@ use luxfer::transfer::{self, Stage, Transfer};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Standard deviation of the blur of the light mask in photo pixels, that of a transfer.
+/// Standard deviation of the blur of the light mask in photo pixels, as in a transfer.
 const EDGE_BLUR: f32 = 0.9;
 /// Side of the plane that the photo shows, in unwarped pixels.
 const PLANE: usize = 480;
 /// Standard deviation of the noise of a pixel, relative to white.
 const NOISE: [f32; 3] = [0.0, 0.05, 0.15];
 
-/// Linear colour of the lamps that are photographed, and of the plane about them.
+/// Linear colour of the photographed lamps, and of the plane around them.
 const LAMP: [f32; 3] = [0.9, 0.8, 0.7];
 const PLANE_LIGHT: f32 = 0.1;
 
-/// Every design, photographed from aside, unwarped and continued.
+/// Photographs every design at an angle, unwarps and continues it.
 pub fn perspective() {
     let mut table = Table::new(["design", "noise %"].into_iter().chain(STATISTICS).chain(["broken"]));
     let mut all = Score::default();
@@ -55,7 +56,8 @@ pub fn perspective() {
                 })
             });
             let photo = photo.expect("a photo");
-            // Light is what is brighter than halfway, as a segmentation would say of pixels and their neighbours.
+            // The probability of light, as a segmentation would give it: it rises with the smoothed brightness from 0
+            // at 0.3 to 1 at 0.7.
             let smooth = luxfer::image::pyramid::blur(&photo, 0.9, Monitor::default().job()).expect("a blur");
             let sure = Image::from_fn(640, 384, |x, y| [((smooth.rgb(x, y).x - 0.3) / 0.4).clamp(0.0, 1.0)]);
             let (exemplar, result) = continued(&photo, &sure.expect("a mask"), &Homography(to_photo));
@@ -91,8 +93,8 @@ fn data() -> PathBuf {
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from)
 }
 
-/// Photos of the data whose lights are no pattern in a plane, and why.
-const WITHOUT: [(&str, &str); 7] = [
+/// Photos of the data whose lights are no pattern in a plane, with the reason.
+const NO_PATTERN: [(&str, &str); 7] = [
     ("chester_bar", "one skylight, cut off by the photo"),
     ("chester_chandelier", "chandeliers hang in the room, not in a plane"),
     ("peabody_gallery", "pendants hang in the room, four of them"),
@@ -102,7 +104,7 @@ const WITHOUT: [(&str, &str); 7] = [
     ("yud_076", "coves hide the lamps: what is bright is the ceiling"),
 ];
 
-/// Real photos, by the strokes that the tests use, unwarped and continued to twice their size.
+/// Real photos with the strokes of the tests, unwarped and continued to twice their size.
 pub fn real() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/strokes");
     let mut names: Vec<String> = std::fs::read_dir(&root)
@@ -124,7 +126,7 @@ pub fn real() {
         }
     }
     table.print("Real photos, unwarped and continued to twice their size");
-    WITHOUT.iter().for_each(|(name, reason)| println!("# {name} is no exemplar: {reason}"));
+    NO_PATTERN.iter().for_each(|(name, reason)| println!("# {name} is no exemplar: {reason}"));
 }
 
 /// The file of a photo.
@@ -133,7 +135,7 @@ fn photo_of(name: &str) -> Option<PathBuf> {
     files.iter().map(|file| data().join(file)).find(|file| file.exists())
 }
 
-/// The exemplar that a transfer unwarps from a photo of the data; the photo and the map into it.
+/// The exemplar that a transfer unwarps from a photo of the data, with the photo and the map from texels into it.
 fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homography), String> {
     let text = |e: luxfer::error::Error| e.message;
     let photo = io::load(&photo_of(name).ok_or("no photo")?, Encoding::Srgb).map_err(text)?;
@@ -147,7 +149,7 @@ fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homo
     let (Some(lights), Some(plane)) = (&results.lights, &results.unwarped) else { return Err("no plane".into()) };
     let (width, height) = (plane.image.width, plane.image.height);
     let job = Monitor::default();
-    // As a transfer does, so that a clipped lamp's edge is no staircase of whole pixels.
+    // Blur the mask as a transfer does, so that the edge of a clipped lamp is no staircase of whole pixels.
     let smooth = luxfer::image::pyramid::blur(&lights.confidence, EDGE_BLUR, job.job()).map_err(text)?;
     let light = rectify::warp(&smooth, &plane.to_photo, width, height, job.job()).map_err(text)?;
     let photo = transfer.input.photo.as_deref().cloned().unwrap_or_default();
@@ -213,7 +215,7 @@ fn table_of_real() -> Table {
     ])
 }
 
-/// Continues an exemplar to twice its size, and holds it against it.
+/// Continues an exemplar to twice its size, and compares the result with the exemplar.
 fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
     let (width, height) = (2 * input.light.width, 2 * input.light.height);
     let params = Params { width, height, ..Params::default() };
@@ -243,7 +245,7 @@ fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
     result
 }
 
-/// How differently far apart the lamps of two textures are.
+/// Difference of the distances between lamps in two textures.
 pub fn pair_distance(of: &Emission, from: &Emission) -> Option<f64> {
     let centres = |e: &Emission| whole(e).iter().map(|l| l.centre).collect::<Vec<DVec2>>();
     let size = |e: &Emission| DVec2::new(e.mask.width as f64, e.mask.height as f64);

@@ -1,4 +1,5 @@
-//! Detail from the photo: what a texel shows against what the plane shows there, and against an elliptical weighted average.
+//! Detail from the photo: texels against the true mean of the plane over them, and against an elliptical weighted
+//! average (EWA).
 
 use crate::harness::{Clock, Table, figure, time};
 use glam::{DMat3, DVec2, Vec3};
@@ -7,13 +8,13 @@ use luxfer::geometry::Homography;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 
-/// Texels of a side.
+/// Texels along a side.
 const SIDE: usize = 64;
-/// Variance of a texel and of a pixel under a Gaussian: as published (Greene and Heckbert 1986), half a side being its standard
-/// deviation; and as of the square itself.
+/// Variance of the Gaussians for a texel and a pixel: as published (Greene and Heckbert 1986), with half a side as
+/// standard deviation; and the variance of the square itself.
 const WIDTHS: [(&str, f64); 2] = [("EWA", 0.25), ("EWA, as narrow as a texel", 1.0 / 12.0)];
 
-/// Lights with fine detail and sharp edges, in pixels of the photo where it shows them largest.
+/// Lights with fine detail and sharp edges, in pixels of the photo at its largest scale.
 fn pattern(p: DVec2) -> f64 {
     let fine = 0.5 + 0.2 * (0.9 * p.x + 0.2 * p.y).sin() + 0.3 * (0.13 * p.x - 0.31 * p.y).sin();
     let is_bright = (0.11 * p.x).sin() * (0.02 * p.x + 0.09 * p.y).sin() > 0.0;
@@ -26,7 +27,7 @@ fn mean(samples: usize, corner: DVec2, map: impl Fn(DVec2) -> DVec2) -> f64 {
     (0..samples * samples).map(|i| pattern(map(corner + step(i)))).sum::<f64>() / (samples * samples) as f64
 }
 
-/// Photos of the pattern from three sides, recovered at texels of a fraction to many of their pixels.
+/// Recovers photos of the pattern from three sides, with texels of a fraction of a pixel up to many pixels.
 pub fn recovery() {
     let names = ["view", "pixels per texel", "ours", WIDTHS[0].0, WIDTHS[1].0, "ours us", "EWA us"];
     let mut table = Table::new(names);
@@ -60,7 +61,8 @@ pub fn recovery() {
     figure("emission.recovery.behind_ewa", behind as f64, "cases");
 }
 
-/// A photo of the pattern, and the map from texels into it. The far end of the plane is smaller by about `far`.
+/// A photo of the pattern, and the map from texels into it. The far end of the plane is smaller by a factor of about
+/// `far`.
 fn photograph(pixels: f64, squeezed: f64, far: f64) -> (Homography, Image) {
     let size = SIDE as f64 * pixels;
     let rows = [
@@ -77,7 +79,7 @@ fn photograph(pixels: f64, squeezed: f64, far: f64) -> (Homography, Image) {
     (Homography(map), photo.expect("a photo"))
 }
 
-/// A texture of all of the plane, and the seconds that its texels take.
+/// A texture of the whole plane, and the seconds that its texels take.
 fn recovered(photo: &Image, map: Homography) -> (f64, Image) {
     let image = |channels: usize| {
         let mut image = Image::new(SIDE, SIDE, channels).expect("an image");
@@ -93,8 +95,8 @@ fn recovered(photo: &Image, map: Homography) -> (f64, Image) {
     time(Clock::Process, render)
 }
 
-/// Heckbert's filter (1989, 3.5): a Gaussian over the ellipse that a texel is in the photo, widened by that of a pixel; its weights
-/// from a table over the square of the distance, which is added up along each row.
+/// Heckbert's filter (1989, 3.5): a Gaussian over the ellipse of a texel in the photo, widened by the Gaussian of a
+/// pixel; its weights come from a table over the squared distance, which is updated along each row.
 struct Ewa {
     variance: f64,
     table: Vec<f32>,
@@ -102,10 +104,10 @@ struct Ewa {
 
 impl Ewa {
     const STEPS: usize = 1024;
-    /// Square of the distance in standard deviations at which it ends.
+    /// Squared distance in standard deviations at which the filter ends.
     const END: f64 = 9.0;
-    /// Most pixels along the derivatives of a texel.
-    const MOST: f64 = 64.0;
+    /// Maximum number of pixels along the derivatives of a texel.
+    const MAX_PIXELS: f64 = 64.0;
 
     fn new(variance: f64) -> Self {
         let weight = |i: usize| (-0.5 * Self::END * (i as f64 + 0.5) / Self::STEPS as f64).exp() as f32;
@@ -114,8 +116,9 @@ impl Ewa {
 
     fn at(&self, photo: &Image, map: Homography, texel: DVec2) -> f64 {
         let at = map.apply(texel);
-        let derivative =
-            |step: DVec2| (map.apply(texel + step * 0.5) - map.apply(texel - step * 0.5)).clamp_length_max(Self::MOST);
+        let derivative = |step: DVec2| {
+            (map.apply(texel + step * 0.5) - map.apply(texel - step * 0.5)).clamp_length_max(Self::MAX_PIXELS)
+        };
         let (u, v) = (derivative(DVec2::X), derivative(DVec2::Y));
         let [xx, yy] = [u.x * u.x + v.x * v.x + 1.0, u.y * u.y + v.y * v.y + 1.0].map(|m| m * self.variance);
         let xy = (u.x * u.y + v.x * v.y) * self.variance;

@@ -1,7 +1,7 @@
-//! How far a texture is from the design it continues, statistic by statistic.
+//! Difference of a texture from the design it continues, statistic by statistic.
 //!
-//! All are means weighed by a Hann window, which fades to nothing at the border, whatever made the texture: where the border cuts the
-//! pattern does not matter, and no method's own idea of its period does.
+//! All are means weighted by a Hann window, which falls to zero at the border: cuts of the pattern at the border do
+//! not count, whatever the method, and no method's own estimate of the period enters.
 
 use crate::{Design, photos};
 use glam::DVec2;
@@ -10,22 +10,22 @@ use luxfer::emission::{Emission, Luminaire, statistics};
 use luxfer::image::colour::luminance;
 use std::f64::consts::PI;
 
-/// Relative differences of lamps per area, mean area, light per area, areas in order, and mean distance to the nearest other; the
-/// share of the pairs of lamps that are at other distances; and the root mean square distance from the lattice in parts of the
-/// period.
+/// Relative differences of: lamps per area, mean area, light per area, sorted areas, mean distance to the nearest
+/// lamp. Then the share of pairs of lamps whose distance does not occur in the design, and the root mean square
+/// distance from the lattice in periods.
 pub const STATISTICS: [&str; 7] = ["lamps %", "area %", "light %", "sizes %", "nearest %", "pairs %", "phase %"];
 
-/// A texture against the design it continues.
+/// Score of a texture against the design it continues.
 #[derive(Clone, Copy, Default)]
 pub struct Score {
-    /// As [`STATISTICS`].
+    /// One value for each of [`STATISTICS`].
     pub off: [f64; STATISTICS.len()],
-    /// Lamps smaller than 70 % of the least of the design, or larger than 130 % of its largest.
+    /// Lamps smaller than 70 % of the smallest lamp of the design, or larger than 130 % of its largest.
     pub broken: usize,
 }
 
 impl Score {
-    /// Of lamps that the exemplar shows at `filled` of the places and as bright as `luminance`.
+    /// Scores a texture whose exemplar shows lamps of the given luminance at a share `filled` of the places.
     pub fn of(result: &Emission, design: &Design, filled: f64, luminance_of_lamps: f64) -> Self {
         let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
         let lamps = photos::whole(result);
@@ -33,14 +33,14 @@ impl Score {
         let cell = design.periods[0].perp_dot(design.periods[1]).abs() / filled;
         let [least, largest] = [design.areas[1], design.areas[2]];
 
-        // Over the plane, and over lamps.
+        // Weights of the plane and of the lamps.
         let plane = size.element_product() / 4.0;
         let seen: f64 = result.luminaires.iter().map(|l| hann(l.centre, size)).sum();
         let all: f64 = lamps.iter().map(|l| hann(l.centre, size)).sum();
         let area = lamps.iter().map(|l| hann(l.centre, size) * l.area).sum::<f64>() / all;
         let light = light(result, size) / luminance_of_lamps / plane * cell / design.areas[0];
 
-        // Distances to the nearest of those of the design in as large a part of it.
+        // Mean distance to the nearest lamp in a part of the design of equal size.
         let truth = design.places(size);
         let nearest = |points: &[DVec2]| {
             let weights: f64 = points.iter().map(|p| hann(*p, size)).sum();
@@ -63,7 +63,7 @@ impl Score {
         }
     }
 
-    /// The largest difference of a statistic, the phase aside, which has a goal of its own.
+    /// The largest difference of a statistic, except the phase, which has its own target.
     pub fn worst(&self) -> f64 {
         self.off[..6].iter().copied().fold(0.0, f64::max)
     }
@@ -76,32 +76,33 @@ impl Score {
         self.off[6]
     }
 
-    /// Each statistic at its worst of both.
+    /// The larger value of each statistic of the two.
     pub fn worse(self, other: Self) -> Self {
         Self { off: std::array::from_fn(|k| self.off[k].max(other.off[k])), broken: self.broken + other.broken }
     }
 
-    /// The number of statistics in which another is nearer to the design, rounding aside, broken lamps among them.
+    /// The number of statistics, including broken lamps, in which the other is nearer to the design by more than
+    /// rounding.
     pub fn behind(&self, other: &Self) -> usize {
         const ROUNDING: f64 = 1e-3;
         let nearer = self.off.iter().zip(&other.off).filter(|(own, other)| **own > **other + ROUNDING).count();
         nearer + usize::from(self.broken > other.broken)
     }
 
-    /// Columns of a table: those of [`STATISTICS`], and broken lamps.
+    /// Columns of a table: [`STATISTICS`] and broken lamps.
     pub fn columns(&self) -> impl Iterator<Item = String> {
         let broken = self.broken.to_string();
         self.off.iter().map(|off| format!("{:.2}", 100.0 * off)).chain([broken])
     }
 }
 
-/// What a place weighs: 1 in the middle, a quarter on average.
+/// Weight of a place: 1 in the middle, a quarter on average.
 fn hann(at: DVec2, size: DVec2) -> f64 {
     let along = |at: f64, side: f64| (PI * at / side).sin().powi(2);
     along(at.x, size.x) * along(at.y, size.y)
 }
 
-/// Luminance of all texels, as each weighs.
+/// Weighted sum of the luminance of all texels.
 fn light(result: &Emission, size: DVec2) -> f64 {
     let texels = result.texture.data.chunks_exact(3).enumerate();
     let width = result.texture.width;
@@ -114,7 +115,8 @@ fn light(result: &Emission, size: DVec2) -> f64 {
         .sum()
 }
 
-/// Mean difference of the areas of lamps from those of the design, both in order of size, relative to the mean area (Wasserstein).
+/// Mean difference of the sorted areas of lamps from the sorted areas of the design, relative to the mean area
+/// (Wasserstein distance).
 fn sizes(lamps: &[&Luminaire], design: &Design, size: DVec2) -> f64 {
     let [mean, least, largest] = design.areas;
     let small = if largest > least { (largest - mean) / (largest - least) } else { 0.0 };
@@ -123,7 +125,7 @@ fn sizes(lamps: &[&Luminaire], design: &Design, size: DVec2) -> f64 {
     let all: f64 = sorted.iter().map(|l| l.1).sum();
     let (mut below, mut off) = (0.0, 0.0);
     for (area, weight) in sorted {
-        // The part of it that the design has small, and the rest.
+        // The part of the interval with the smaller area of the design, and the rest.
         let share = weight / all;
         let of_small = (small - below).clamp(0.0, share);
         off += of_small * (area - least).abs() + (share - of_small) * (area - largest).abs();
@@ -132,8 +134,8 @@ fn sizes(lamps: &[&Luminaire], design: &Design, size: DVec2) -> f64 {
     if all > 0.0 { off / mean } else { 1.0 }
 }
 
-/// Share of the pairs of lamps that are at other distances than those of the design, in the part of the texture that shows all
-/// lamps whose centres lie in it.
+/// Share of pairs of lamps whose distance does not occur in the design, within the part of the texture where lamps are
+/// whole.
 fn pair_distance(centres: &[DVec2], size: DVec2, design: &Design) -> f64 {
     let margin = design.areas[2].sqrt();
     let inner = size - 2.0 * margin;

@@ -1,20 +1,21 @@
-//! The clocks that work is held against.
+//! The clocks for timing.
 
 use std::time::Duration;
 
-/// Which clock a piece of work is held against.
+/// A clock for timing.
 #[derive(Clone, Copy)]
 pub enum Clock {
-    /// Time on the wall: for work on several threads.
+    /// Wall-clock time: for work on several threads.
     Wall,
-    /// Processor time of the calling thread: for work on one thread, blind to what else the machine does.
+    /// Processor time of the calling thread: for work on one thread, unaffected by other work on the machine.
     Thread,
-    /// Processor time of all threads of this process: what work on several of them costs, whoever else is there.
+    /// Processor time of all threads of this process: the cost of work on several threads, unaffected by other
+    /// processes.
     Process,
 }
 
 impl Clock {
-    /// What it shows, from any start.
+    /// The time of the clock since an arbitrary start.
     pub fn now(self) -> Duration {
         let clock = match self {
             Self::Wall => libc::CLOCK_MONOTONIC,
@@ -28,7 +29,7 @@ impl Clock {
     }
 }
 
-/// Seconds that `work` takes, and what it gives.
+/// Seconds that `work` takes, and its result.
 pub fn time<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     let start = clock.now();
     let value = work();

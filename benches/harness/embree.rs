@@ -1,4 +1,4 @@
-//! Embree 3, if the machine has it: opened at run time, so that nothing here depends on it.
+//! Embree 3, if the machine has it: opened at run time, so that the benches do not depend on it.
 
 use glam::Vec3;
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
@@ -31,7 +31,7 @@ pub struct RayHit {
     pub instance: u32,
 }
 
-/// `RTCIntersectContext` where there is one level of instances, as Debian builds it.
+/// `RTCIntersectContext` for one level of instances, as Debian builds it.
 #[repr(C)]
 struct Context {
     flags: c_int,
@@ -72,7 +72,7 @@ impl Ray {
 
 type Handle = *mut c_void;
 
-/// The functions of the library that are used, by their names.
+/// The functions of the library that the benches use, by their names.
 struct Functions {
     new_device: unsafe extern "C" fn(*const c_char) -> Handle,
     release_device: unsafe extern "C" fn(Handle),
@@ -90,11 +90,11 @@ struct Functions {
     occluded: unsafe extern "C" fn(Handle, *mut Context, *mut Ray),
 }
 
-/// The library, and a device of it.
+/// The library, and one of its devices.
 pub struct Embree {
     functions: Functions,
     device: Handle,
-    /// Bytes the device holds, kept up to date by Embree.
+    /// Bytes of memory of the device, updated by Embree.
     held: Box<AtomicIsize>,
 }
 
@@ -105,11 +105,11 @@ extern "C" fn count(held: Handle, bytes: isize, _: bool) -> bool {
 }
 
 impl Embree {
-    /// Opens the library with a number of threads to build with.
+    /// Opens the library with a number of threads for building.
     pub fn open(threads: usize) -> Result<Self, String> {
         let functions = load()?;
         let config = std::ffi::CString::new(format!("threads={threads}")).map_err(|e| e.to_string())?;
-        // SAFETY: the signatures are those of the header of Embree 3.
+        // SAFETY: the signatures match the header of Embree 3.
         let device = unsafe { (functions.new_device)(config.as_ptr()) };
         if device.is_null() {
             return Err("rtcNewDevice failed".into());
@@ -120,7 +120,7 @@ impl Embree {
         Ok(Self { functions, device, held })
     }
 
-    /// Builds a scene of one triangle mesh; the time this takes is what building costs, with the copying of the input.
+    /// Builds a scene of one triangle mesh. The time of this call is the building time; it includes copying the input.
     pub fn build(&self, positions: &[Vec3], triangles: &[[u32; 3]], robust: bool) -> Scene<'_> {
         const TRIANGLE: c_int = 0;
         const FORMAT_UINT3: c_int = 0x5003;
@@ -128,7 +128,8 @@ impl Embree {
         const ROBUST: c_int = 1 << 2;
         let f = &self.functions;
         let before = self.held.load(Ordering::Relaxed);
-        // SAFETY: buffers have the sizes asked for (Embree pads the end of vertices itself), handles are released once.
+        // SAFETY: buffers have the requested sizes (Embree pads the end of vertices itself), and handles are released
+        // once.
         let handle = unsafe {
             let scene = (f.new_scene)(self.device);
             (f.scene_flags)(scene, if robust { ROBUST } else { 0 });
@@ -158,7 +159,7 @@ impl Drop for Embree {
 pub struct Scene<'a> {
     embree: &'a Embree,
     handle: Handle,
-    /// Memory that building it left allocated, its copy of the mesh included.
+    /// Memory that remains allocated after building, including Embree's copy of the mesh.
     pub bytes: usize,
 }
 
@@ -197,7 +198,7 @@ fn load() -> Result<Functions, String> {
         let address = unsafe { libc::dlsym(library, name.as_ptr()) };
         if address.is_null() { Err(format!("libembree3 has no {}", name.to_string_lossy())) } else { Ok(address) }
     };
-    // SAFETY: each type above is that of the function of this name in the header.
+    // SAFETY: each type matches the function of this name in the header.
     unsafe {
         use std::mem::transmute as typed;
         Ok(Functions {

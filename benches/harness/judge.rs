@@ -1,4 +1,5 @@
-//! What a stylised picture is worth, whoever made it: judged by image and guides alone, at every offset of the exemplar.
+//! Quality of a stylised picture, whatever program made it: computed from image and guides alone, with a search at
+//! every offset of the exemplar.
 
 use luxfer::image::Image;
 use luxfer::image::colour::linear_to_srgb;
@@ -9,17 +10,17 @@ use std::collections::HashSet;
 
 /// Width of the patches judged.
 const PATCH: usize = 5;
-/// Patches that are compared with every patch of the exemplar.
+/// Number of patches that are compared with every patch of the exemplar.
 const SAMPLES: usize = 300;
 
 pub struct Judged {
-    /// Eq. 3 for the picture, per patch and pixel, channels in `[0, 1]`: colour counts 1, the guides together 2. Its nearest
-    /// patches are found by PatchMatch from nothing, the same for every picture.
+    /// Eq. 3 for the picture, per patch and pixel, channels in `[0, 1]`: colour has weight 1, the guides together 2.
+    /// PatchMatch finds the nearest patches from a random start, with equal settings for every picture.
     pub energy: f64,
-    /// Share of the picture's patches that the exemplar contains to the bit (8 bits a channel), in %.
+    /// Share of the picture's patches in % that the exemplar contains unchanged (at 8 bits per channel).
     pub verbatim: f64,
-    /// Mean squared difference per channel, in 8-bit steps, to the patch of the exemplar that looks most alike, which is
-    /// looked for at every offset: 0 for a copy. [`SAMPLES`] patches, compared with all.
+    /// Mean squared difference per channel, in 8-bit steps, to the most similar patch of the exemplar, over all
+    /// offsets: 0 for a copy. From [`SAMPLES`] patches.
     pub coherence: f64,
 }
 
@@ -32,7 +33,7 @@ pub fn judge(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> Jud
     }
 }
 
-/// As it is displayed.
+/// The image with display encoding.
 fn encoded(image: &Image) -> Image {
     let mut out = image.clone();
     out.data.iter_mut().for_each(|v| *v = linear_to_srgb(*v).clamp(0.0, 1.0));
@@ -44,12 +45,12 @@ fn everywhere(of: &QuantisedImage) -> Domain {
     Domain::new(of.width, of.height, PATCH, None, false).expect("an image as large as a patch")
 }
 
-/// Looks for the nearest patches, whatever else is used.
+/// Finds the nearest patches.
 fn nearest<'a>(query: &'a QuantisedImage, base: &'a QuantisedImage, allowed: &'a Domain) -> Search<'a> {
     Search { query, base, allowed, patch: PATCH, occurrence: None, kernel: Kernel::detect(), seed: 9 }
 }
 
-/// [`Judged::energy`] alone.
+/// [`Judged::energy`] only.
 pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f64 {
     let monitor = Monitor::default();
     let each = 2.0 / (3 * guides.len()) as f64;
@@ -113,7 +114,7 @@ fn coherence(picture: &Image, artwork: &Image) -> f64 {
     let mut rng = Rng::new(5, &[]);
     let mut chosen = vec![false; field.at.len()];
     (0..SAMPLES).for_each(|_| chosen[rng.below(field.at.len())] = true);
-    // A good match first, so that comparing with all stops early.
+    // Start with a good match, so that comparisons with all patches stop early.
     for index in 0..4 {
         search
             .sweep(&mut field, Sweep { index, radius: 512, initial_samples: 64 }, monitor.job(), |i| chosen[i])

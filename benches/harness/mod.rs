@@ -1,10 +1,11 @@
-//! What all benches share: headline figures, interleaved timing, tables, plots, and the scenes they run on.
+//! Common parts of all benches: headline figures, interleaved timing, tables, plots, and scenes.
 //!
-//! A bench is a program (`harness = false`): it prints tables for people, writes curves into `out/bench/`, and prints one
-//! line per headline figure, `figure NAME VALUE UNIT`. Rivals are timed in turns within one process, and the figure is
-//! the median of the ratios of the rounds: what else the machine does then weighs on both alike.
+//! A bench is a program (`harness = false`): it prints tables for people, writes curves into `out/bench/`, and prints
+//! one line per headline figure, `figure NAME VALUE UNIT`. Competing implementations are timed in turns within one
+//! process, and the figure is the median of the ratios over the rounds, so other work on the machine affects all of
+//! them equally.
 
-// Each bench is a crate of its own and uses a part of this.
+// Each bench is a separate crate and uses a part of this module.
 #![allow(dead_code)]
 
 mod clock;
@@ -19,7 +20,7 @@ pub use clock::{Clock, time};
 
 /// One headline figure.
 pub fn figure(name: &str, value: f64, unit: &str) {
-    // Four significant digits whatever the size; nothing, rounding aside, needs one.
+    // Four significant digits for any magnitude; values that are zero but for rounding need no digits.
     let digits = if value.abs() < 1e-12 { 0 } else { (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize };
     println!("figure {name} {value:.digits$} {unit}");
 }
@@ -30,20 +31,20 @@ pub fn absent(name: &str, reason: &str) {
     println!("# {name} is absent: {reason}");
 }
 
-/// Times of several rivals, taken in turns.
+/// Times of several contenders, measured in turns.
 pub struct Timings {
-    /// `seconds[rival][round]`.
+    /// `seconds[contender][round]`.
     pub seconds: Vec<Vec<f64>>,
 }
 
-/// Runs every rival once per round, each round starting with another one. A round before the first is not counted.
-pub fn interleaved(clock: Clock, rounds: usize, rivals: &mut [&mut dyn FnMut()]) -> Timings {
-    let mut seconds = vec![Vec::with_capacity(rounds); rivals.len()];
-    rivals.iter_mut().for_each(|rival| rival());
+/// Runs every contender once per round, each round starting with another one. A first round is not counted.
+pub fn interleaved(clock: Clock, rounds: usize, contenders: &mut [&mut dyn FnMut()]) -> Timings {
+    let mut seconds = vec![Vec::with_capacity(rounds); contenders.len()];
+    contenders.iter_mut().for_each(|contender| contender());
     for round in 0..rounds {
-        for turn in 0..rivals.len() {
-            let index = (round + turn) % rivals.len();
-            let (taken, ()) = time(clock, &mut *rivals[index]);
+        for turn in 0..contenders.len() {
+            let index = (round + turn) % contenders.len();
+            let (taken, ()) = time(clock, &mut *contenders[index]);
             seconds[index].push(taken);
         }
     }
@@ -51,9 +52,9 @@ pub fn interleaved(clock: Clock, rounds: usize, rivals: &mut [&mut dyn FnMut()])
 }
 
 impl Timings {
-    /// Median seconds of one rival.
-    pub fn median(&self, rival: usize) -> f64 {
-        median(&self.seconds[rival])
+    /// Median seconds of one contender.
+    pub fn median(&self, contender: usize) -> f64 {
+        median(&self.seconds[contender])
     }
 
     /// Median over the rounds of the time of `above` divided by the time of `below`.
@@ -76,7 +77,7 @@ pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The value that a share `p` of the values lies below, interpolated; NaN of nothing.
+/// The quantile `p` of the values, interpolated; NaN for an empty list.
 pub fn quantile(values: &[f64], p: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -87,7 +88,7 @@ pub fn quantile(values: &[f64], p: f64) -> f64 {
     sorted[below] + (sorted[above] - sorted[below]) * (at - below as f64)
 }
 
-/// Starts [`peak_memory`] anew, where the system lets it.
+/// Resets [`peak_memory`], if the system allows it.
 pub fn forget_peak_memory() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }

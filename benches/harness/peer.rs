@@ -1,5 +1,5 @@
-//! A peer that runs beside the bench, in a process and a Python environment of its own, and does a piece of work whenever
-//! it is asked: so it can be timed in turns with ours, and what starting it costs is not counted.
+//! A peer program that runs in its own process and Python environment and performs a piece of work on request: it can
+//! be timed in turns with ours, without its start-up time.
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
@@ -31,7 +31,7 @@ impl Peer {
             return Err("the peer has no pipes".into());
         };
         let mut peer = Self { child, input, output: BufReader::new(output) };
-        // It says when it is ready.
+        // The peer writes a line when it is ready.
         peer.answer()?;
         Ok(peer)
     }

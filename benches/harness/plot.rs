@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Curves over one another on logarithmic axes. Points that are not positive have no place and are left out.
+/// Curves in one diagram with logarithmic axes. Points that are not positive are left out.
 pub struct Plot {
     pub title: String,
     pub x_label: String,
@@ -16,13 +16,13 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Of the part with the curves.
+/// Size of the part with the curves.
 const SIZE: [f64; 2] = [510.0, 385.0];
-/// Room for labels: left, top, bottom.
+/// Space for labels: left, top, bottom.
 const MARGIN: [f64; 3] = [70.0, 40.0, 55.0];
-/// Room for the names of the curves, beside a letter's width for each letter.
+/// Space for the names of the curves: a constant and the width of a letter.
 const LEGEND: [f64; 2] = [44.0, 6.6];
-/// Distinct also for those who do not tell red from green (Okabe and Ito 2008).
+/// Colours that people with red-green colour blindness can tell apart (Okabe and Ito 2008).
 const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"];
 
 /// Writes a file into `out/bench/`.
@@ -46,7 +46,7 @@ impl Plot {
         self.series.push(Series { name: name.into(), points: points.into_iter().collect() });
     }
 
-    /// Writes `out/bench/<name>.csv` and `.svg` and says so.
+    /// Writes `out/bench/<name>.csv` and `.svg` and prints their paths.
     pub fn write(&self, name: &str) -> std::io::Result<()> {
         write_out(&format!("{name}.csv"), &self.csv())?;
         write_out(&format!("{name}.svg"), &self.svg())?;
@@ -138,12 +138,12 @@ impl Axis {
         Self { low: low - pad, high: high + pad }
     }
 
-    /// From 0 at the low end to 1 at the high end.
+    /// Position of a value on the axis, from 0 at the low end to 1 at the high end.
     fn place(&self, value: f64) -> f64 {
         (value.log10() - self.low) / (self.high - self.low)
     }
 
-    /// Powers of ten, and what is between them where there are few.
+    /// Powers of ten, and further values between them on short axes.
     fn ticks(&self) -> Vec<f64> {
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;
         let steps: &[&str] = match self.high - self.low {

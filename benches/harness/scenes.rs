@@ -1,7 +1,7 @@
-//! The scenes that benches run on. Each has a camera and at least one light.
+//! The scenes of the benches. Each has a camera and at least one light.
 //!
-//! Made here: [`planes`], rooms of tessellated sheets, and the library's own demonstration rooms. Made by others, read
-//! from `LUXFER_TEST_DATA` (else `../shared/data`): [`cornell`], [`kitchen`], [`apartment`], [`sponza`].
+//! Generated: [`planes`], rooms of tessellated sheets, and the demonstration rooms of the library. By others, read
+//! from `LUXFER_TEST_DATA` (default `../shared/data`): [`cornell`], [`kitchen`], [`apartment`], [`sponza`].
 
 use glam::{Mat4, Vec2, Vec3};
 use luxfer::demo;
@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A scene to measure on.
+/// A scene with its camera.
 pub struct Setting {
     pub name: &'static str,
     pub scene: Scene,
@@ -28,7 +28,7 @@ impl Setting {
         self.scene.meshes.iter().map(|m| m.triangles.len()).sum()
     }
 
-    /// All triangles, numbered through the meshes in order as the library numbers them.
+    /// All triangles, in the order of the meshes, as the library numbers them.
     pub fn triangles(&self) -> Vec<[Vec3; 3]> {
         let meshes = &self.scene.meshes;
         meshes.iter().flat_map(|mesh| (0..mesh.triangles.len()).map(|t| mesh.corners(t))).collect()
@@ -39,7 +39,7 @@ impl Setting {
         self.size[0] as f32 / self.size[1] as f32
     }
 
-    /// A centre of every emissive triangle.
+    /// The centre of every emissive triangle.
     pub fn light_points(&self) -> Vec<Vec3> {
         let emits = |mesh: &&Mesh| self.scene.materials[mesh.material].emission != Vec3::ZERO;
         let lights = self.scene.meshes.iter().filter(emits);
@@ -47,12 +47,12 @@ impl Setting {
     }
 }
 
-/// What keeps a scene from being loaded.
+/// The reason why a scene cannot be loaded.
 pub type Absent = String;
 
 /// A closed room of ten tessellated sheets (six walls along the axes, four bumpy spheres) with about `triangles`
-/// triangles, and a lamp under its ceiling. Regular grids in planes along the axes are what rooms are made of, and what
-/// builders that merge boxes greedily do worst on.
+/// triangles, and a lamp under its ceiling. Rooms consist of regular grids in axis-aligned planes, which are the
+/// hardest input for builders that merge boxes greedily.
 pub fn planes(name: &'static str, triangles: usize) -> Setting {
     let n = ((triangles as f64 / 20.0).sqrt().round() as u32).max(1);
     let mut scene = Scene::default();
@@ -103,8 +103,6 @@ pub fn demo_office() -> Result<Setting, Absent> {
     with_own_camera("office", exemplar.scene, [640, 360])
 }
 
-/// The Cornell box, 0 to 555 units; 38 triangles. Its lamp is raised to the ceiling: renderers differ in whether it shines
-/// from its back too, and that light came out of the gap.
 /// A photo of the library's own office, whole.
 pub fn office_photo(params: &demo::photo::Params) -> Image {
     let room = demo::exemplar_room().expect("a room");
@@ -112,11 +110,13 @@ pub fn office_photo(params: &demo::photo::Params) -> Image {
     demo::photo::photograph(Arc::new(room.scene), &camera, params, Monitor::default().job()).expect("a photo").0
 }
 
-/// What a transfer from a photo onto the ceiling of a scene starts from.
+/// The input of a transfer from a photo to the ceiling of a scene.
 pub fn transfer_input(photo: Arc<Image>, strokes: StrokeSet, scene: Arc<Scene>) -> Input {
     Input { photo: Some(photo), strokes, scene: Some(scene), surface: "Ceiling".into(), ..Input::default() }
 }
 
+/// The Cornell box, 0 to 555 units; 38 triangles. Its lamp is raised to the ceiling: renderers differ in whether its
+/// back emits too, and that light would come out of the gap.
 pub fn cornell() -> Result<Setting, Absent> {
     let mut scene = wavefront::load(&data("scenes/cbox/cbox.obj")?)?;
     for mesh in &mut scene.meshes {
@@ -148,7 +148,7 @@ pub fn kitchen() -> Result<Setting, Absent> {
     Ok(Setting { name: "kitchen", scene, camera, size })
 }
 
-/// Dream apartment by Mad_Huron: 178 k triangles, open above and seen from there; a lamp hangs over the camera.
+/// Dream apartment by Mad_Huron: 178 k triangles, open above, seen from above; a lamp hangs over the camera.
 pub fn apartment() -> Result<Setting, Absent> {
     let mut scene = glb("scenes/apartment/dream_apartment.glb")?;
     let view = view("apartment")?;
@@ -168,8 +168,8 @@ pub fn sponza() -> Result<Setting, Absent> {
     Ok(Setting { name: "sponza", scene, camera, size })
 }
 
-/// A grid of `n` by `n` squares, each of two triangles, through the points `at(s, t)`; its front is on the side of
-/// `d/ds × d/dt`.
+/// A grid of `n` by `n` squares, each of two triangles, through the points `at(s, t)`; its front faces along `d/ds ×
+/// d/dt`.
 pub fn sheet(name: &str, material: usize, n: u32, at: impl Fn(f32, f32) -> Vec3) -> Mesh {
     let mut mesh = Mesh { name: name.into(), material, ..Mesh::default() };
     let part = |i: u32| i as f32 / n as f32;
@@ -184,7 +184,7 @@ pub fn sheet(name: &str, material: usize, n: u32, at: impl Fn(f32, f32) -> Vec3)
     mesh
 }
 
-/// Adds a rectangle that shines downwards, from its corner of least x and z; `luminance` in cd/m².
+/// Adds a downward-facing rectangular lamp from its corner of minimum x and z; `luminance` in cd/m².
 pub fn lamp(scene: &mut Scene, corner: Vec3, size: Vec2, luminance: f32) {
     let black = Material::diffuse("Lamp", Vec3::ZERO);
     scene.materials.push(Material { emission: Vec3::splat(luminance), ..black });
@@ -234,7 +234,8 @@ fn point(value: &Value) -> Result<Vec3, Absent> {
     Ok(Vec3::new(number(&value[0])?, number(&value[1])?, number(&value[2])?))
 }
 
-/// As much of Wavefront OBJ and MTL as the Cornell box needs: polygons without texture coordinates, `Kd` and `Ke`.
+/// The subset of Wavefront OBJ and MTL that the Cornell box needs: polygons without texture coordinates, `Kd` and
+/// `Ke`.
 mod wavefront {
     use super::*;
     use std::path::Path;

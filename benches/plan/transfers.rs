@@ -41,7 +41,7 @@ pub fn measure(all: &mut Outcomes) {
     let mut table = Table::new(heads);
     for (i, photo) in photos.iter().enumerate() {
         for (k, (room, scene)) in rooms.iter().enumerate() {
-            // Each photo in each room, with goals and sizes in turn.
+            // Every photo with every room; goals and sizes alternate.
             let width = [96, 144, 208][(i + k) % 3];
             let goal = [Goal::Seconds(1.5), Goal::Error(0.2), Goal::Seconds(3.0), Goal::Error(0.1)][(i + 2 * k) % 4];
             if let Err(reason) = outcome(photo, (room, scene), width, goal, all, &mut table) {
@@ -52,7 +52,7 @@ pub fn measure(all: &mut Outcomes) {
     table.print("the light of transfers: one thread, its own time");
 }
 
-/// The demonstration room, the same twice as long, and a kitchen.
+/// The demonstration room, the room at twice its length, and a kitchen.
 fn rooms() -> Vec<(&'static str, Arc<Scene>)> {
     let room = demo::target_room().expect("a room");
     let mut hall = room.clone();
@@ -95,7 +95,7 @@ fn outcome(
     for seed in 0..4 {
         transfer.params.relight.seed = 11 + seed;
         transfer.params.render.seed = 21 + seed;
-        // Of solutions more than pictures: what one states of its error is itself known to 13 %.
+        // Solve several times, because a single stated error is itself uncertain by 13 %.
         seconds += run(&mut transfer, Stage::Relight)? / 4.0;
         square += transfer.results.solution.as_ref().map_or(f64::NAN, |s| s.error()).powi(2) / 4.0;
         if seed < 2 {
@@ -115,14 +115,15 @@ fn outcome(
     Ok(())
 }
 
-/// Seconds of a stage.
+/// Runs a stage; returns its seconds.
 fn run(transfer: &mut Transfer, stage: Stage) -> Result<f64, String> {
     let (seconds, result) = time(Clock::Thread, || transfer.run(stage, stage, Monitor::default().job(), |_| ()));
     result.map_err(|e| e.to_string())?;
     Ok(seconds)
 }
 
-/// The picture under the emission at its solved colour, each channel relative to its scale: what its paths alone are off.
+/// The picture under the emission at its solved colour, each channel divided by its scale: the error of its paths
+/// alone.
 fn unit(results: &Results) -> Image {
     let (film, solution) = (results.film.as_ref().expect("a film"), results.solution.as_ref().expect("a solution"));
     let mut image = film.beauty.clone();

@@ -1,14 +1,14 @@
-//! Sums of paths: a pixel of a million paths, most of them dim, few very bright.
+//! Sums of paths: a pixel with a million paths, most of them dim, a few very bright.
 
 use super::real::Real;
 use super::{Study, Way, timed};
 use luxfer::rng::Rng;
 
 const PATHS: usize = 1 << 20;
-/// Paths that are summed before they are added to a pixel.
+/// Number of paths that are summed before the sum is added to a pixel.
 const SLICE: usize = 8;
 
-/// Adds slices, each summed in `S`, in `T`.
+/// Sums slices in `S` and adds the sums in `T`.
 fn mean<S: Real, T: Real>(paths: &[f32]) -> f64 {
     let slice = |paths: &[f32]| paths.iter().map(|&p| S::of(f64::from(p))).sum::<S>();
     let sum: T = paths.chunks(SLICE).map(|paths| T::of(slice(paths).wide())).sum();
@@ -18,7 +18,7 @@ fn mean<S: Real, T: Real>(paths: &[f32]) -> f64 {
 pub fn measure(study: &mut Study) {
     let mut rng = Rng::new(1, &[]);
     let paths: Vec<f32> = (0..PATHS).map(|_| (1.5 * rng.normal()).exp() as f32).collect();
-    // Sorted and halved again and again, a sum of f64 loses nothing that counts here.
+    // Reference: a pairwise sum in f64 of the sorted values.
     let mut sums: Vec<f64> = paths.iter().map(|&p| f64::from(p)).collect();
     sums.sort_by(f64::total_cmp);
     while sums.len() > 1 {

@@ -1,4 +1,4 @@
-//! Autocorrelation by Fourier transforms: of a faint pattern on a bright ground.
+//! Autocorrelation by Fourier transforms, of a faint pattern on a bright background.
 
 use super::real::Real;
 use super::{Study, Way, timed};
@@ -7,7 +7,8 @@ use luxfer::rng::Rng;
 const LENGTH: usize = 1 << 16;
 const PERIOD: usize = 96;
 
-/// In place, of a length that is a power of two (Cooley and Tukey 1965). The factors are those of f64, rounded.
+/// Transforms in place; the length is a power of two (Cooley and Tukey 1965). The factors are computed in f64 and
+/// rounded.
 fn transform<R: Real>(signal: &mut [[R; 2]]) {
     let bits = signal.len().trailing_zeros();
     for i in 0..signal.len() {
@@ -34,7 +35,7 @@ fn transform<R: Real>(signal: &mut [[R; 2]]) {
     }
 }
 
-/// Covariance at every shift, relative to that at none.
+/// Covariance at every shift, relative to the covariance at shift 0.
 fn autocorrelation<R: Real>(values: &[f32]) -> Vec<f64> {
     let mut signal: Vec<[R; 2]> = values.iter().map(|&v| [R::of(f64::from(v)), R::ZERO]).collect();
     transform(&mut signal);
@@ -42,7 +43,7 @@ fn autocorrelation<R: Real>(values: &[f32]) -> Vec<f64> {
         *z = [z[0] * z[0] + z[1] * z[1], R::ZERO];
     }
     transform(&mut signal);
-    // The mean is taken off in the end, as where parts of the image count for nothing.
+    // Subtract the mean at the end, as the library does for images with a mask.
     let n = values.len() as f64;
     let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / n;
     let covariance = |z: &[R; 2]| z[0].wide() / (n * n) - mean * mean;

@@ -1,4 +1,4 @@
-//! Where the texels of an unwarped plane lie in the photo.
+//! Positions in the photo of the texels of an unwarped plane.
 
 use super::real::Real;
 use super::{Study, Way, timed};
@@ -7,7 +7,7 @@ use super::{Study, Way, timed};
 const SIDE: f64 = 16_384.0;
 const TEXELS: usize = 1 << 16;
 
-/// From the unwarped plane to the photo: a plane that the camera looks along.
+/// From the unwarped plane to the photo: a plane seen at a grazing angle.
 const MAP: [[f64; 3]; 3] = [[1.9, 0.35, -900.0], [0.12, 2.3, 310.0], [4.1e-5, 9.7e-5, 1.0]];
 
 fn map<R: Real>() -> Vec<[R; 2]> {

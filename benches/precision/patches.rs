@@ -14,7 +14,7 @@ const CHANNELS: usize = 16;
 const RUN: usize = PATCH * CHANNELS;
 const PAIRS: usize = 4096;
 
-/// Sum of squared differences of two runs; eight sums side by side, as wide registers want it.
+/// Sum of squared differences of two runs, with eight partial sums for vector registers.
 #[inline(always)]
 fn squares(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0f32; 8];
@@ -70,7 +70,7 @@ pub fn measure(study: &mut Study) {
         })
         .expect("an image")
     };
-    // What is matched has been read from 8 bits or rendered; here it is what f32 holds.
+    // Matched images come from 8-bit files or renderings; here their values are exact in f32.
     let images: Vec<Image> = (0..CHANNELS as u64 / 4).map(image).collect();
     let weights = [1.0; CHANNELS];
     let mut features = QuantisedImage::new(SIDE, SIDE, CHANNELS).expect("features");
@@ -99,7 +99,7 @@ pub fn measure(study: &mut Study) {
     };
     let unit = Quantiser::unit(&weights, PATCH).powi(2);
     let of_integers: Vec<f64> = in_integers(&features, &pairs).into_iter().map(|d| f64::from(d) / unit).collect();
-    // SAFETY: the processor was asked above.
+    // SAFETY: the processor's features were checked above.
     let (of_narrow, of_halves) = unsafe { (in_f32(&narrow, &pairs), in_halves(&halves, &pairs)) };
     let wide = |found: Vec<f32>| found.into_iter().map(f64::from).collect::<Vec<f64>>();
     study.add(

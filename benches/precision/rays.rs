@@ -1,4 +1,4 @@
-//! Rays against triangles: a bumpy sheet, at the origin and far from it, as the scene's own coordinates have it.
+//! Rays against triangles: a bumpy sheet at the origin and far from it, in scene coordinates.
 
 use super::real::{Real, cross, dot, minus};
 use super::{Study, Way, timed};
@@ -7,7 +7,7 @@ use luxfer::rng::Rng;
 const SIDE: usize = 24;
 const RAYS: usize = 512;
 
-/// Triangles that are met side by side, as the library's nodes and leaves are.
+/// Triangles that are intersected at once, as in the library's nodes and leaves.
 const LANES: usize = 8;
 
 /// Corners of the triangles, and origins and directions of the rays.
@@ -27,7 +27,7 @@ fn blocks<R: Real>(triangles: &[[[f64; 3]; 3]]) -> Vec<Block<R>> {
     triangles.chunks(LANES).map(block).collect()
 }
 
-/// Distances along the rays (Möller and Trumbore 1997); infinite where nothing is hit.
+/// Distances along the rays (Möller and Trumbore 1997); infinity for a miss.
 fn distances<R: Real>(blocks: &[Block<R>], rays: &[[[R; 3]; 2]]) -> Vec<R> {
     let (zero, one, infinite) = (R::ZERO, R::of(1.0), R::of(f64::INFINITY));
     let nearest = |&[origin, direction]: &[[R; 3]; 2]| {
@@ -54,7 +54,7 @@ fn distances<R: Real>(blocks: &[Block<R>], rays: &[[[R; 3]; 2]]) -> Vec<R> {
 }
 
 fn setting(offset: f64) -> Setting {
-    // What a file in f32 can say.
+    // Round the corners to f32, as a file stores them.
     let place = |x: usize, y: usize| {
         let height = 0.3 * (0.7 * x as f64).sin() * (0.9 * y as f64).cos();
         [x as f64 * 0.25, y as f64 * 0.25, height].map(|v| f64::from((v + offset) as f32))

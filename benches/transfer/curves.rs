@@ -1,12 +1,13 @@
-//! How the error of a whole transfer falls with its time.
+//! Error of a whole transfer against its time.
 //!
-//! The error is the picture's, root mean square relative to its mean, against a transfer with a hundred times as many paths as the
-//! defaults, a finer texture and a strength ten times as exact. Each curve varies one thing and leaves the others at
-//! their defaults, so where it levels off what is left is of the others; the last is of what a plan chooses for a time, with the time
-//! that planning takes. Times are of the whole transfer, also where stages were not run again since nothing changed for them.
+//! The error is that of the picture, root mean square relative to its mean, against a transfer with a hundred times
+//! the default number of paths, a finer texture and a strength ten times as accurate. Each curve varies one setting
+//! and leaves the others at their defaults, so it levels off at the error of the others; the last curve shows plans
+//! for a time, including the time of planning. Times are of the whole transfer, including stages that were not run
+//! again because their input did not change.
 //!
-//! Beside the picture: its mean light, which tells the error of the solution from lamps that lie elsewhere, as they do if a smaller
-//! photo shows them less well.
+//! The mean of the picture is reported too: it separates the error of the solution from lamps at wrong positions,
+//! which occur if a smaller photo shows the lamps less clearly.
 
 use super::harness::plot::Plot;
 use super::harness::scenes::office_photo;
@@ -38,7 +39,7 @@ pub fn draw() {
     });
     println!("# the reference took {seconds:.1} s");
 
-    // The stages before the light, once for all curves that leave them as they are.
+    // The stages before the light, run once for all curves that do not change them.
     let mut lit = transfer(photo.clone(), defaults());
     let (before, ()) = time(Clock::Wall, || run(&mut lit, Stage::View, Stage::Emission));
 
@@ -88,7 +89,7 @@ pub fn draw() {
     study.plot.write("transfer").expect("out/bench can be written to");
 }
 
-/// The library's defaults, for a small picture.
+/// The defaults of the library for a small picture.
 fn defaults() -> Params {
     let mut params = Params::default();
     (params.render.width, params.render.height) = (PICTURE[0], PICTURE[1]);
@@ -107,7 +108,7 @@ struct Study {
 }
 
 impl Study {
-    /// A curve over some values, each the median of seconds and pictures by different seeds.
+    /// A curve over some values: median seconds, and pictures with different seeds.
     fn vary<T: Display>(&mut self, name: &str, values: &[T], make: impl Fn(&T, u64) -> (f64, Image)) {
         let points = values.iter().map(|value| {
             let runs: Vec<_> = (0..ROUNDS).map(|seed| make(value, seed)).collect();

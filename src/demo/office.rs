@@ -184,8 +184,19 @@ fn shell(b: &mut Builder) -> Result<()> {
 }
 
 fn fittings(b: &mut Builder) -> Result<()> {
-    let (x, z) = (SIZE.x, SIZE.z);
-    // Lockers along the right wall in two colours, with gaps that form vertical lines, and boxes on top.
+    lockers(b);
+    let dark = end_wall(b);
+    desks(b, dark)?;
+    let (pot, leaves) =
+        (b.paint("Grey pot", Vec3::splat(0.3), 0.6), b.paint("Leaves", Vec3::new(0.07, 0.24, 0.05), 0.6));
+    furniture::plant(b, Vec3::new(0.45, 0.0, 0.5), 2.1, pot, leaves);
+    furniture::plant(b, Vec3::new(0.45, 0.0, SIZE.z - 4.4), 2.0, pot, leaves);
+    Ok(())
+}
+
+/// Lockers along the right wall in two colours, with gaps that form vertical lines, and boxes on top.
+fn lockers(b: &mut Builder) {
+    let x = SIZE.x;
     let blues = [
         b.paint("Locker blue", Vec3::new(0.06, 0.16, 0.34), 0.4),
         b.paint("Locker grey", Vec3::new(0.40, 0.44, 0.48), 0.4),
@@ -206,8 +217,10 @@ fn fittings(b: &mut Builder) -> Result<()> {
         cuboid(&mut boxes, Vec3::new(x - 0.42, 2.02, at - width), Vec3::new(x - 0.06, 2.02 + height, at));
     }
     b.add("Boxes", card, boxes);
+}
 
-    // The end wall: door, sign above it, board.
+/// The end wall: door, sign above it, board. Returns the dark material of the trim.
+fn end_wall(b: &mut Builder) -> usize {
     let orange = b.paint("Door orange", Vec3::new(0.62, 0.25, 0.06), 0.5);
     let white = b.paint("Board white", Vec3::splat(0.80), 0.2);
     let dark = b.paint("Dark plastic", Vec3::splat(0.05), 0.4);
@@ -221,8 +234,11 @@ fn fittings(b: &mut Builder) -> Result<()> {
     b.add("Door", orange, door);
     b.add("Board", white, board);
     b.add("Trim", dark, trim);
+    dark
+}
 
-    // Desks in two rows, back to back, with dividing screens.
+/// Desks in two rows, back to back, with dividing screens; `dark` is the material of their screens.
+fn desks(b: &mut Builder, dark: usize) -> Result<()> {
     let top = b.pattern("Beech", pattern::wood(Vec3::new(0.55, 0.38, 0.22))?, Vec2::new(1.2, 0.6), 0.5);
     let cloth = b.pattern(
         "Divider",
@@ -238,9 +254,5 @@ fn fittings(b: &mut Builder) -> Result<()> {
         cuboid(&mut dividers, at + Vec3::new(-0.8, 0.5, -0.015), at + Vec3::new(0.8, 1.45, 0.015));
     }
     b.add("Dividers", cloth, dividers);
-    let (pot, leaves) =
-        (b.paint("Grey pot", Vec3::splat(0.3), 0.6), b.paint("Leaves", Vec3::new(0.07, 0.24, 0.05), 0.6));
-    furniture::plant(b, Vec3::new(0.45, 0.0, 0.5), 2.1, pot, leaves);
-    furniture::plant(b, Vec3::new(0.45, 0.0, z - 4.4), 2.0, pot, leaves);
     Ok(())
 }

@@ -123,6 +123,15 @@ fn openings(b: &mut Builder) {
     b.add("Curtain rod", brass, rod);
 }
 
+/// Materials that several pieces of furniture share.
+struct Paints {
+    oak: usize,
+    walnut: usize,
+    cloth: usize,
+    ceramic: usize,
+    cobalt: usize,
+}
+
 fn furnish(b: &mut Builder) -> Result<()> {
     let oak = b.pattern("Oak", pattern::wood(Vec3::new(0.46, 0.28, 0.13))?, Vec2::new(1.2, 0.5), 0.5);
     let walnut = b.pattern("Walnut", pattern::wood(Vec3::new(0.20, 0.105, 0.055))?, Vec2::new(1.0, 0.5), 0.45);
@@ -130,24 +139,41 @@ fn furnish(b: &mut Builder) -> Result<()> {
     let cloth = b.pattern("Teal cloth", weave, Vec2::splat(0.25), 1.0);
     let ceramic = b.paint("White ceramic", Vec3::new(0.78, 0.77, 0.74), 0.15);
     let cobalt = b.paint("Cobalt glaze", Vec3::new(0.03, 0.09, 0.42), 0.12);
+    let paints = Paints { oak, walnut, cloth, ceramic, cobalt };
+    dining_table(b, &paints)?;
+    left_wall(b, &paints)?;
 
-    // The table and its chairs on the rug.
+    // A plant by the window and a round pouf.
+    let (pot, leaves) =
+        (b.paint("Clay", Vec3::new(0.42, 0.20, 0.12), 0.8), b.paint("Leaves", Vec3::new(0.06, 0.22, 0.04), 0.6));
+    furniture::plant(b, Vec3::new(3.85, 0.0, 0.38), 1.35, pot, leaves);
+    let mut pouf = Mesh::default();
+    ball(&mut pouf, Vec3::ZERO, Vec2::new(0.30, 0.21), 40);
+    b.add("Pouf", cloth, moved(pouf, 0.0, Vec3::new(1.05, 0.21, 2.3)));
+    Ok(())
+}
+
+/// The table and its chairs on the rug.
+fn dining_table(b: &mut Builder, paints: &Paints) -> Result<()> {
     let (centre, rug_size) = (Vec3::new(3.0, 0.0, 1.95), Vec2::new(2.9, 2.1));
     let rug = b.pattern("Rug", pattern::rug()?, rug_size, 1.0);
     let corner = centre + Vec3::new(-rug_size.x / 2.0, 0.012, rug_size.y / 2.0);
     b.add("Rug", rug, flat(|m| sheet(m, corner, Vec3::X * rug_size.x, Vec3::NEG_Z * rug_size.y, [12, 8])));
-    furniture::table(b, centre, Vec2::new(1.7, 0.9), oak);
+    furniture::table(b, centre, Vec2::new(1.7, 0.9), paints.oak);
     for (x, z, degrees) in [(-0.42, 0.62, 180.0), (0.42, 0.66, 172.0), (-0.42, -0.64, 0.0), (0.45, -0.60, 8.0)] {
-        furniture::chair(b, centre + Vec3::new(x, 0.0, z), degrees, walnut, cloth);
+        furniture::chair(b, centre + Vec3::new(x, 0.0, z), degrees, paints.walnut, paints.cloth);
     }
     let (red, green) = (
         b.paint("Apple red", Vec3::new(0.50, 0.03, 0.02), 0.3),
         b.paint("Apple green", Vec3::new(0.28, 0.42, 0.04), 0.3),
     );
-    furniture::fruit_bowl(b, centre + Vec3::new(0.1, 0.751, 0.0), ceramic, [red, green]);
-    furniture::vase(b, centre + Vec3::new(-0.45, 0.751, 0.1), 0.8, cobalt);
+    furniture::fruit_bowl(b, centre + Vec3::new(0.1, 0.751, 0.0), paints.ceramic, [red, green]);
+    furniture::vase(b, centre + Vec3::new(-0.45, 0.751, 0.1), 0.8, paints.cobalt);
+    Ok(())
+}
 
-    // Along the left wall: shelf, sideboard and painting.
+/// Along the left wall: shelf, sideboard and painting.
+fn left_wall(b: &mut Builder, paints: &Paints) -> Result<()> {
     let covers = [
         ("Book red", Vec3::new(0.42, 0.05, 0.04)),
         ("Book blue", Vec3::new(0.05, 0.12, 0.34)),
@@ -156,9 +182,9 @@ fn furnish(b: &mut Builder) -> Result<()> {
         ("Book white", Vec3::new(0.75, 0.73, 0.68)),
     ]
     .map(|(name, colour)| b.paint(name, colour, 0.7));
-    furniture::bookshelf(b, Vec3::new(0.0, 0.0, 1.1), 90.0, 1.5, walnut, &covers);
-    furniture::sideboard(b, Vec3::new(0.0, 0.0, 2.95), 90.0, 1.7, oak, ceramic);
-    furniture::vase(b, Vec3::new(0.22, 0.741, 3.45), 1.1, ceramic);
+    furniture::bookshelf(b, Vec3::new(0.0, 0.0, 1.1), 90.0, 1.5, paints.walnut, &covers);
+    furniture::sideboard(b, Vec3::new(0.0, 0.0, 2.95), 90.0, 1.7, paints.oak, paints.ceramic);
+    furniture::vase(b, Vec3::new(0.22, 0.741, 3.45), 1.1, paints.ceramic);
     let canvas = b.pattern("Painting", pattern::painting()?, Vec2::new(1.1, 0.75), 0.9);
     // Texture rows run down, so the canvas starts at its upper left corner as seen from the room.
     let upper_left = Vec3::new(0.031, 2.15, 3.5);
@@ -174,14 +200,6 @@ fn furnish(b: &mut Builder) -> Result<()> {
         let (low, high) = (Vec3::new(0.0, 1.36, 2.36), Vec3::new(0.03, 2.19, 3.54));
         cuboid(m, low, high);
     });
-    b.add("Picture frame", walnut, border);
-
-    // A plant by the window and a round pouf.
-    let (pot, leaves) =
-        (b.paint("Clay", Vec3::new(0.42, 0.20, 0.12), 0.8), b.paint("Leaves", Vec3::new(0.06, 0.22, 0.04), 0.6));
-    furniture::plant(b, Vec3::new(3.85, 0.0, 0.38), 1.35, pot, leaves);
-    let mut pouf = Mesh::default();
-    ball(&mut pouf, Vec3::ZERO, Vec2::new(0.30, 0.21), 40);
-    b.add("Pouf", cloth, moved(pouf, 0.0, Vec3::new(1.05, 0.21, 2.3)));
+    b.add("Picture frame", paints.walnut, border);
     Ok(())
 }

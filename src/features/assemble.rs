@@ -1,7 +1,8 @@
 //! The last step of the stage: interleaves colour, depth, positions by Eq. 1 and normals of one row.
 
 use super::depth::Surface;
-use super::{CHANNELS, Frustum};
+use super::frustum::Frustum;
+use super::input::CHANNELS;
 use crate::image::{Image, colour, interleave};
 use crate::simd::widest;
 use glam::{Mat3, Vec2, Vec3};

@@ -1,7 +1,8 @@
 //! Depth from the caller, and the neutral prior: a surface as inverse depth, normals and confidence.
 
+use super::frustum::Frustum;
+use super::input::{DepthKind, DepthMap};
 use super::normals;
-use super::{DepthKind, DepthMap, Frustum};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::Image;

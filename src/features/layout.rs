@@ -8,8 +8,9 @@
 //! `score` rates a box.
 
 use super::depth::Surface;
+use super::frustum::Frustum;
+use super::input::RoomView;
 use super::score::MAX_SEGMENTS;
-use super::{Frustum, RoomView};
 use crate::error::Result;
 use crate::exec;
 use crate::geometry::Perspective;

@@ -41,7 +41,7 @@ pub struct DepthNetwork {
     pub normalisation: Normalisation,
 }
 
-/// For inputs of open size: the longer side, and the number that both sides are multiples of.
+/// For networks with inputs of any size: length of the longer side, and a number of which both sides are multiples.
 const OPEN_SIDE: usize = 384;
 const MULTIPLE: usize = 32;
 /// Maximum side of a network's input.

@@ -6,7 +6,7 @@
 //! its own window and the eight windows that have the pixel on their border (Kuwahara et al. 1976, with planes instead
 //! of constants).
 
-use super::Frustum;
+use super::frustum::Frustum;
 use super::plane_fit::{self, FitRow};
 use crate::error::Result;
 use crate::exec;

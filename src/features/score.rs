@@ -2,7 +2,7 @@
 //! ceiling); seams between faces should coincide with segments along them; the strokes of a plane should lie on a
 //! single face.
 
-use super::RoomView;
+use super::input::RoomView;
 use super::strokes;
 use crate::error::Result;
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};

@@ -1,7 +1,7 @@
 //! Strokes as evidence about the room: at most one sample of each kind per cell of a grid, so that neither brush width
 //! nor the number of strokes affects the result.
 
-use super::RoomView;
+use super::input::RoomView;
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::job::Job;

@@ -3,11 +3,11 @@
 use super::{DepthSource, Features};
 use crate::warning::{Code, Warning, percent};
 
-/// Trust in the box room that the depth was laid out from. [judged on 38 photos]
+/// Minimum confidence of the box layout from which the depth was computed. [judged on 38 photos]
 const MIN_LAYOUT_TRUST: f64 = 0.2;
 
 impl Features {
-    /// Reasons to doubt the features. A depth map or a network of the caller's is believed.
+    /// Reasons to doubt the features. A depth map, or the depth of a caller's network, gives no warning.
     pub fn warnings(&self) -> Vec<Warning> {
         let advice =
             "give a depth map or a network that estimates one, or paint a stroke on each wall and on the floor";

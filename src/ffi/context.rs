@@ -27,18 +27,16 @@
 //! any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
 //! the mode of the host on return. Callbacks run in the standard mode.
 
-use super::guard::{enter, guard, lock};
+pub(super) use super::shared_context::{Charge, Context};
+
+use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::params::{self, Versioned};
 use super::pointer::{Out, copy_text};
+use super::shared_context::INHERITED;
 use super::status::luxfer_status;
-use crate::error::{Error, ErrorKind, Result};
-use crate::exec::{Pool, QuickPools};
-use std::collections::HashMap;
 use std::ffi::c_char;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
-use std::thread::{self, ThreadId};
+use std::sync::Arc;
 
 /// A context: threads, memory budget and error messages. See luxfer_context_create.
 pub struct luxfer_context {
@@ -67,90 +65,6 @@ unsafe impl Versioned for luxfer_context_params {
     const SIZES: &'static [usize] = &[16];
     fn defaults() -> Self {
         Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 }
-    }
-}
-
-/// Number of threads whose messages are kept: the threads that failed last.
-const MAX_MESSAGES: usize = 256;
-
-/// What a `luxfer_context` refers to.
-pub(super) struct Context {
-    /// Runs the jobs.
-    pub(super) pool: Pool,
-    /// Run the calls that return when their work is done, so that they never wait for a job.
-    pub(super) quick: QuickPools,
-    budget: u64,
-    used: AtomicU64,
-    messages: Mutex<Messages>,
-    /// The process that created the context; a forked child has another id.
-    process: u32,
-}
-
-/// Why a context cannot be used in a forked child.
-const INHERITED: &str = "this object was created before the process was forked, and its threads did not come along; \
-                         create a context and its objects in the child process";
-
-/// The last error message of each thread. A map rather than thread-local storage, which would outlive the context and
-/// the library.
-#[derive(Default)]
-struct Messages {
-    count: u64,
-    by_thread: HashMap<ThreadId, (u64, String)>,
-}
-
-impl Context {
-    /// An error in a forked child of the process that created the context. Takes no lock: another thread may have held
-    /// it when the process was forked, and would hold it for ever.
-    pub(super) fn check_process(&self) -> Result<()> {
-        if self.process == std::process::id() {
-            Ok(())
-        } else {
-            Err(Error::new(ErrorKind::InvalidOperation, INHERITED))
-        }
-    }
-
-    pub(super) fn remember(&self, error: &Error) {
-        let messages = &mut *lock(&self.messages);
-        messages.count += 1;
-        messages.by_thread.insert(thread::current().id(), (messages.count, error.message.clone()));
-        if messages.by_thread.len() > MAX_MESSAGES
-            && let Some(oldest) = messages.by_thread.iter().min_by_key(|(_, (count, _))| *count).map(|(id, _)| *id)
-        {
-            messages.by_thread.remove(&oldest);
-        }
-    }
-
-    /// Charges `bytes` to the memory budget for the lifetime of the returned charge.
-    pub(super) fn charge(self: &Arc<Self>, bytes: u64) -> Result<Charge> {
-        let take = |used: u64| used.checked_add(bytes).filter(|&sum| self.budget == 0 || sum <= self.budget);
-        match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take) {
-            Ok(_) => Ok(Charge { context: self.clone(), bytes }),
-            Err(used) => {
-                let mib = |bytes: u64| bytes as f64 / (1 << 20) as f64;
-                Err(Error::new(
-                    ErrorKind::OutOfMemory,
-                    format!(
-                        "{:.1} MiB are needed and {:.1} of the context's budget of {:.1} MiB are in use; release \
-                         objects or raise luxfer_context_params.memory_budget_mib",
-                        mib(bytes),
-                        mib(used),
-                        mib(self.budget)
-                    ),
-                ))
-            }
-        }
-    }
-}
-
-/// A share of the memory budget.
-pub(super) struct Charge {
-    context: Arc<Context>,
-    bytes: u64,
-}
-
-impl Drop for Charge {
-    fn drop(&mut self) {
-        self.context.used.fetch_sub(self.bytes, Ordering::Relaxed);
     }
 }
 
@@ -188,14 +102,8 @@ pub unsafe extern "C" fn luxfer_context_create(
         let out = Out::new(context, "context")?;
         let params = params::read(params)?;
         crate::error::check_range("num_threads", params.num_threads, 0, 1024)?;
-        let context = Arc::new(Context {
-            pool: Pool::new(params.num_threads as usize)?,
-            quick: QuickPools::new(params.num_threads as usize),
-            budget: params.memory_budget_mib.saturating_mul(1 << 20),
-            used: AtomicU64::new(0),
-            messages: Mutex::default(),
-            process: std::process::id(),
-        });
+        let budget = params.memory_budget_mib.saturating_mul(1 << 20);
+        let context = Arc::new(Context::new(params.num_threads as usize, budget)?);
         out.set(handle::give(Arc::new(ContextObject(context))));
         Ok(())
     })
@@ -229,9 +137,5 @@ pub unsafe extern "C" fn luxfer_context_last_error(
     if handle::is_inherited(context) {
         return guard(|| copy_text(INHERITED, buffer, capacity, needed));
     }
-    enter(context, |object| {
-        let messages = lock(&object.context().messages);
-        let message = messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str());
-        copy_text(message, buffer, capacity, needed)
-    })
+    enter(context, |object| object.context().last_message(|message| copy_text(message, buffer, capacity, needed)))
 }

@@ -103,7 +103,7 @@ unsafe impl Versioned for luxfer_preset {
 
 /// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
 /// linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
-/// drives receives count drive levels in [0, most]; most may be infinite. If several mixtures give the colour, the one
+/// drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the colour, the one
 /// with the smallest sum of squared drive levels is returned. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
     context: *mut luxfer_context,
     primaries: *const f64,
     count: u32,
-    most: f64,
+    max_drive: f64,
     colour: *const f64,
     drives: *mut f64,
     mixture: *mut luxfer_mixture,
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
         let primaries = list(primaries, 3 * count as usize, "primaries")?;
         let primaries: Vec<DVec3> = primaries.chunks_exact(3).map(DVec3::from_slice).collect();
         let places = bytes_mut(drives.cast(), count as usize * size_of::<f64>(), "drives")?;
-        let mixed = mix_primaries(&primaries, most, DVec3::from_array(numbers(colour, "colour")?))?;
+        let mixed = mix_primaries(&primaries, max_drive, DVec3::from_array(numbers(colour, "colour")?))?;
         for (place, drive) in places.chunks_exact_mut(size_of::<f64>()).zip(mixed.drives) {
             place.copy_from_slice(&drive.to_ne_bytes());
         }

@@ -39,9 +39,9 @@ pub struct luxfer_false_colour_params {
     pub bar: u32,
     /// Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the lightest
     /// colour; default 0.
-    pub least: f64,
-    /// Value of the lightest colour, greater than least; 0, the default, means the largest value of the image.
-    pub most: f64,
+    pub minimum: f64,
+    /// Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the image.
+    pub maximum: f64,
 }
 
 // SAFETY: plain numbers.
@@ -55,8 +55,8 @@ unsafe impl Versioned for luxfer_false_colour_params {
             scale: LUXFER_SCALE_LINEAR,
             unit: LUXFER_UNIT_LUMINANCE,
             bar: u32::from(d.bar),
-            least: d.least,
-            most: d.most,
+            minimum: d.minimum,
+            maximum: d.maximum,
         }
     }
 }
@@ -76,7 +76,7 @@ impl luxfer_false_colour_params {
         if self.bar > 1 {
             return Err(Error::argument(format!("bar is {}; it must be 0 or 1", self.bar)));
         }
-        Ok(Params { scale, unit, least: self.least, most: self.most, bar: self.bar == 1 })
+        Ok(Params { scale, unit, minimum: self.minimum, maximum: self.maximum, bar: self.bar == 1 })
     }
 }
 

@@ -150,7 +150,7 @@ impl Inputs {
     }
 }
 
-/// The result, and what a network has estimated on the way.
+/// The result, and the depth that a network has estimated.
 pub(super) struct Outcome {
     pub(super) features: Arc<Features>,
     network_depth: Option<Image>,

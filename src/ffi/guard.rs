@@ -1,33 +1,21 @@
 //! The guard of each entry point: no panic and no message of one reaches the host, every error becomes a status.
 
+pub(super) use super::entry::enter;
 use super::float_mode::FloatMode;
-use super::handle::{self, Handle, Owned};
 use super::status::{LUXFER_OK, luxfer_status};
 use crate::error::{Error, ErrorKind, Result};
 use crate::quiet::Quiet;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Mutex, MutexGuard};
 
-/// Runs an entry point that has no object yet.
+/// Runs an entry point without an object.
 pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
     let (_mode, _quiet) = (FloatMode::enter(), Quiet::enter());
     match catch(work) {
         Ok(()) => LUXFER_OK,
         Err(error) => error.kind as luxfer_status,
     }
-}
-
-/// Runs an entry point on an object; an error's message is kept in the object's context for the calling thread.
-pub(super) fn enter<H: Handle>(handle: *const H, work: impl FnOnce(&Arc<H::Object>) -> Result<()>) -> luxfer_status {
-    guard(|| {
-        let object = handle::borrow(handle, "the handle")?;
-        let result = catch(|| work(&object));
-        if let Err(error) = &result {
-            object.context().remember(error);
-        }
-        result
-    })
 }
 
 /// Turns a panic into an error. Data that the panic left half-written is never read: results are stored only after

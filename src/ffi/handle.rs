@@ -59,14 +59,14 @@ fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Obje
         return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));
     }
     let shell: *const Shell<H::Object> = handle.cast();
-    // SAFETY: the tag of any handle of ours is readable, also while others use it; a pointer that is none of ours is the
-    // host's mistake, and reading one aligned word there is the least harm that can tell.
+    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is no handle is the host's mistake;
+    // reading one aligned word is the least harmful way to detect it.
     let is_ours = shell.is_aligned() && unsafe { (*shell).tag.load(Ordering::Acquire) } == H::TAG;
     if is_ours { Ok(shell) } else { Err(Error::argument(format!("{name} is not a live {}", H::NAME))) }
 }
 
-/// The object behind a handle, kept alive for the length of the call. An error in a forked child of the process that
-/// created it.
+/// The object behind a handle, kept alive for the length of the call. Returns an error in a forked child of the process
+/// that created it.
 pub(super) fn borrow<H: Handle>(handle: *const H, name: &str) -> Result<Arc<H::Object>> {
     let shell = shell(handle, name)?;
     // SAFETY: the tag is right, so the shell is alive and holds an object.
@@ -75,7 +75,7 @@ pub(super) fn borrow<H: Handle>(handle: *const H, name: &str) -> Result<Arc<H::O
     Ok(object.clone())
 }
 
-/// Whether a handle is live, but its context belongs to the process of which this one is a forked child.
+/// Whether a handle is live, but its context belongs to the parent of this forked process.
 pub(super) fn is_inherited<H: Handle>(handle: *const H) -> bool {
     // SAFETY: as in `borrow`.
     shell(handle, "the handle").is_ok_and(|shell| unsafe { (*shell).object.context().check_process().is_err() })
@@ -111,8 +111,8 @@ pub(super) fn release<H: Handle>(handle: *mut H) -> luxfer_status {
         let shell = shell(handle, "the handle")?;
         // SAFETY: as above; this is the reference that the host gives back.
         unsafe {
-            // A forked child has no threads to join, and locks that other threads held stay locked in it: the object
-            // is left as it is, in memory that the child shares with its parent.
+            // In a forked child there are no threads to join, and a lock that another thread held during the fork stays
+            // locked. So the object is not freed.
             if (*shell).object.context().check_process().is_ok() {
                 drop(Arc::from_raw(shell));
             }

@@ -111,12 +111,12 @@ pub struct luxfer_illuminance_report {
     pub struct_size: u32,
     /// Number of points; on a mesh, the texels that the surface covers.
     pub points: u32,
-    /// Smallest illuminance; least / mean is the uniformity U0.
-    pub least: f64,
+    /// Smallest illuminance; minimum / mean is the uniformity U0.
+    pub minimum: f64,
     /// Mean illuminance.
     pub mean: f64,
     /// Largest illuminance.
-    pub largest: f64,
+    pub maximum: f64,
     /// Standard error of the mean.
     pub mean_error: f64,
 }
@@ -126,7 +126,7 @@ unsafe impl Versioned for luxfer_illuminance_report {
     const NAME: &'static str = "luxfer_illuminance_report";
     const SIZES: &'static [usize] = &[40];
     fn defaults() -> Self {
-        Self { struct_size: 40, points: 0, least: 0.0, mean: 0.0, largest: 0.0, mean_error: 0.0 }
+        Self { struct_size: 40, points: 0, minimum: 0.0, mean: 0.0, maximum: 0.0, mean_error: 0.0 }
     }
 }
 
@@ -275,9 +275,9 @@ pub unsafe extern "C" fn luxfer_illuminance_get_report(
         let output = stage.output()?;
         out.set(luxfer_illuminance_report {
             points: output.points as u32,
-            least: output.min,
+            minimum: output.min,
             mean: output.mean,
-            largest: output.max,
+            maximum: output.max,
             mean_error: output.mean_error,
             ..luxfer_illuminance_report::defaults()
         });

@@ -135,7 +135,7 @@ fn colour_space(name: &str, value: luxfer_colour_space) -> Result<ColourSpace> {
     }
 }
 
-/// What a `luxfer_image` refers to.
+/// The object behind a `luxfer_image` handle.
 pub(super) struct Pixels {
     context: Arc<Context>,
     source: Source,

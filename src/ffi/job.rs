@@ -142,7 +142,7 @@ pub unsafe extern "C" fn luxfer_job_wait(
                     progress = None;
                 }
             }
-            // The function may have forked, and this be the child, which has no job to wait for.
+            // If the function has forked and this is the child, there is no job to wait for.
             job.context.check_process()?;
             match result {
                 Some(result) => return result,

@@ -8,7 +8,7 @@ use super::context::luxfer_context;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
-use super::lamps_goals::Aim;
+use super::lamp_goal::StoredGoal;
 use super::params::{self, Versioned};
 use super::pointer::Out;
 use super::query::LUXFER_NONE;
@@ -26,7 +26,7 @@ pub struct luxfer_lamps {
     _opaque: [u8; 0],
 }
 
-/// Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission texture, or a
+/// Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture, or a
 /// connected piece of the meshes if the emission has no texture.
 pub type luxfer_group = i32;
 /// All lamps form one group.
@@ -58,10 +58,10 @@ pub struct luxfer_lamps_params {
     /// for the power only.
     pub free_colour: u32,
     /// Largest factor for the emission of a group, >= 0; default infinity.
-    pub most: f64,
+    pub max_scale: f64,
     /// Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
     /// powers equal; default 1e-6.
-    pub evenness: f64,
+    pub regularisation: f64,
     /// A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise; default
     /// 0.01.
     pub tolerance: f64,
@@ -89,8 +89,8 @@ unsafe impl Versioned for luxfer_lamps_params {
             group: LUXFER_GROUP_EACH,
             row_tolerance: 0.01,
             free_colour: 0,
-            most: f64::INFINITY,
-            evenness: groups.evenness,
+            max_scale: f64::INFINITY,
+            regularisation: groups.regularisation,
             tolerance: groups.tolerance,
             paths: tracing.paths,
             target_error: tracing.target_error,
@@ -104,7 +104,7 @@ unsafe impl Versioned for luxfer_lamps_params {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     pub emission: Option<(Arc<SceneObject>, Option<u32>)>,
-    pub goals: Vec<Aim>,
+    pub goals: Vec<StoredGoal>,
     /// Dimming levels of the drivers; empty for drivers without steps.
     pub levels: Vec<f64>,
 }
@@ -259,9 +259,9 @@ impl luxfer_lamps_params {
     fn solving(&self, groups: usize, levels: Vec<f64>) -> GroupParams {
         GroupParams {
             colour: if self.free_colour == 1 { Colour::Free } else { Colour::Kept },
-            max_scale: vec![self.most; groups],
+            max_scale: vec![self.max_scale; groups],
             levels,
-            evenness: self.evenness,
+            regularisation: self.regularisation,
             tolerance: self.tolerance,
         }
     }

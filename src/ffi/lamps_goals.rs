@@ -6,34 +6,15 @@
 use super::geometry::list;
 use super::guard::enter;
 use super::illuminance::luxfer_illuminance_grid;
+use super::lamp_goal::{StoredGoal, Where};
 use super::lamps::{Inputs, Output, luxfer_lamps};
 use super::params;
-use super::relight::{luxfer_quantity, luxfer_sense, quantity, sense};
+use super::relight::{constraint, luxfer_constraint, luxfer_quantity, quantity};
 use super::scene::{colour, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::image::try_collect;
-use crate::relight::{Aspect, Goal, MAX_LEVELS, Place, Quantity, Sense};
-use crate::scene::Scene;
-use glam::Vec3;
-
-/// A goal as the host has set it.
-#[derive(Clone)]
-pub(super) struct Aim {
-    place: Where,
-    quantity: Quantity,
-    pub target: Vec3,
-    aspect: Aspect,
-    sense: [Sense; 3],
-    weight: f64,
-}
-
-#[derive(Clone)]
-enum Where {
-    Mesh(u32),
-    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
-}
+use crate::relight::{Aspect, MAX_LEVELS, Quantity, Sense};
 
 /// Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
 /// LUXFER_QUANTITY_ value; weight, >= 0, is relative to the other goals. Any thread.
@@ -51,7 +32,7 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
     enter(lamps, |stage| {
         let (quantity, target) = (self::quantity(quantity)?, colour("target", red, green, blue)?);
         let sense = [Sense::Exactly; 3];
-        add(stage, Aim { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, sense, weight })
+        add(stage, StoredGoal { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, sense, weight })
     })
 }
 
@@ -70,48 +51,50 @@ pub unsafe extern "C" fn luxfer_lamps_add_grid(
         let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
         let place = Where::Grid { origin, across, down, normal };
         let (quantity, sense) = (Quantity::Incident, [Sense::Exactly; 3]);
-        add(stage, Aim { place, quantity, target, aspect: Aspect::Luminance, sense, weight })
+        add(stage, StoredGoal { place, quantity, target, aspect: Aspect::Luminance, sense, weight })
     })
 }
 
-fn add(stage: &Stage<Inputs, Output>, aim: Aim) -> Result<()> {
-    if !(aim.weight >= 0.0 && aim.weight.is_finite()) {
-        return Err(Error::argument(format!("weight is {}; it must be finite and not negative", aim.weight)));
+fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
+    if !(goal.weight >= 0.0 && goal.weight.is_finite()) {
+        return Err(Error::argument(format!("weight is {}; it must be finite and not negative", goal.weight)));
     }
     stage.change(|inputs| {
         let (scene, _) = need(&inputs.emission, "luxfer_lamps_set_scene")?;
         let meshes = scene.snapshot().meshes.len();
-        if let Where::Mesh(mesh) = aim.place
+        if let Where::Mesh(mesh) = goal.place
             && mesh as usize >= meshes
         {
             return Err(missing("mesh", mesh, meshes));
         }
-        inputs.goals.push(aim);
+        inputs.goals.push(goal);
         Ok(())
     })
 }
 
-/// Makes a goal a limit, separately in each channel: LUXFER_SENSE_ values. The three values of a goal in lux must be
-/// equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_SENSE_EXACTLY. Any
+/// Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must be
+/// equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL. Any
 /// thread.
 /// LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_set_sense(
+pub unsafe extern "C" fn luxfer_lamps_set_constraint(
     lamps: *mut luxfer_lamps,
     goal: u32,
-    red: luxfer_sense,
-    green: luxfer_sense,
-    blue: luxfer_sense,
+    red: luxfer_constraint,
+    green: luxfer_constraint,
+    blue: luxfer_constraint,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let senses = [sense(red)?, sense(green)?, sense(blue)?];
+        let senses = [constraint(red)?, constraint(green)?, constraint(blue)?];
         stage.change(|inputs| {
             let count = inputs.goals.len();
-            let aim = inputs.goals.get_mut(goal as usize).ok_or_else(|| missing("goal", goal, count))?;
-            if aim.aspect == Aspect::Luminance && senses != [senses[0]; 3] {
-                return Err(Error::argument(format!("goal {goal} is in lux; its channels must have the same sense")));
+            let stored = inputs.goals.get_mut(goal as usize).ok_or_else(|| missing("goal", goal, count))?;
+            if stored.aspect == Aspect::Luminance && senses != [senses[0]; 3] {
+                return Err(Error::argument(format!(
+                    "goal {goal} is in lux; its channels must have equal constraints"
+                )));
             }
-            aim.sense = senses;
+            stored.sense = senses;
             Ok(())
         })
     })
@@ -153,25 +136,4 @@ pub unsafe extern "C" fn luxfer_lamps_clear_goals(lamps: *mut luxfer_lamps) -> l
             Ok(())
         })
     })
-}
-
-impl Aim {
-    pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
-        match self.place {
-            Where::Mesh(mesh) => {
-                let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
-                try_collect((0..count).map(|t| (mesh as usize, t)))
-            }
-            Where::Grid { .. } => Ok(Vec::new()),
-        }
-    }
-
-    pub(super) fn goal<'a>(&self, triangles: &'a [(usize, usize)]) -> Goal<'a> {
-        let place = match self.place {
-            Where::Mesh(_) => Place::Surface(triangles),
-            Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
-        };
-        let Self { quantity, target, aspect, sense, weight, .. } = *self;
-        Goal { place, quantity, target, aspect, sense, weight }
-    }
 }

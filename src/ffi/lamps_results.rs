@@ -8,7 +8,7 @@ use super::image::{Pixels, luxfer_image};
 use super::lamps::luxfer_lamps;
 use super::params::{Report, Versioned};
 use super::pointer::{Out, copy_text};
-use super::relight::{luxfer_reach, reach_value};
+use super::relight::{luxfer_outcome, reach_value};
 use super::scene::missing;
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind};
@@ -73,8 +73,8 @@ unsafe impl Versioned for luxfer_lamp {
 pub struct luxfer_lamps_goal {
     /// sizeof(luxfer_lamps_goal), set by the caller.
     pub struct_size: u32,
-    /// LUXFER_REACH_ value of each channel.
-    pub reach: [luxfer_reach; 3],
+    /// LUXFER_OUTCOME_ value of each channel.
+    pub outcome: [luxfer_outcome; 3],
     /// Mean radiance of the goal, in cd/m²; illuminance / pi for a grid.
     pub target: [f64; 3],
     /// Mean radiance with the powers found, in cd/m².
@@ -91,7 +91,7 @@ unsafe impl Versioned for luxfer_lamps_goal {
     const SIZES: &'static [usize] = &[112];
     fn defaults() -> Self {
         let zero = [0.0; 3];
-        Self { struct_size: 112, reach: [0; 3], target: zero, achieved: zero, half_width: zero, background: zero }
+        Self { struct_size: 112, outcome: [0; 3], target: zero, achieved: zero, half_width: zero, background: zero }
     }
 }
 
@@ -177,7 +177,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
         let i = index as usize;
         let outcome = o.solution.outcomes.get(i).ok_or_else(|| missing("goal", index, o.targets.len()))?;
         out.set(luxfer_lamps_goal {
-            reach: outcome.status.map(reach_value),
+            outcome: outcome.status.map(reach_value),
             target: o.targets[i].as_dvec3().to_array(),
             achieved: outcome.achieved.to_array(),
             half_width: outcome.half_width.to_array(),

@@ -15,11 +15,13 @@
 #[cfg(panic = "abort")]
 compile_error!("luxfer reports panics to its host as LUXFER_INTERNAL: build it with panic = \"unwind\"");
 
+mod entry;
 mod float_mode;
 mod guard;
 mod handle;
 mod params;
 mod pointer;
+mod shared_context;
 mod stage;
 
 mod context;
@@ -38,6 +40,7 @@ mod illuminance;
 mod image;
 mod importance;
 mod job;
+mod lamp_goal;
 mod lamps;
 mod lamps_goals;
 mod lamps_results;
@@ -68,6 +71,8 @@ mod status;
 mod stylize;
 #[cfg(not(feature = "stylize"))]
 mod stylize_absent;
+#[cfg(feature = "stylize")]
+mod stylize_output;
 #[cfg(feature = "stylize")]
 mod stylize_params;
 #[cfg(feature = "stylize")]

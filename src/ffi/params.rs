@@ -58,7 +58,8 @@ pub(super) fn read_required<P: Versioned>(place: *const P) -> Result<P> {
     let size = size_at(place)?;
     let known = size.min(size_of::<P>());
     let mut params = P::defaults();
-    // SAFETY: the caller's struct has `size` bytes, of which we copy those that we have too; any bits are valid.
+    // SAFETY: the caller's struct has `size` bytes; the bytes that this version has too are copied, and any bits are
+    // valid.
     let tail = unsafe {
         std::ptr::copy_nonoverlapping(place.cast::<u8>(), (&raw mut params).cast::<u8>(), known);
         std::slice::from_raw_parts(place.cast::<u8>().add(known), size - known)

@@ -37,18 +37,18 @@ pub struct luxfer_placement_params {
     /// Number of placements at which the search starts, in [1, 4096]; default 64.
     pub starts: u32,
     /// Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5.
-    pub least_offset: [f64; 2],
+    pub min_offset: [f64; 2],
     /// Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value is
     /// fixed.
-    pub most_offset: [f64; 2],
+    pub max_offset: [f64; 2],
     /// Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1.
-    pub least_scale: [f64; 2],
+    pub min_scale: [f64; 2],
     /// Largest number of repetitions, in [1/64, 64]; default 1.
-    pub most_scale: [f64; 2],
+    pub max_scale: [f64; 2],
     /// Smallest rotation in radians, in [-2 pi, 2 pi]; default 0.
-    pub least_rotation: f64,
+    pub min_rotation: f64,
     /// Largest rotation in radians, in [-2 pi, 2 pi]; default 0.
-    pub most_rotation: f64,
+    pub max_rotation: f64,
     /// Seed of the starting placements; default 1.
     pub seed: u64,
 }
@@ -64,12 +64,12 @@ unsafe impl Versioned for luxfer_placement_params {
             aim: LUXFER_AIM_MOST,
             radiance: [0.0; 3],
             starts: d.starts as u32,
-            least_offset: d.min.offset.to_array(),
-            most_offset: d.max.offset.to_array(),
-            least_scale: d.min.scale.to_array(),
-            most_scale: d.max.scale.to_array(),
-            least_rotation: d.min.rotation,
-            most_rotation: d.max.rotation,
+            min_offset: d.min.offset.to_array(),
+            max_offset: d.max.offset.to_array(),
+            min_scale: d.min.scale.to_array(),
+            max_scale: d.max.scale.to_array(),
+            min_rotation: d.min.rotation,
+            max_rotation: d.max.rotation,
             seed: d.seed,
         }
     }
@@ -89,8 +89,8 @@ impl luxfer_placement_params {
                 LUXFER_AIM_RADIANCE => Aim::Radiance(Vec3::from_array(self.radiance)),
                 other => return Err(Error::argument(format!("aim is {other}; it must be a LUXFER_AIM_ value"))),
             },
-            min: pose(self.least_offset, self.least_scale, self.least_rotation),
-            max: pose(self.most_offset, self.most_scale, self.most_rotation),
+            min: pose(self.min_offset, self.min_scale, self.min_rotation),
+            max: pose(self.max_offset, self.max_scale, self.max_rotation),
             starts: self.starts as usize,
             seed: self.seed,
         })

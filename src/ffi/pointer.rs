@@ -17,7 +17,7 @@ impl<T> Out<T> {
     }
 
     pub(super) fn set(self, value: T) {
-        // SAFETY: not null, and the caller says it is writable for the length of the call.
+        // SAFETY: not null, and the caller guarantees that it is writable during the call.
         unsafe { self.0.write_unaligned(value) }
     }
 }
@@ -25,7 +25,7 @@ impl<T> Out<T> {
 /// Writes a result unless the caller passed null.
 pub(super) fn set_optional<T>(place: *mut T, value: T) {
     if !place.is_null() {
-        // SAFETY: not null, and the caller says it is writable for the length of the call.
+        // SAFETY: not null, and the caller guarantees that it is writable during the call.
         unsafe { place.write_unaligned(value) }
     }
 }
@@ -35,7 +35,7 @@ pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
     if text.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a string in UTF-8")));
     }
-    // SAFETY: not null, and the caller says it ends with a zero.
+    // SAFETY: not null, and the caller guarantees that it ends with a zero.
     let text = unsafe { CStr::from_ptr(text) };
     text.to_str().map_err(|e| {
         Error::argument(format!("{name} is not valid UTF-8 at byte {}; paths and names are UTF-8", e.valid_up_to()))
@@ -54,7 +54,7 @@ pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed
         len -= 1;
     }
     if capacity > 0 {
-        // SAFETY: not null; `len` + 1 <= `capacity` bytes, which the caller says are writable.
+        // SAFETY: not null; `len` + 1 <= `capacity` bytes, which the caller guarantees to be writable.
         unsafe {
             std::ptr::copy_nonoverlapping(text.as_ptr(), buffer.cast(), len);
             buffer.add(len).write(0);
@@ -67,7 +67,8 @@ pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed
 /// `len` bytes in the caller's memory.
 pub(super) fn bytes<'a>(data: *const u8, len: usize, name: &str) -> Result<&'a [u8]> {
     check_region(data, len, name)?;
-    // SAFETY: not null, no longer than an object can be, and the caller says it is readable for the length of the call.
+    // SAFETY: not null, no longer than an object can be, and the caller guarantees that it is readable during the
+    // call.
     Ok(unsafe { std::slice::from_raw_parts(data, len) })
 }
 

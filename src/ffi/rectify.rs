@@ -293,7 +293,7 @@ pub(super) struct Inputs {
 pub(super) struct Output {
     pub(super) view: Arc<View>,
     pub(super) unwarped: Option<Arc<Unwarped>>,
-    /// What the view was found in and with: it is kept while they stay the same.
+    /// The inputs of the view, which is reused as long as they do not change.
     found_in: Arc<Pixels>,
     found_with: rectify::Params,
 }

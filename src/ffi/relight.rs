@@ -40,25 +40,25 @@ pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
 /// the coefficient of variation of the response over the target.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
-/// Whether light should equal its target value, or stay above or below it: a LUXFER_SENSE_ value.
-pub type luxfer_sense = i32;
+/// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
+pub type luxfer_constraint = i32;
 /// The light should equal the value.
-pub const LUXFER_SENSE_EXACTLY: luxfer_sense = 0;
+pub const LUXFER_CONSTRAINT_EQUAL: luxfer_constraint = 0;
 /// The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a photo shows.
-pub const LUXFER_SENSE_AT_LEAST: luxfer_sense = 1;
+pub const LUXFER_CONSTRAINT_AT_LEAST: luxfer_constraint = 1;
 /// The light should be at most the value, as a limit against glare.
-pub const LUXFER_SENSE_AT_MOST: luxfer_sense = 2;
+pub const LUXFER_CONSTRAINT_AT_MOST: luxfer_constraint = 2;
 
-/// Whether the target is met in a colour channel, and if not, the reason: a LUXFER_REACH_ value.
-pub type luxfer_reach = i32;
+/// Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value.
+pub type luxfer_outcome = i32;
 /// The target is met.
-pub const LUXFER_REACH_MET: luxfer_reach = 0;
+pub const LUXFER_OUTCOME_MET: luxfer_outcome = 0;
 /// The other lights alone exceed the target: the emission is 0 in this channel.
-pub const LUXFER_REACH_TOO_BRIGHT: luxfer_reach = 1;
+pub const LUXFER_OUTCOME_TOO_BRIGHT: luxfer_outcome = 1;
 /// No light of this channel reaches the target: the emission uses the mean scale of the other channels.
-pub const LUXFER_REACH_DARK: luxfer_reach = 2;
+pub const LUXFER_OUTCOME_DARK: luxfer_outcome = 2;
 /// All lamps at their largest power are too weak, or two goals contradict each other.
-pub const LUXFER_REACH_TOO_DIM: luxfer_reach = 3;
+pub const LUXFER_OUTCOME_TOO_DIM: luxfer_outcome = 3;
 
 /// Settings of a relighting. Fill them with luxfer_relight_params_init.
 #[repr(C)]
@@ -142,8 +142,8 @@ pub struct luxfer_relight_report {
     pub response: [f64; 3],
     /// Mean radiance of the target from all other light, in cd/m².
     pub background: [f64; 3],
-    /// LUXFER_REACH_ value of each channel.
-    pub reach: [luxfer_reach; 3],
+    /// LUXFER_OUTCOME_ value of each channel.
+    pub outcome: [luxfer_outcome; 3],
     /// 0.
     pub reserved: u32,
     /// The largest relative half-width among the channels that meet their target.
@@ -165,7 +165,7 @@ unsafe impl Versioned for luxfer_relight_report {
             half_width: [0.0; 3],
             response: [0.0; 3],
             background: [0.0; 3],
-            reach: [0; 3],
+            outcome: [0; 3],
             reserved: 0,
             error: 0.0,
             delta_e: 0.0,
@@ -181,21 +181,21 @@ pub(super) fn quantity(value: luxfer_quantity) -> Result<Quantity> {
     }
 }
 
-pub(super) fn sense(value: luxfer_sense) -> Result<Sense> {
+pub(super) fn constraint(value: luxfer_constraint) -> Result<Sense> {
     match value {
-        LUXFER_SENSE_EXACTLY => Ok(Sense::Exactly),
-        LUXFER_SENSE_AT_LEAST => Ok(Sense::AtLeast),
-        LUXFER_SENSE_AT_MOST => Ok(Sense::AtMost),
-        other => Err(Error::argument(format!("sense is {other}; it must be a LUXFER_SENSE_ value"))),
+        LUXFER_CONSTRAINT_EQUAL => Ok(Sense::Exactly),
+        LUXFER_CONSTRAINT_AT_LEAST => Ok(Sense::AtLeast),
+        LUXFER_CONSTRAINT_AT_MOST => Ok(Sense::AtMost),
+        other => Err(Error::argument(format!("the constraint is {other}; it must be a LUXFER_CONSTRAINT_ value"))),
     }
 }
 
-pub(super) fn reach_value(status: TargetStatus) -> luxfer_reach {
+pub(super) fn reach_value(status: TargetStatus) -> luxfer_outcome {
     match status {
-        TargetStatus::Met => LUXFER_REACH_MET,
-        TargetStatus::TooBright => LUXFER_REACH_TOO_BRIGHT,
-        TargetStatus::Dark => LUXFER_REACH_DARK,
-        TargetStatus::TooDim => LUXFER_REACH_TOO_DIM,
+        TargetStatus::Met => LUXFER_OUTCOME_MET,
+        TargetStatus::TooBright => LUXFER_OUTCOME_TOO_BRIGHT,
+        TargetStatus::Dark => LUXFER_OUTCOME_DARK,
+        TargetStatus::TooDim => LUXFER_OUTCOME_TOO_DIM,
     }
 }
 
@@ -207,7 +207,7 @@ impl luxfer_relight_report {
             half_width: solution.half_width.to_array(),
             response: solution.response.to_array(),
             background: solution.background.to_array(),
-            reach: solution.status.map(reach_value),
+            outcome: solution.status.map(reach_value),
             error: solution.error(),
             delta_e: solution.delta_e,
             ..Self::defaults()
@@ -292,19 +292,19 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
     })
 }
 
-/// Makes the target a limit, separately in each channel: LUXFER_SENSE_ values. A channel that the photo clips should be
-/// LUXFER_SENSE_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
+/// Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips should be
+/// LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
 /// respects the limit, else the scale that reaches the limit. Any thread.
-/// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_SENSE_ value.
+/// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_set_sense(
+pub unsafe extern "C" fn luxfer_relight_set_constraint(
     relight: *mut luxfer_relight,
-    red: luxfer_sense,
-    green: luxfer_sense,
-    blue: luxfer_sense,
+    red: luxfer_constraint,
+    green: luxfer_constraint,
+    blue: luxfer_constraint,
 ) -> luxfer_status {
     enter(relight, |stage| {
-        let senses = [sense(red)?, sense(green)?, sense(blue)?];
+        let senses = [constraint(red)?, constraint(green)?, constraint(blue)?];
         stage.change(|inputs| {
             inputs.sense = senses;
             Ok(())

@@ -85,7 +85,7 @@ pub struct luxfer_surface {
     pub area: f32,
     /// Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, as
     /// those of a vault; they receive no emission.
-    pub bent: f32,
+    pub sloped_area: f32,
 }
 
 // SAFETY: plain numbers.
@@ -102,12 +102,12 @@ unsafe impl Versioned for luxfer_surface {
             normal: [0.0; 3],
             size: [0.0; 2],
             area: 0.0,
-            bent: 0.0,
+            sloped_area: 0.0,
         }
     }
 }
 
-/// What a `luxfer_scene` refers to.
+/// The object behind a `luxfer_scene` handle.
 pub(super) struct SceneObject {
     context: Arc<Context>,
     state: Mutex<State>,
@@ -156,12 +156,12 @@ impl SceneObject {
         Arc::new(Self { context: context.clone(), state: Mutex::new(state) })
     }
 
-    /// The scene as it is.
+    /// The current scene, shared.
     pub(super) fn snapshot(&self) -> Arc<Scene> {
         lock(&self.state).scene.clone()
     }
 
-    /// Changes the scene, which costs `bytes`; a change that fails must leave it as it was.
+    /// Changes the scene and charges `bytes` to the memory budget; after an error the scene must be unchanged.
     pub(super) fn change<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
         let charge = self.context.charge(bytes)?;
         let state = &mut *lock(&self.state);
@@ -179,7 +179,7 @@ impl SceneObject {
         lock(&self.state).world.clone().filter(|world| Arc::ptr_eq(world.scene(), scene))
     }
 
-    /// The scene as it is, ready for tracing, for calls that return when their work is done.
+    /// The current scene prepared for tracing, for calls that trace before they return.
     pub(super) fn ready_world(&self) -> Result<Arc<World>> {
         let scene = self.snapshot();
         match self.kept_world(&scene) {
@@ -399,7 +399,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
             normal: surface.normal.to_array(),
             size: surface.size.to_array(),
             area: surface.area,
-            bent: surface.bent,
+            sloped_area: surface.bent,
             ..luxfer_surface::defaults()
         });
         Ok(())

@@ -40,14 +40,14 @@ pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
 /// Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
 pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
 
-/// What is segmented: a LUXFER_SUBJECT_ value.
+/// The subject of a segmentation: a LUXFER_SUBJECT_ value.
 pub type luxfer_subject = i32;
-/// Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a surface.
+/// Lamps if luxfer_segment_set_region gave a mask and the features are those of luxfer_features; else a surface.
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is judged by its features.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
 /// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
-/// without a stroke that look like them and lie in the mask of luxfer_segment_set_within are found as well. Negative strokes are
+/// without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as well. Negative strokes are
 /// not needed. The first three channels of the features must be CIELAB.
 pub const LUXFER_SUBJECT_LAMPS: luxfer_subject = 2;
 
@@ -74,8 +74,8 @@ pub struct luxfer_segment_params {
     /// Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
     /// neighbours as one surface, in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
-    /// What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. Of lamps the settings above do not
-    /// matter.
+    /// The subject of the positive strokes: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. For lamps the
+    /// settings above have no effect.
     pub subject: luxfer_subject,
     /// Must be 0.
     pub reserved: u32,
@@ -164,7 +164,7 @@ unsafe impl Versioned for luxfer_segment_report {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     features: Option<Arc<Pixels>>,
-    pub(super) within: Option<Arc<Pixels>>,
+    pub(super) region: Option<Arc<Pixels>>,
     pub(super) strokes: Vec<Stroke>,
 }
 
@@ -248,17 +248,17 @@ pub unsafe extern "C" fn luxfer_segment_set_features(
     })
 }
 
-/// Restricts the segmentation to the pixels where within is 1, such as the mask of the plane when you segment lights; 0
-/// elsewhere; 1 channel, the size of the features. within may be NULL: no restriction. Any thread.
+/// Restricts the segmentation to the pixels where region is 1, such as the mask of the plane when you segment lights; 0
+/// elsewhere; 1 channel, the size of the features. region may be NULL: no restriction. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_set_within(
+pub unsafe extern "C" fn luxfer_segment_set_region(
     segment: *mut luxfer_segment,
-    within: *mut luxfer_image,
+    region: *mut luxfer_image,
 ) -> luxfer_status {
     enter(segment, |stage| {
-        let within = Pixels::optional(stage.context(), within, "within")?;
+        let region = Pixels::optional(stage.context(), region, "region")?;
         stage.change(|inputs| {
-            inputs.within = within;
+            inputs.region = region;
             Ok(())
         })
     })
@@ -354,7 +354,7 @@ pub unsafe extern "C" fn luxfer_segment_start(
             let input = segment::Input {
                 features: need(&inputs.features, "luxfer_segment_set_features")?.image(),
                 strokes: &inputs.strokes,
-                within: inputs.within.as_ref().map(|w| w.image()),
+                within: inputs.region.as_ref().map(|w| w.image()),
             };
             segment::run(&input, &params, job)
         })

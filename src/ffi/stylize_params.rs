@@ -139,7 +139,7 @@ const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Gree
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
 const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
 
-/// The value that an integer from outside stands for.
+/// The setting for an integer of the C interface.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {
     let value = usize::try_from(index).ok().and_then(|i| values.get(i));
     value.copied().ok_or_else(|| Error::argument(format!("{name} is {index}; it must be a {prefix} value")))

@@ -11,11 +11,10 @@ use super::pointer::Out;
 use super::scene::missing;
 use super::status::luxfer_status;
 use super::stylize::luxfer_stylize;
-use crate::error::{Error, ErrorKind, Result};
+use super::stylize_output::{Finished, Stylised};
+use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::patch::Field;
-use crate::stylize::{Glimpse, LevelReport, Output, Study};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 /// An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value.
 pub type luxfer_stylize_image = i32;
@@ -44,7 +43,7 @@ pub struct luxfer_stylize_report {
     /// Width of the patches, in pixels.
     pub patch: u32,
     /// Largest number of uses of an exemplar patch.
-    pub most_used: u32,
+    pub max_uses: u32,
     /// Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
     /// channels of the artwork have the weight 1 together, the guides guide_weight.
     pub energy: f64,
@@ -71,13 +70,30 @@ unsafe impl Versioned for luxfer_stylize_report {
             levels: 0,
             halvings: 0,
             patch: 0,
-            most_used: 0,
+            max_uses: 0,
             energy: 0.0,
             used: 0.0,
             entropy: 0.0,
             guide_error: 0.0,
             broken_source: 0,
             broken_target: 0,
+        }
+    }
+}
+
+impl luxfer_stylize_report {
+    /// The numbers of a finished run.
+    fn of(finished: &Finished) -> Self {
+        Self {
+            finished: 1,
+            patch: finished.patch as u32,
+            max_uses: finished.usage.max_uses,
+            used: finished.usage.used,
+            entropy: finished.usage.entropy,
+            guide_error: finished.guide_rms,
+            broken_source: finished.broken[0] as u64,
+            broken_target: finished.broken[1] as u64,
+            ..Self::defaults()
         }
     }
 }
@@ -129,89 +145,6 @@ unsafe impl Versioned for luxfer_stylize_pass {
     }
 }
 
-/// The result of a run, finished or not.
-#[derive(Clone)]
-pub(super) struct Stylised {
-    picture: Arc<Image>,
-    halvings: usize,
-    levels: Arc<Vec<LevelReport>>,
-    finished: Option<Finished>,
-}
-
-/// The result of a finished run only.
-#[derive(Clone)]
-struct Finished {
-    guide_error: Arc<Image>,
-    sources: Arc<Image>,
-    report: luxfer_stylize_report,
-    field: Arc<Field>,
-    study: Option<Arc<Mutex<Study>>>,
-}
-
-impl Stylised {
-    pub(super) fn unfinished(glimpse: Glimpse) -> Self {
-        Self {
-            picture: Arc::new(glimpse.picture),
-            halvings: glimpse.halvings,
-            levels: Arc::new(glimpse.levels.to_vec()),
-            finished: None,
-        }
-    }
-
-    pub(super) fn finished(output: Output, study: Option<Study>) -> Self {
-        let report = output.report;
-        let squares = report.guide_error.data.iter().map(|&v| f64::from(v).powi(2));
-        let numbers = luxfer_stylize_report {
-            finished: 1,
-            patch: report.patch as u32,
-            most_used: report.usage.max_uses,
-            used: report.usage.used,
-            entropy: report.usage.entropy,
-            guide_error: (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt(),
-            broken_source: report.broken_source as u64,
-            broken_target: report.broken_target as u64,
-            ..luxfer_stylize_report::defaults()
-        };
-        Self {
-            picture: Arc::new(output.image),
-            halvings: report.halvings,
-            levels: Arc::new(report.levels),
-            finished: Some(Finished {
-                guide_error: Arc::new(report.guide_error),
-                sources: Arc::new(report.sources),
-                report: numbers,
-                field: Arc::new(output.field),
-                study: study.map(|s| Arc::new(Mutex::new(s))),
-            }),
-        }
-    }
-
-    /// This run with the picture of an update.
-    pub(super) fn updated(&self, picture: Image, sources: Image) -> Self {
-        let finished = self.finished.clone().map(|f| Finished { sources: Arc::new(sources), ..f });
-        Self { picture: Arc::new(picture), finished, ..self.clone() }
-    }
-
-    /// The matches of a finished run.
-    pub(super) fn field(&self) -> Result<Arc<Field>> {
-        Ok(self.need_finished()?.field.clone())
-    }
-
-    pub(super) fn study(&self) -> Option<Arc<Mutex<Study>>> {
-        self.finished.as_ref().and_then(|f| f.study.clone())
-    }
-
-    fn need_finished(&self) -> Result<&Finished> {
-        self.finished.as_ref().ok_or_else(|| {
-            Error::new(ErrorKind::NotReady, "only the picture is there before the last level is done; wait for the job")
-        })
-    }
-
-    fn level(&self, index: u32) -> Result<&LevelReport> {
-        self.levels.get(index as usize).ok_or_else(|| missing("level", index, self.levels.len()))
-    }
-}
-
 /// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
 /// the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
@@ -246,7 +179,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_report(
     enter(stylize, |stage| {
         let out = Report::new(report)?;
         let output = stage.output()?;
-        let finished = output.finished.as_ref().map_or_else(luxfer_stylize_report::defaults, |f| f.report);
+        let finished = output.finished.as_ref().map_or_else(luxfer_stylize_report::defaults, luxfer_stylize_report::of);
         out.set(luxfer_stylize_report {
             levels: output.levels.len() as u32,
             halvings: output.halvings as u32,

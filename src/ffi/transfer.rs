@@ -546,7 +546,7 @@ pub unsafe extern "C" fn luxfer_transfer_start(
     })
 }
 
-/// A transfer as it is: its inputs and results, with these settings.
+/// A copy of the transfer's inputs and results, with these settings.
 pub(super) fn snapshot(stage: &Runner<Inputs, Results>, params: luxfer_transfer_params) -> Result<Transfer> {
     let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
     Ok(Transfer { input: stage.inputs().input()?, params: params.params()?, results })

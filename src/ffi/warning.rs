@@ -205,9 +205,9 @@ pub unsafe extern "C" fn luxfer_segment_get_warnings(
     enter(segment, |stage| {
         let out = Out::new(warnings, "warnings")?;
         let (made, inputs) = (stage.output()?, stage.inputs());
-        let lit = inputs.within.as_ref().and_then(|within| segment::almost_all_lit(&made.mask, within.image()));
+        let lit = inputs.region.as_ref().and_then(|region| segment::almost_all_lit(&made.mask, region.image()));
         let list = made.warnings().into_iter().chain(made.missed(inputs.strokes.iter())).chain(lit).collect();
-        let phase = if inputs.within.is_some() { Stage::Lights } else { Stage::Plane };
+        let phase = if inputs.region.is_some() { Stage::Lights } else { Stage::Plane };
         out.set(give(stage.context(), of(phase, list)));
         Ok(())
     })

@@ -11,7 +11,7 @@ pub enum FocalSource {
     VanishingPoints,
     /// Assumed as 0.85 of the image width, because the vanishing points do not determine it.
     Assumed,
-    /// Mainly from what the photo's file says: the vanishing points say less.
+    /// Mainly from the metadata of the photo: the vanishing points are less accurate.
     Metadata,
 }
 

@@ -17,7 +17,8 @@ pub struct Image {
     pub data: Vec<f32>,
 }
 
-/// A vector of `len` copies of `value`, or an error where an infallible allocation would end the host's process.
+/// A vector of `len` copies of `value`, or an error if memory is short (an infallible allocation would end the host's
+/// process).
 pub fn try_vec<T: Clone>(len: usize, value: T) -> Result<Vec<T>> {
     let mut data = try_with_capacity(len)?;
     data.resize(len, value);
@@ -31,7 +32,7 @@ pub fn try_with_capacity<T>(len: usize) -> Result<Vec<T>> {
     Ok(data)
 }
 
-/// What an iterator gives, or an error.
+/// Collects an iterator, or returns an error if memory is short.
 pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
     let items = items.into_iter();
     let mut data = try_with_capacity(items.size_hint().0)?;
@@ -41,20 +42,20 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
     Ok(data)
 }
 
-/// Appends an item, or gives an error.
+/// Appends an item, or returns an error if memory is short.
 pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
     make_room(data, 1)?;
     data.push(item);
     Ok(())
 }
 
-/// Makes room for a number of items more, or gives an error; lists grow by doubling.
+/// Ensures capacity for `more` further items, or returns an error; capacity grows by doubling.
 #[inline]
 pub(crate) fn make_room<T>(data: &mut Vec<T>, more: usize) -> Result<()> {
     if reserve::make_room(data, more) { Ok(()) } else { Err(no_memory::<T>(data.len().saturating_add(more))) }
 }
 
-/// The error where there is no room for so many items.
+/// The error if there is no memory for `len` items.
 pub(crate) fn no_memory<T>(len: usize) -> Error {
     let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
     Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
@@ -75,7 +76,7 @@ impl Image {
         Ok(Self { width, height, channels, data: zeros(len).ok_or_else(|| no_memory::<f32>(len))? })
     }
 
-    /// A copy, or an error where there is no memory for it.
+    /// A copy, or an error if memory is short.
     pub fn try_clone(&self) -> Result<Self> {
         Ok(Self { data: try_collect(self.data.iter().copied())?, ..*self })
     }

@@ -29,7 +29,7 @@ pub fn srgb8_table() -> [f32; 256] {
     std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0))
 }
 
-/// Luminance of linear Rec.709 RGB: in cd/m² where the colour is photometric.
+/// Luminance of linear Rec.709 RGB, in cd/m² for photometric colours.
 pub fn luminance(rgb: Vec3) -> f32 {
     rgb.dot(Vec3::new(0.212_639, 0.715_168_7, 0.072_192_3))
 }
@@ -41,12 +41,13 @@ pub fn linear_to_xyz(rgb: Vec3) -> DVec3 {
 /// Linear RGB, 1 = diffuse white, to CIELAB: L* in `[0, 100]` for colours inside the gamut.
 #[inline(always)]
 pub fn linear_to_lab(rgb: Vec3) -> Vec3 {
-    // Relative to the white point.
+    // Rows of the matrix to CIE XYZ, relative to the white point [convention: IEC 61966-2-1].
     const X: [f64; 3] = relative_row(0);
     const Y: [f64; 3] = relative_row(1);
     const Z: [f64; 3] = relative_row(2);
     let of = |row: [f64; 3]| {
         let t = row[0] * f64::from(rgb.x) + row[1] * f64::from(rgb.y) + row[2] * f64::from(rgb.z);
+        // [convention: CIE 15, CIELAB]
         const DELTA: f64 = 6.0 / 29.0;
         let straight = t * (1.0 / (3.0 * DELTA * DELTA)) + 4.0 / 29.0;
         let root = cube_root(t);
@@ -63,13 +64,13 @@ const fn relative_row(row: usize) -> [f64; 3] {
     [m[row] / white, m[row + 3] / white, m[row + 6] / white]
 }
 
-/// The cube root of a value in `[1e-37, 3e38]`, to 1e-13 of it, by operations that processors do on many values at
-/// once. Other values give something finite or NaN.
+/// The cube root of a value in `[1e-37, 3e38]`, with a relative error of 1e-13, by operations that vectorise. Other
+/// values give a finite number or NaN.
 #[inline(always)]
 fn cube_root(t: f64) -> f64 {
-    // `t^(-1/3)` needs no division: with e = 1 - t r³ the better guess is r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 +
-    // 14e³/81 + …). The first, a third of the exponent and the mantissa as they stand, has |e| < 0.11, the second
-    // 6e-5.
+    // `t^(-1/3)` needs no division: with e = 1 - t r³ the improved estimate is r (1 - e)^(-1/3) = r (1 + e/3 + 2e²/9 +
+    // 14e³/81 + …). The first estimate divides the exponent and the mantissa bits by three and has |e| < 0.11, the
+    // second 6e-5.
     let single = t as f32;
     let third = (single.to_bits() as i32 as f32 * (1.0 / 3.0)) as i32;
     let r = f32::from_bits(1_419_900_000u32.wrapping_sub(third as u32));
@@ -80,8 +81,8 @@ fn cube_root(t: f64) -> f64 {
     t * r * r
 }
 
-/// CIEDE2000 difference of a linear light from another that is wanted, seen at the exposure that shows that as a
-/// middle grey; 0 where it is black.
+/// CIEDE2000 difference of a linear light from a wanted one, at the exposure at which the wanted one is a middle grey;
+/// 0 if it is black.
 pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
     let luminance = f64::from(luminance(wanted.as_vec3()));
     if !(luminance > 0.0) {
@@ -112,7 +113,7 @@ pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
     let (dl, dc) = (b.x - a.x, cb - ca);
     let dh_term = 2.0 * (ca * cb).sqrt() * (dh / 2.0).to_radians().sin();
 
-    // Means, the hue's taken along the shorter arc.
+    // Means; that of the hue is taken along the shorter arc.
     let (l, c) = ((a.x + b.x) / 2.0, (ca + cb) / 2.0);
     let h = match () {
         () if grey => ha + hb,
@@ -134,7 +135,7 @@ pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
 }
 
 widest! {
-    /// Linear RGB colours to CIELAB in their place, plane by plane: as [`linear_to_lab`], many at once.
+    /// Converts linear RGB planes to CIELAB in place: like [`linear_to_lab`], for many colours at once.
     pub fn planes_to_lab(r: &mut [f32], g: &mut [f32], b: &mut [f32]) {
         let n = r.len();
         let (r, g, b) = (&mut r[..n], &mut g[..n], &mut b[..n]);

@@ -1,21 +1,22 @@
-//! Whole files: read into memory, and written so that nothing of the caller's is lost.
+//! Reading and writing whole files without losing data of the caller.
 //!
-//! A regular file is replaced as a whole: the bytes go to a new neighbour first, which then takes its place, with the
-//! mode and the owner of the old file. Symbolic links are followed. A target that cannot be replaced in this way is
-//! written in place: a device, a FIFO, a file with several names (hard links), or one whose folder takes no new files.
+//! A regular file is replaced as a whole: the bytes are written to a new file in its folder, which then takes its
+//! name, with the mode and the owner of the old file. Symbolic links are followed. A target that cannot be replaced in
+//! this way is written in place: a device, a FIFO, a file with several names (hard links), or a file in a folder that
+//! accepts no new files.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Reads a whole file. Devices and FIFOs, which might never end, are refused.
+/// Reads a whole file. Devices and FIFOs are refused, because they may never end.
 pub fn read_file(path: &Path) -> Result<Vec<u8>> {
     check_regular(path)?;
     fs::read(path).map_err(|e| failed(path, e))
 }
 
-/// An error unless the path leads to a regular file.
+/// Returns an error unless the path leads to a regular file.
 pub fn check_regular(path: &Path) -> Result<()> {
     if fs::metadata(path).map_err(|e| failed(path, e))?.is_file() {
         return Ok(());
@@ -23,7 +24,7 @@ pub fn check_regular(path: &Path) -> Result<()> {
     Err(Error::new(ErrorKind::Io, format!("{} is not a regular file", path.display())))
 }
 
-/// Writes a whole file, or leaves what was there before.
+/// Writes a whole file; after an error the old content remains.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     Target::new(path)?.write(bytes)
 }
@@ -34,22 +35,23 @@ fn failed(path: &Path, e: io::Error) -> Error {
     Error::new(kind, format!("{}: {e}", path.display()))
 }
 
-/// A place for a file. Found before the work whose result it receives, so that a missing folder does not cost the work.
+/// A file to be written. It is checked before the work whose result it receives, so that a missing folder is found
+/// early.
 pub struct Target {
     path: PathBuf,
     way: Way,
 }
 
 enum Way {
-    /// A new file at the end of all links.
+    /// A new file, with all links followed.
     Create(PathBuf),
-    /// A regular file at the end of all links.
+    /// An existing regular file, with all links followed.
     Replace(PathBuf, Metadata),
     InPlace,
 }
 
 impl Target {
-    /// An error if no file can be written there.
+    /// Returns an error if no file can be written there.
     pub fn new(path: &Path) -> Result<Self> {
         let way = match fs::metadata(path) {
             Ok(old) if old.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
@@ -77,7 +79,7 @@ impl Target {
 }
 
 fn existing(path: &Path, old: Metadata) -> io::Result<Way> {
-    // A file that is protected against writing stays as it is, even where the folder would let it be replaced.
+    // Refuse a write-protected file, even if the folder allows to replace it.
     OpenOptions::new().write(true).open(path)?;
     let file = follow(path)?;
     Ok(if system::is_replaceable(&file, &old) { Way::Replace(file, old) } else { Way::InPlace })
@@ -93,10 +95,10 @@ fn new(path: &Path) -> io::Result<Way> {
     }
 }
 
-/// Links that are followed before a chain of them counts as a loop, as in Linux [convention].
+/// Maximum number of links in a chain; a longer chain counts as a loop, as in Linux [convention].
 const MAX_LINKS: usize = 40;
 
-/// The end of a chain of symbolic links, whether it exists or not.
+/// The target of a chain of symbolic links, whether it exists or not.
 fn follow(path: &Path) -> io::Result<PathBuf> {
     let mut file = path.to_path_buf();
     for _ in 0..MAX_LINKS {
@@ -112,7 +114,7 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Writes a neighbour of the file, which then takes its place.
+/// Writes a new file beside the file and renames it to replace the file.
 fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     let (path, mut neighbour) = create_neighbour(file, old.is_some())?;
     let written = fill(&mut neighbour, old, bytes);
@@ -124,10 +126,11 @@ fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> 
     done
 }
 
-/// Names that are tried for a neighbour: other threads and older processes with this number may have taken the first.
+/// Maximum number of names that are tried for the new file: other threads, and earlier processes with this id, may
+/// have taken some.
 const MAX_NEIGHBOURS: usize = 10_000;
 
-/// A new file in the folder of another one.
+/// Creates a new file in the folder of another one.
 fn create_neighbour(file: &Path, is_private: bool) -> io::Result<(PathBuf, File)> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
@@ -144,7 +147,7 @@ fn create_neighbour(file: &Path, is_private: bool) -> io::Result<(PathBuf, File)
     Err(io::ErrorKind::AlreadyExists.into())
 }
 
-/// Writes a neighbour to the disk, with the mode and the owner of the file that it will replace.
+/// Writes the new file to the disk, with the mode and the owner of the file that it will replace.
 fn fill(neighbour: &mut File, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     if let Some(old) = old {
         system::keep_owner(neighbour, old)?;
@@ -156,7 +159,7 @@ fn fill(neighbour: &mut File, old: Option<&Metadata>, bytes: &[u8]) -> io::Resul
     flush(neighbour)
 }
 
-/// Flushes a file to the disk, where its file system knows of such a thing.
+/// Flushes a file to the disk, if the file system supports it.
 fn flush(file: &File) -> io::Result<()> {
     match file.sync_all() {
         Err(e) if matches!(e.kind(), io::ErrorKind::Unsupported | io::ErrorKind::InvalidInput) => Ok(()),
@@ -164,7 +167,7 @@ fn flush(file: &File) -> io::Result<()> {
     }
 }
 
-/// Whether a folder, or a mount over a single file, refuses new files or a change of owner.
+/// Whether the error means that a folder, or a mount over a single file, refuses new files or a change of owner.
 fn is_refusal(e: &io::Error) -> bool {
     use io::ErrorKind::{CrossesDevices, PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(e.kind(), CrossesDevices | PermissionDenied | ReadOnlyFilesystem | ResourceBusy)
@@ -189,12 +192,12 @@ mod system {
     use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, fchown};
     use std::path::Path;
 
-    /// Whether the file exists under one name only. The links of /proc may lead to a file that has lost its name.
+    /// Whether the file has a single name. Links of /proc may lead to a file without a name.
     pub fn is_replaceable(file: &Path, old: &Metadata) -> bool {
         old.nlink() <= 1 && fs::metadata(file).is_ok_and(|found| found.is_file())
     }
 
-    /// Nobody else may read a file before it has the mode of its predecessor.
+    /// Nobody else may read the file before it has the mode of the old file.
     pub fn make_private(options: &mut OpenOptions) {
         options.mode(0o600);
     }
@@ -205,7 +208,7 @@ mod system {
         if is_same { Ok(()) } else { fchown(file, Some(old.uid()), Some(old.gid())) }
     }
 
-    /// An error if a FIFO has no reader: opening it would wait for one.
+    /// Returns an error if a FIFO has no reader, because opening it would wait for one.
     pub fn check_reader(path: &Path) -> io::Result<()> {
         if fs::metadata(path)?.file_type().is_fifo() {
             OpenOptions::new().write(true).custom_flags(libc::O_NONBLOCK).open(path)?;
@@ -214,7 +217,7 @@ mod system {
     }
 }
 
-/// A new file has the owner and the access rights that its folder gives it.
+/// Systems other than Unix: a new file has the owner and the access rights that its folder gives it.
 #[cfg(not(unix))]
 mod system {
     use std::fs::{File, Metadata, OpenOptions};
@@ -268,7 +271,7 @@ mod tests {
         assert_eq!((fs::read(&real).unwrap(), fs::read(folder.join("made")).unwrap()), (b"new".into(), b"made".into()));
         symlink("loop", folder.join("loop")).unwrap();
         assert_eq!(write_file(&folder.join("loop"), b"").unwrap_err().kind, ErrorKind::Io);
-        // Two names of one file stay so.
+        // A file with two names keeps both.
         fs::hard_link(&real, folder.join("name")).unwrap();
         write_file(&real, b"both").unwrap();
         write_file(&real, b"two").unwrap();
@@ -304,7 +307,7 @@ mod tests {
         let made = std::process::Command::new("mkfifo").arg(&fifo).status();
         assert!(made.unwrap().success());
         assert_eq!(read_file(&fifo).unwrap_err().message, format!("{} is not a regular file", fifo.display()));
-        // Without a reader it is an error, not a wait for ever.
+        // Without a reader there is an error instead of an endless wait.
         assert_eq!(write_file(&fifo, b"lost").unwrap_err().kind, ErrorKind::Io);
         let mut reader = OpenOptions::new().read(true).write(true).open(&fifo).unwrap();
         write_file(&fifo, b"through").unwrap();
@@ -312,7 +315,7 @@ mod tests {
         io::Read::read_exact(&mut reader, &mut read).unwrap();
         assert_eq!(&read, b"through");
         assert!(fs::metadata(&fifo).unwrap().file_type().is_fifo());
-        // A link to a device, so that a defect harms the link alone.
+        // Use a link to a device, so that a defect harms only the link.
         let null = folder.join("null");
         symlink("/dev/null", &null).unwrap();
         write_file(&null, b"away").unwrap();

@@ -1,10 +1,10 @@
-//! Which format a picture file has, by its first bytes.
+//! The format of a picture file, detected by its first bytes.
 
 use super::{openexr, radiance};
 use crate::error::{Error, ErrorKind, Result};
 use image::ImageFormat;
 
-/// The formats that are read, by who reads them.
+/// The formats that can be read, by their decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Exr,
@@ -14,7 +14,7 @@ pub enum Format {
     Raster(ImageFormat),
 }
 
-/// Formats that are known by name only: the first bytes, after a number of any.
+/// Formats that are recognised only for the error message: offset, bytes at the offset, and name.
 const OTHERS: [(usize, &[u8], &str); 18] = [
     (4, b"ftypavif", "AVIF"),
     (4, b"ftypavis", "AVIF"),

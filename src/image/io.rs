@@ -1,17 +1,18 @@
-//! Picture files: PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR in; PNG and OpenEXR out. With `raster` and
-//! `radiance` the only user of `image`.
+//! Picture files: reads PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR and OpenEXR; writes PNG and OpenEXR. Only this
+//! file, `raster` and `radiance` use the crate `image`.
 //!
-//! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it. Photos are
-//! converted from the colour space that their file states to linear Rec.709 ([`super::file_colour`]); textures are
-//! not, as glTF asks (2.0, 3.8.3), nor are data.
+//! A header that claims more than [`MAX_PIXELS`] is refused before any allocation. Photos are converted from the
+//! colour space that their file states to linear Rec.709 ([`super::file_colour`]); textures are not, as glTF requires
+//! (2.0, 3.8.3), nor are data.
 
 pub use super::files::{Target, check_regular, read_file, write_file};
+pub use super::limits::{Encoding, MAX_PIXELS};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::linear_to_srgb;
 use crate::image::file_colour::{Conversion, FileColour, Space};
 use crate::image::format::Format;
 use crate::image::photo::{self, Orientation, PhotoMetadata};
-use crate::image::{Image, MAX_SIDE, openexr, radiance, raster, room, tiff, try_collect};
+use crate::image::{Image, memory, openexr, radiance, raster, tiff, try_collect};
 use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
@@ -19,35 +20,19 @@ use std::path::Path;
 pub use crate::image::openexr::{Layer, encode as encode_exr};
 pub use crate::image::working::working_bytes;
 
-/// Largest image a file may hold: 2^28 pixels, a 16 k square.
-pub const MAX_PIXELS: u64 = 1 << 28;
-
-/// No compression of an OpenEXR or TIFF file that can be read makes samples more times shorter (deflate: 1032, once
-/// PXR24 has left out a quarter; LZW: 1330).
-pub(super) const DENSEST: usize = 1400;
-
-/// How the samples of a file are to be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Encoding {
-    /// Colours: integers are sRGB, floating-point numbers linear, unless the file of a photo states another space.
-    Srgb,
-    /// Data that is no colour, as it is: normal maps, roughness, masks.
-    Linear,
-}
-
-/// A picture that stands upright in linear Rec.709, and what its file says of the camera.
+/// An upright picture in linear Rec.709, and the metadata of its file.
 #[derive(Clone, Debug)]
 pub struct Photo {
     pub image: Image,
     pub metadata: PhotoMetadata,
 }
 
-/// Reads a file with 1, 3 or 4 channels, as linear values, upright.
+/// Reads a file with 1, 3 or 4 channels as linear values, upright.
 pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
     decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.within(path.display()))
 }
 
-/// Reads a picture file held in memory, its rows and columns and its colours as they are stored.
+/// Reads a picture file in memory, with rows, columns and colour space as stored.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     match Format::of(bytes)? {
         Format::Exr => Ok(openexr::decode(bytes)?.0),
@@ -57,7 +42,7 @@ pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     }
 }
 
-/// Reads a picture file held in memory, puts it upright by what the camera wrote into it, and converts its colours.
+/// Reads a picture file in memory, turns it upright by its EXIF orientation, and converts its colours.
 pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     let format = Format::of(bytes)?;
     let exif = match format {
@@ -78,13 +63,13 @@ pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     Ok(Photo { image, metadata })
 }
 
-/// Converts linear colours from the space that their file states.
+/// Converts linear colours from the space that their file states to Rec.709.
 fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Image, FileColour)> {
     let colour = match space {
         _ if encoding == Encoding::Linear => FileColour::Data,
         Space::Unstated => FileColour::Assumed,
         Space::Native => FileColour::Stated,
-        // One channel is no colour.
+        // A picture with one channel has no colour space.
         Space::Other(_) if image.channels < 3 => FileColour::Assumed,
         Space::Other(conversion) => {
             conversion.apply(&mut image)?;
@@ -95,8 +80,7 @@ fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Im
     Ok((image, colour))
 }
 
-/// Reads a picture as it is stored, and converts it from the space that its file states; without one it is read as
-/// sRGB.
+/// Reads a picture as stored, and converts it from the space that its file states, or from sRGB without a statement.
 fn convert_stored(
     space: Space,
     encoding: Encoding,
@@ -115,8 +99,8 @@ fn convert_stored(
     convert((read(encoding)?, space), encoding)
 }
 
-/// Width, height and largest number of channels of a picture file, from its header alone: what decoding it will need.
-/// The sides are those of the stored picture, not of the upright one.
+/// Width, height and maximum number of channels of a picture file, from its header alone. The sides are those of the
+/// stored picture, before it is turned upright.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     match Format::of(bytes)? {
         Format::Exr => openexr::probe(bytes),
@@ -124,21 +108,6 @@ pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
         Format::Tiff => tiff::probe(bytes),
         Format::Raster(format) => raster::probe(bytes, format),
     }
-}
-
-/// Refuses sizes beyond the limits of the library, and pictures without pixels.
-pub(super) fn check_size(width: u64, height: u64) -> Result<()> {
-    let is_empty = width == 0 || height == 0;
-    if is_empty || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {
-        return Err(Error::new(
-            if is_empty { ErrorKind::Format } else { ErrorKind::Unsupported },
-            format!(
-                "the header says {width} x {height} pixels; sides must lie in [1, {MAX_SIDE}] and the area in [1, \
-                 {MAX_PIXELS}]"
-            ),
-        ));
-    }
-    Ok(())
 }
 
 /// Encodes a linear image as an 8-bit sRGB PNG after multiplying it by `exposure`; 1, 3 or 4 channels.
@@ -155,7 +124,7 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
         let encoded = if alpha { v } else { linear_to_srgb(v * exposure) };
         *b = (encoded.clamp(0.0, 1.0) * 255.0).round() as u8;
     }
-    room::check_packing(bytes.len())?;
+    memory::check_packing(bytes.len())?;
     let mut out = Cursor::new(Vec::new());
     image::write_buffer_with_format(
         &mut out,
@@ -169,10 +138,10 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
     state_srgb(out.into_inner())
 }
 
-/// Adds the chunk `sRGB` to a PNG: relative colorimetric, as nothing but the exposure was changed.
+/// Adds the chunk `sRGB` to a PNG, with the relative colorimetric intent.
 fn state_srgb(png: Vec<u8>) -> Result<Vec<u8>> {
     const CHUNK: [u8; 13] = *b"\0\0\0\x01sRGB\x01\xd9\xc9\x2c\x7f";
-    // Behind the signature and the header.
+    // Insert it after the signature and the header.
     let (head, pixels) = png.split_at(8 + 25);
     try_collect([head, &CHUNK, pixels].into_iter().flatten().copied())
 }
@@ -205,18 +174,18 @@ mod tests {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "cut at {cut}");
             }
         }
-        // One whose tiles claim 2^20 pixels a side.
+        // A file whose tiles claim 2^20 pixels per side.
         let mut bomb = exr.clone();
         let at = exr.windows(15).position(|w| w == b"tiles\0tiledesc\0").unwrap() + 15 + 4;
         assert_eq!(bomb[at..at + 8], [64, 0, 0, 0, 64, 0, 0, 0]);
         bomb[at..at + 8].copy_from_slice(&[0, 0, 16, 0, 0, 0, 16, 0]);
         let error = probe(&bomb).unwrap_err();
         assert!(error.kind == ErrorKind::Format && error.message.contains("tiles of"), "{error}");
-        // A PNG whose header claims 2^31 - 1 pixels a side.
+        // A PNG whose header claims 2^31 - 1 pixels per side.
         let mut bomb = png.clone();
         bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
         assert_eq!(decode(&bomb, Encoding::Srgb).unwrap_err().kind, ErrorKind::Unsupported);
-        // An OpenEXR file both of whose windows claim 16384 pixels a side.
+        // An OpenEXR file whose two windows claim 16384 pixels per side.
         let mut bomb = exr.clone();
         let window = |width: i32, height: i32| [0, 0, width - 1, height - 1].map(i32::to_le_bytes).concat();
         let places: Vec<usize> = (0..exr.len() - 16).filter(|&at| exr[at..at + 16] == window(19, 13)).collect();
@@ -232,8 +201,8 @@ mod tests {
         let image = Image::from_fn(1, 1, |_, _| [0.5]).unwrap();
         let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
-        // The table with the place of the only tile, which begins with its column, its row and its level in both
-        // directions. It has one pixel at all levels.
+        // The offset table of the only tile, which begins with its column, its row and its level in both directions.
+        // The tile has one pixel at all levels.
         let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
         assert_eq!(exr[table + 8..table + 24], [0; 16]);
         exr[table + 16] = 10;

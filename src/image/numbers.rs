@@ -1,13 +1,13 @@
-//! Files of exact numbers: windows of a picture as OpenEXR files that keep any count of doubles for each pixel.
+//! Files of exact numbers: windows of a picture as OpenEXR files that store any number of doubles per pixel.
 //!
-//! The picture itself is in R, G and B, so that any program can show what there is; the file's data window is where
-//! the window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
-//! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the
-//! header.
+//! The picture itself is in R, G and B, so that any program can display it; the data window states the position of the
+//! window in the whole picture, which is the display window. A double is stored in two channels of 32-bit integers,
+//! `number.K.high` and `number.K.low`, because floating-point channels have at most 32 bits. Further information is
+//! stored as text attributes of the header.
 
 use super::io::check_regular;
 use super::openexr::{broken, first_layer, headers};
-use super::{Image, room, try_vec, try_with_capacity};
+use super::{Image, memory, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
 use exr::prelude as ex;
@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-/// What the header of such a file says.
+/// The header of such a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
     /// Width and height of the whole picture.
@@ -24,9 +24,9 @@ pub struct Head {
     pub corner: [usize; 2],
     /// Width and height of the window.
     pub size: [usize; 2],
-    /// Doubles of a pixel.
+    /// Number of doubles per pixel.
     pub numbers: usize,
-    /// Names and texts, by name.
+    /// Names and texts of the attributes.
     pub notes: Vec<(String, String)>,
 }
 
@@ -53,7 +53,7 @@ impl Head {
                 size[0], size[1], whole[0], whole[1]
             )));
         }
-        // Three channels of the picture, then two of each number in their order.
+        // Three channels of the picture, then two for each number in order.
         let channels = &header.channels.list;
         let numbers = channels.len().saturating_sub(3) / 2;
         for (i, channel) in channels.iter().enumerate() {
@@ -83,12 +83,12 @@ fn utf8(text: &ex::Text) -> String {
     String::from_utf8_lossy(text.bytes()).into_owned()
 }
 
-/// The name of half a number.
+/// The channel name of one half of a number.
 fn name(number: usize, is_high: bool) -> String {
     format!("number.{number:05}.{}", if is_high { "high" } else { "low" })
 }
 
-/// What the beginning of a file says.
+/// Reads the header of a file.
 pub fn read_head(path: &Path) -> Result<Head> {
     check_regular(path)?;
     let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
@@ -96,8 +96,8 @@ pub fn read_head(path: &Path) -> Result<Head> {
     meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.within(path.display()))
 }
 
-/// Hands over the numbers of each pixel of a file that is known to have this head: anything else is refused before
-/// memory is taken for it.
+/// Passes the numbers of each pixel to `pixel`. The file must have the given head; any other is refused before memory
+/// is allocated for it.
 pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
     let headers = headers(bytes)?;
     let found = Head::of(&headers)?;
@@ -124,7 +124,7 @@ pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64
     Ok(())
 }
 
-/// Encodes a window: its picture, 3 channels, and `number(x, y, k)` for each of its pixels.
+/// Encodes a window: its picture with 3 channels, and `number(x, y, k)` for each pixel.
 pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
     let [width, height] = head.size;
@@ -149,15 +149,16 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
         attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
     let list = ex::AnyChannels::sort(list);
-    // Run lengths: the digits of sums are noise, on which better compression spends as much time as on tracing paths.
+    // Use run-length compression: the low digits of sums are noise, and better compression would take as long as
+    // tracing the paths.
     let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, list);
     let mut file = ex::Image::from_layer(layer);
     file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));
     let texts = head.notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>();
     let channels = 3 + 2 * head.numbers;
     use ex::WritableImage;
-    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
-    room::check_blocks(width, height, channels)?;
+    let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
+    memory::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)
@@ -199,7 +200,7 @@ mod tests {
         })
         .unwrap();
         assert_eq!(seen, 19 * 13);
-        // The picture lies in the whole where its window does.
+        // The picture lies at the position of its window in the whole.
         let whole = decode_picture(&bytes, Encoding::Linear).unwrap();
         assert_eq!([whole.width, whole.height], head.whole);
         for (x, y) in (0..13).flat_map(|y| (0..19).map(move |x| (x, y))) {
@@ -225,7 +226,7 @@ mod tests {
         let layer = super::super::io::Layer { name: "deep", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
         assert!(Head::of(&headers(&plain).unwrap()).is_err());
-        // One that says it is a picture of 16384 x 16384.
+        // A file that claims 16384 x 16384 pixels.
         let bomb = Head { whole: [1 << 14, 1 << 14], size: [1 << 14, 1 << 14], corner: [0, 0], ..head.clone() };
         let mut lie = bytes.clone();
         let window = |[x, y]: [usize; 2], [w, h]: [usize; 2]| {

@@ -1,16 +1,16 @@
-//! OpenEXR files: flat layers of R, G, B (and A) or of one channel in, any layers out. With `samples` and `numbers`
-//! the only user of `exr`.
+//! OpenEXR files: reads flat layers of R, G, B (and A) or of one channel; writes any layers. Only this file, `samples`
+//! and `numbers` use the crate `exr`.
 //!
-//! A picture is as large as the display window of its file. Pixels outside the data window are 0, those outside the
-//! display window are left out. Colours are converted from the chromaticities that the file states to linear Rec.709.
+//! A picture has the size of the display window of its file. Pixels outside the data window are 0; pixels outside the
+//! display window are dropped. Colours are converted from the chromaticities that the file states to linear Rec.709.
 //!
-//! Not read, and said by name: deep data, luminance with chroma of fewer pixels. Of a pyramid the largest resolution
-//! is read, of several parts the first.
+//! Not read, with an error that names it: deep data, and luminance with subsampled chroma. Of several resolutions the
+//! largest is read, and of several parts the first.
 
-use super::file_colour::{Chromaticities, Conversion, Space};
-use super::io::{DENSEST, check_size};
+use super::file_colour::{Chromaticities, Space};
+use super::limits::{MAX_COMPRESSION, check_size};
 use super::samples::Largest;
-use super::{Image, room, try_collect, try_with_capacity};
+use super::{Image, memory, try_collect, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::attribute;
 use exr::prelude as ex;
@@ -18,11 +18,11 @@ use std::io::Cursor;
 
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// Primaries with which R, G and B are CIE X, Y and Z.
+/// Primaries with which R, G and B are CIE X, Y and Z [convention].
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
-/// Bytes of a tile that any file may have.
-const LARGEST_TILE: usize = 64 << 20;
+/// Maximum size in bytes of a tile that any file may have; larger ones must be justified by the picture.
+const MAX_TILE_BYTES: usize = 64 << 20;
 
 pub(super) fn broken(e: exr::error::Error) -> Error {
     use exr::error::Error as Cause;
@@ -43,13 +43,15 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     for header in &meta.headers {
         let (width, height) = (header.layer_size.0, header.layer_size.1);
         check_size(width as u64, height as u64)?;
-        // Memory is taken for all channels before the first of them is read.
-        if (width * height).saturating_mul(header.channels.bytes_per_pixel) > bytes.len().saturating_mul(DENSEST) {
+        // Memory for all channels is allocated before the first one is read.
+        if (width * height).saturating_mul(header.channels.bytes_per_pixel)
+            > bytes.len().saturating_mul(MAX_COMPRESSION)
+        {
             return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
         }
-        // Tiles may be larger than the picture; memory is taken for as much of one as the file says that it stores.
-        let tile = room::block_bytes(header);
-        if tile > bytes.len().saturating_mul(DENSEST).max(LARGEST_TILE) {
+        // Tiles may be larger than the picture; memory is limited by the stored size of the tile.
+        let tile = memory::block_bytes(header);
+        if tile > bytes.len().saturating_mul(MAX_COMPRESSION).max(MAX_TILE_BYTES) {
             return Err(Error::format(format!(
                 "the OpenEXR header asks for tiles of {tile} bytes, which so short a file cannot hold"
             )));
@@ -58,13 +60,13 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     Ok(meta.headers)
 }
 
-/// The first layer of a file whose headers have been looked at, with all of its channels.
+/// The first layer of a file whose headers have been checked, with all of its channels.
 pub(super) fn first_layer(
     bytes: &[u8],
     headers: &exr::meta::Headers,
 ) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
     use ex::{ReadChannels, ReadLayers};
-    room::check_layer(headers)?;
+    memory::check_layer(headers)?;
     let file = exr::image::read::any_channels::ReadAnyChannels { read_samples: Largest }
         .first_valid_layer()
         .all_attributes()
@@ -73,7 +75,7 @@ pub(super) fn first_layer(
     Ok(file.map_err(broken)?.layer_data)
 }
 
-/// The window of the picture, which all layers share.
+/// The display window, which all layers share.
 fn display(headers: &exr::meta::Headers) -> Result<ex::IntegerBounds> {
     let header = headers.first().ok_or_else(|| Error::format("the OpenEXR file has no layers"))?;
     let window = header.shared_attributes.display_window;
@@ -89,12 +91,12 @@ pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     Ok((size.0, size.1, channels))
 }
 
-/// Bytes that reading the first layer takes beside the picture.
+/// Bytes of memory for reading the first layer, in addition to the picture.
 pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
-    Ok(room::layer(&headers(bytes)?))
+    Ok(memory::layer(&headers(bytes)?))
 }
 
-/// The first layer with R, G and B (and A), or one with a single channel, and the colour space that the file states.
+/// The first layer with R, G and B (and A), or with a single channel, and the colour space that the file states.
 pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     let headers = headers(bytes)?;
     let window = display(&headers)?;
@@ -127,7 +129,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
 struct Place {
     /// Width of the layer.
     width: usize,
-    /// First column and row of that part in the layer, and in the picture.
+    /// First column and row of that part, in the layer and in the picture.
     from: [usize; 2],
     to: [usize; 2],
     size: [usize; 2],
@@ -136,7 +138,7 @@ struct Place {
 impl Place {
     fn new<C>(layer: &ex::Layer<C>, window: ex::IntegerBounds) -> Self {
         let corner = layer.attributes.layer_position;
-        // Where the layer begins, seen from the picture.
+        // First column or row of the layer, relative to the picture.
         let start =
             [(corner.0, window.position.0), (corner.1, window.position.1)].map(|(a, b)| i64::from(a) - i64::from(b));
         let stored = [layer.size.0, layer.size.1];
@@ -167,7 +169,7 @@ impl Place {
     }
 }
 
-/// The space with these chromaticities, of which `neutral` becomes white if it is stated.
+/// The space with these chromaticities; if `neutral` is stated, it becomes white.
 fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32>>) -> Space {
     let point = |v: ex::Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
     let chromaticities = match stated {
@@ -175,14 +177,14 @@ fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32
         None if neutral.is_some() => Chromaticities::REC709,
         None => return Space::Unstated,
     };
-    // CIE XYZ measures colours; its white is that of the equations, of no scene.
+    // CIE XYZ describes colours, not a scene: its white is the equal-energy white of its equations.
     let is_xyz = chromaticities.primaries == XYZ;
     let white = if is_xyz { Chromaticities::REC709.white } else { chromaticities.white };
     let white = neutral.map_or(white, point);
-    chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Conversion::linear_space)
+    chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Space::linear)
 }
 
-/// One named group of channels of an OpenEXR file; an empty name gives plain `R`, `G`, `B`.
+/// A named group of channels of an OpenEXR file; an empty name gives plain `R`, `G`, `B`.
 pub struct Layer<'a> {
     pub name: &'a str,
     pub image: &'a Image,
@@ -190,8 +192,8 @@ pub struct Layer<'a> {
     pub channels: &'a [&'a str],
 }
 
-/// Encodes layers of one size into a single-part 32-bit float OpenEXR file, channels named `layer.channel`, colours
-/// stated as linear Rec.709. `notes` are texts kept in its header, by name.
+/// Encodes layers of equal size into a single-part 32-bit float OpenEXR file, with channels named `layer.channel` and
+/// the chromaticities of Rec.709. `notes` are text attributes of the header, by name.
 pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     use ex::WritableImage;
     // Texts of OpenEXR files are UTF-8.
@@ -224,8 +226,8 @@ pub fn encode(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
     let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 64 * channels;
     let (width, height) = (first.width, first.height);
-    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
-    room::check_blocks(width, height, channels)?;
+    let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
+    memory::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)
@@ -246,7 +248,7 @@ mod tests {
     use crate::image::file_colour::FileColour;
     use crate::image::io::{Encoding, decode, decode_photo, probe};
 
-    /// A file of red pixels, counted from 1, whose data window has this corner and size within this display window.
+    /// A file of red pixels, numbered from 1, whose data window has this corner and size within the display window.
     fn file(corner: [i32; 2], size: [usize; 2], display: ([i32; 2], [usize; 2])) -> Vec<u8> {
         colourful(corner, size, display, |_| ())
     }
@@ -280,7 +282,7 @@ mod tests {
     #[test]
     fn the_data_window_lies_in_the_display_window() {
         let display = ([10, 20], [4, 3]);
-        // The whole, a part inside, one that sticks out at the start and at the end, and one beside it.
+        // The whole picture, a part inside, a part that extends beyond both ends, and a part outside.
         assert_eq!(red(&file([10, 20], [4, 3], display)), (1..=12).collect::<Vec<i32>>());
         assert_eq!(red(&file([11, 21], [2, 1], display)), [0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 0]);
         assert_eq!(red(&file([9, 19], [3, 2], display)), [5, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
@@ -313,7 +315,7 @@ mod tests {
             blue: point(0.0001, -0.077),
             ..acescg
         };
-        // By the matrices of the ACES system to linear Rec.709 with Bradford adaptation; negative components are 0.
+        // By the matrices of the ACES system to linear Rec.709 with Bradford adaptation; negative components become 0.
         for (chromaticities, wanted) in [(acescg, 1.705_05), (aces, 2.521_69)] {
             let bytes = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
                 f.attributes.chromaticities = Some(chromaticities);
@@ -325,7 +327,7 @@ mod tests {
             let data = decode_photo(&bytes, Encoding::Linear).unwrap();
             assert_eq!((data.image.pixel(0, 0), data.metadata.colour), (&[1.0, 0.0, 0.0][..], FileColour::Data));
         }
-        // XYZ is colorimetry under D65, whether a neutral is stated or not: its X.
+        // XYZ is colorimetry under D65, with or without a stated neutral: check X.
         for neutral in [None, Some(point(0.3127, 0.3290))] {
             let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
                 f.attributes.chromaticities = Some(attribute::Chromaticities {

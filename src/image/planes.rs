@@ -1,8 +1,8 @@
-//! Between interleaved pixels and a plane for each channel, four by four: a transposition that stays in registers.
+//! Conversion between interleaved pixels and one plane per channel, four by four: a transposition in registers.
 
 use glam::{Mat4, Vec4};
 
-/// Spreads interleaved pixels over planes, one for each channel, of `N` pixels or more.
+/// Splits interleaved pixels into planes, one per channel, each with room for `N` pixels or more.
 #[inline(always)]
 pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     let (channels, count) = (planes.len(), pixels.len() / planes.len());
@@ -21,8 +21,8 @@ pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     }
 }
 
-/// The same for a number of channels that is known, of four or more: offsets become constants. What is put on a plane
-/// is `of(channel, four values)`.
+/// Like [`deinterleave`] for a constant number of channels, at least four, so that offsets are constants. Stores
+/// `of(channel, four values)`.
 #[inline(always)]
 pub fn deinterleave_of<const C: usize, const N: usize>(
     pixels: &[f32],
@@ -48,7 +48,7 @@ pub fn deinterleave_of<const C: usize, const N: usize>(
     }
 }
 
-/// The other way round.
+/// Interleaves planes again.
 #[inline(always)]
 pub fn interleave<const N: usize>(planes: &[[f32; N]], pixels: &mut [f32]) {
     let (channels, count) = (planes.len(), pixels.len() / planes.len());
@@ -67,7 +67,7 @@ pub fn interleave<const N: usize>(planes: &[[f32; N]], pixels: &mut [f32]) {
     }
 }
 
-/// Where groups of four channels start; the last may overlap the one before.
+/// First channels of the groups of four; the last group may overlap the one before.
 #[inline(always)]
 fn starts(channels: usize) -> impl Iterator<Item = usize> {
     (0..channels).step_by(4).map(move |c| c.min(channels - 4))

@@ -5,7 +5,8 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// The image at another size, each new pixel the exact average of the area it covers (bilinear where it magnifies).
+/// Resizes the image; each new pixel is the exact average of the area it covers (bilinear interpolation where it
+/// magnifies).
 pub fn resize(image: &Image, width: usize, height: usize, job: Job) -> Result<Image> {
     let columns = weights(image.width, width);
     let rows = weights(image.height, height);
@@ -32,7 +33,8 @@ pub fn resize(image: &Image, width: usize, height: usize, job: Job) -> Result<Im
     Ok(out)
 }
 
-/// For each of `to` intervals that tile `from` pixels: the first pixel it draws on and the weights, which sum to 1.
+/// For each of `to` intervals that partition `from` pixels: the first pixel that contributes and the weights, which
+/// sum to 1.
 fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
     let scale = from as f64 / to as f64;
     (0..to)
@@ -40,7 +42,7 @@ fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
             let (low, high) = if scale >= 1.0 {
                 (i as f64 * scale, (i + 1) as f64 * scale)
             } else {
-                // Magnifying: a unit-wide box at the new pixel's centre is bilinear interpolation.
+                // Magnification: a unit-wide box at the centre of the new pixel gives bilinear interpolation.
                 let centre = (i as f64 + 0.5) * scale;
                 ((centre - 0.5).max(0.0), (centre + 0.5).min(from as f64))
             };
@@ -53,8 +55,8 @@ fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
         .collect()
 }
 
-/// The image at half the size, rounded up, each new pixel the mean of two by two; the last column and row count twice
-/// where there is an odd one.
+/// The image at half the size, rounded up, each new pixel the mean of two by two; an odd last column or row counts
+/// twice.
 pub fn half(image: &Image, job: Job) -> Result<Image> {
     let c = image.channels;
     let mut out = Image::new(image.width.div_ceil(2), image.height.div_ceil(2), c)?;
@@ -71,7 +73,7 @@ pub fn half(image: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// Gaussian blur with standard deviation `sigma` pixels, cut at three; the border is extended by its nearest pixel.
+/// Gaussian blur with standard deviation `sigma` pixels, truncated at three; the border pixels are repeated outwards.
 pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     if sigma <= 0.0 {
         return Ok(image.clone());
@@ -86,7 +88,8 @@ pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     let mut wide = Image::new(image.width, image.height, c)?;
     exec::for_rows(&mut wide.data, image.row_len(), job.part(0.0, 0.5), |y, out| {
         let source = image.row(y);
-        // The inside tap by tap, which runs on vectors; the borders pixel by pixel. Sums are in the same order.
+        // Compute the interior tap by tap, which vectorises, and the borders pixel by pixel. Both sum in the same
+        // order.
         let border = (radius as usize * c).min(out.len());
         let inside = border..(out.len() - border).max(border);
         for (k, w) in kernel.iter().enumerate() {

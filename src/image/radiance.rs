@@ -1,21 +1,20 @@
-//! Radiance HDR files (Ward 1991, "Real Pixels"; `picture` of Radiance's file formats): the header is read here, the
-//! pixels by the crate `image`.
+//! Radiance HDR files (Ward 1991, "Real Pixels"; `picture` of Radiance's file formats): this file reads the header,
+//! the crate `image` the pixels.
 //!
-//! `EXPOSURE` and `COLORCORR` are factors that the stored values have been multiplied by, and are divided by;
-//! `PRIMARIES` and values in XYZ are converted to linear Rec.709. Scan lines may run in any of the eight directions.
-//! Not modelled: `PIXASPECT`.
+//! The stored values are divided by the factors `EXPOSURE` and `COLORCORR`; `PRIMARIES` and values in XYZ are
+//! converted to linear Rec.709. Scan lines may run in any of the eight directions. Not modelled: `PIXASPECT`.
 
-use super::file_colour::{Chromaticities, Conversion, Space};
-use super::io::check_size;
+use super::file_colour::{Chromaticities, Space};
+use super::limits::check_size;
 use super::photo::{Orientation, Upright};
-use super::{Image, room, try_vec};
+use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
 use glam::{DMat3, DVec3};
 use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 use std::io::Read;
 
-/// The first line of a file begins with one of these.
+/// The first line of a file begins with one of these texts.
 pub const MAGICS: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
 
 /// Code points of CIE XYZ among the primaries of Recommendation ITU-T H.273.
@@ -27,7 +26,7 @@ struct Header {
     rows: usize,
     orientation: Orientation,
     space: Space,
-    /// Where the pixels begin.
+    /// Offset of the pixels.
     pixels: usize,
 }
 
@@ -78,7 +77,7 @@ fn resolution(line: &[u8]) -> Result<[usize; 3]> {
         || Error::format(format!("the Radiance file's resolution is {:.40}; it must be like -Y 480 +X 640", text));
     let parts: Vec<&str> = text.split_whitespace().take(5).collect();
     let [across, rows, along, columns] = parts[..] else { return Err(wrong()) };
-    // As EXIF numbers them.
+    // The orientation as EXIF numbers it.
     let orientation = match (across, along) {
         ("-Y", "+X") => 1,
         ("-Y", "-X") => 2,
@@ -94,9 +93,9 @@ fn resolution(line: &[u8]) -> Result<[usize; 3]> {
     Ok([number(rows)?, number(columns)?, orientation])
 }
 
-/// The lines of a header that say what the values mean.
+/// The header lines that describe the values.
 struct Colour {
-    /// The values are those of the scene times this.
+    /// The stored values are those of the scene times this factor.
     factor: DVec3,
     chromaticities: Option<Chromaticities>,
     is_readable: bool,
@@ -120,7 +119,7 @@ impl Colour {
                     format!("the Radiance file is in the format {format:.40}, which is not read"),
                 ));
             }
-            // Each program that changes the picture adds a line.
+            // Each program that changed the picture has added a line; multiply them.
             b"EXPOSURE" => match numbers::<1>(value) {
                 Some([factor]) => self.factor *= factor,
                 None => self.is_readable = false,
@@ -149,14 +148,14 @@ impl Colour {
                 if self.factor == DVec3::ONE && self.chromaticities.is_none() {
                     return Space::Unstated;
                 }
-                Conversion::linear_space(matrix * DMat3::from_diagonal(self.factor.recip()))
+                Space::linear(matrix * DMat3::from_diagonal(self.factor.recip()))
             }
             _ => Space::Unusable,
         }
     }
 }
 
-/// The numbers of a value, separated by blanks; there may be more.
+/// The numbers of a value, separated by blanks; further ones are ignored.
 fn numbers<const N: usize>(value: &[u8]) -> Option<[f64; N]> {
     let text = str::from_utf8(value).ok()?;
     let mut parts = text.split_whitespace().map(|part| part.parse().ok().filter(|v: &f64| v.is_finite()));
@@ -173,10 +172,10 @@ pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     Ok((header.columns, header.rows, 3))
 }
 
-/// Bytes that reading the picture takes beside it.
+/// Bytes of memory for reading the picture, in addition to it.
 pub fn working_bytes(bytes: &[u8]) -> Result<usize> {
     let header = Header::new(bytes)?;
-    Ok(header.columns * header.rows * 12 + room::scanlines(header.columns))
+    Ok(header.columns * header.rows * 12 + memory::scanlines(header.columns))
 }
 
 /// The picture, upright, and the colour space that the file states.
@@ -184,7 +183,7 @@ pub fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
     let header = Header::new(bytes)?;
     let (columns, rows) = (header.columns, header.rows);
     let mut raw = try_vec(columns * rows * 12, 0u8)?;
-    room::check_scanlines(columns)?;
+    memory::check_scanlines(columns)?;
     let plain = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {rows} +X {columns}\n");
     let file = plain.as_bytes().chain(&bytes[header.pixels..]);
     HdrDecoder::new(file).and_then(|decoder| decoder.read_image(&mut raw)).map_err(super::raster::broken)?;
@@ -201,7 +200,7 @@ mod tests {
     use crate::image::file_colour::FileColour;
     use crate::image::io::{Encoding, decode_photo, probe};
 
-    /// Three by two pixels: 1, 2, 3, 4, 5 and 6 in all channels, with these lines of a header.
+    /// Three by two pixels with the values 1 to 6 in all channels, after these header lines.
     fn file(lines: &str, resolution: &str) -> Vec<u8> {
         let pixels: Vec<u8> = (1..=6u8).flat_map(|v| [v << 4, v << 4, v << 4, 132]).collect();
         [format!("#?RADIANCE\n{lines}\n{resolution}\n").as_bytes(), &pixels].concat()
@@ -220,7 +219,7 @@ mod tests {
         let lines = format!("{format}EXPOSURE= 2\npfilt -e 4\n\tEXPOSURE=4.0\nCOLORCORR= 1 2 0.5\n");
         let (image, colour) = load(&lines, Encoding::Srgb);
         assert_eq!((&image[..3], colour), (&[0.125, 0.0625, 0.25][..], FileColour::Converted));
-        // Data, and factors that are none.
+        // Data stay unchanged, and invalid factors are ignored.
         assert_eq!(load(&lines, Encoding::Linear), (plain.clone(), FileColour::Data));
         for line in ["EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=bright\n", "COLORCORR=1 2\n", "PRIMARIES=0 0 0\n"] {
             assert_eq!(load(line, Encoding::Srgb), (plain.clone(), FileColour::Unconverted), "{line}");

@@ -1,10 +1,10 @@
-//! PNG, JPEG, WebP, BMP and GIF files, by the crate `image`. Of moving pictures the first frame is read.
+//! PNG, JPEG, WebP, BMP and GIF files, by the crate `image`. Of an animation the first frame is read.
 
 use super::colour::{srgb_to_linear, srgb8_table};
 use super::containers::{gif_frame, png_chunks};
-use super::io::{Encoding, check_size};
+use super::limits::{Encoding, check_size};
 use super::photo::{Orientation, Upright};
-use super::{Image, room, try_vec};
+use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
 use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
@@ -16,13 +16,13 @@ pub fn probe(bytes: &[u8], format: ImageFormat) -> Result<(usize, usize, usize)>
     Ok((width as usize, height as usize, channels(usize::from(decoder.color_type().channel_count()))))
 }
 
-/// Bytes that reading a file takes beside the picture, but for other chunks of a PNG.
+/// Bytes of memory for reading a file in addition to the picture, without the ancillary chunks of a PNG.
 pub fn working_bytes(bytes: &[u8], format: ImageFormat) -> Result<usize> {
     let decoder = decoder(bytes, format)?;
     let (width, height) = decoder.dimensions();
     let pixel = usize::from(decoder.color_type().bytes_per_pixel());
     let stored = usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX);
-    Ok(stored.saturating_add(room::pixels(bytes, format, width as usize, height as usize, pixel)))
+    Ok(stored.saturating_add(memory::pixels(bytes, format, width as usize, height as usize, pixel)))
 }
 
 /// Grey with alpha becomes RGBA.
@@ -39,7 +39,7 @@ fn decoder(bytes: &[u8], format: ImageFormat) -> Result<impl ImageDecoder + '_> 
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     if format == ImageFormat::Png {
         let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(room::png_limit(bytes.len()) as u64);
+        limits.max_alloc = Some(memory::png_limit(bytes.len()) as u64);
         reader.limits(limits);
     }
     let decoder = reader.into_decoder().map_err(broken)?;
@@ -48,8 +48,8 @@ fn decoder(bytes: &[u8], format: ImageFormat) -> Result<impl ImageDecoder + '_> 
     Ok(decoder)
 }
 
-/// The decoder takes for granted that a PNG's palette holds whole colours, and takes memory for other chunks as they
-/// come, and for a row of any length.
+/// The decoder assumes that a PNG's palette holds whole colours, and allocates any memory for other chunks and for a
+/// row.
 fn check_chunks(bytes: &[u8]) -> Result<()> {
     for (name, length, content) in png_chunks(bytes) {
         if name == b"IHDR"
@@ -62,12 +62,12 @@ fn check_chunks(bytes: &[u8]) -> Result<()> {
                 "the PNG's palette has {length} bytes; it must hold 1 to 256 colours of 3"
             )));
         }
-        room::check_chunk(name, content.len(), bytes.len())?;
+        memory::check_chunk(name, content.len(), bytes.len())?;
     }
     Ok(())
 }
 
-/// The decoder takes memory for a frame of any size, however small its screen.
+/// The decoder allocates memory for a frame of any size, however small its screen.
 fn check_frame(bytes: &[u8]) -> Result<()> {
     let screen = |at: usize| Some(usize::from(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?)));
     let sizes = gif_frame(bytes).zip(screen(6)).zip(screen(8));
@@ -100,12 +100,12 @@ pub fn decode(bytes: &[u8], format: ImageFormat, encoding: Encoding, orientation
     let (width, height) = (width as usize, height as usize);
     let colour = decoder.color_type();
     let mut raw = try_vec(usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX), 0u8)?;
-    room::check_pixels(bytes, format, width, height, usize::from(colour.bytes_per_pixel()))?;
+    memory::check_pixels(bytes, format, width, height, usize::from(colour.bytes_per_pixel()))?;
     decoder.read_image(&mut raw).map_err(broken)?;
 
     let stored = usize::from(colour.channel_count());
     let mut out = Upright::new(width, height, channels(stored), orientation)?;
-    // Integers in sRGB decode through a table or the curve; everything else is scaled only.
+    // Integers in sRGB are decoded by a table or the curve; all other samples are only scaled.
     let is_curved = encoding == Encoding::Srgb;
     let curve = |v: f32, is_alpha: bool| if is_curved && !is_alpha { srgb_to_linear(v) } else { v };
     match usize::from(colour.bytes_per_pixel()) / stored {
@@ -125,7 +125,7 @@ pub fn decode(bytes: &[u8], format: ImageFormat, encoding: Encoding, orientation
     Ok(out.image)
 }
 
-/// Puts the pixels of a file where they belong; `value` gives a sample by its index, and is told whether it is alpha.
+/// Writes the pixels of a file to their positions; `value` returns a sample by its index and whether it is alpha.
 fn fill(out: &mut Upright, [width, height]: [usize; 2], stored: usize, value: impl Fn(usize, bool) -> f32) {
     for y in 0..height {
         for x in 0..width {
@@ -138,7 +138,7 @@ fn fill(out: &mut Upright, [width, height]: [usize; 2], stored: usize, value: im
     }
 }
 
-/// The sample of a number of bytes at an index.
+/// The sample at an index; `N` bytes each.
 fn sample<const N: usize, T>(raw: &[u8], index: usize, of: fn([u8; N]) -> T) -> T {
     of(std::array::from_fn(|k| raw[index * N + k]))
 }
@@ -157,7 +157,7 @@ mod tests {
         0x36, 0x00, 0x00, 0xfe, 0xdf, 0xf9, 0x13, 0xd9, 0x75, 0x9c, 0x36, 0xa2, 0x13, 0x9b, 0x7b, 0x72, 0xbf, 0xaf,
         0xff, 0xf1, 0x0d, 0xed, 0xbe, 0xe3, 0xbf, 0xa1, 0x86, 0x67, 0xd8, 0x01, 0x17, 0x75, 0x40, 0x00,
     ];
-    /// Alpha of such a frame: all of the upper half, half of the lower.
+    /// Alpha of this frame: all of the upper half, half of the lower.
     const ALPHA: &[u8] = &[0x01, 0x10, 0x0b, 0x26, 0xea, 0x99, 0x67, 0xb0, 0x3b, 0x22, 0x72, 0x7e, 0x7c];
 
     fn riff(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
@@ -201,7 +201,7 @@ mod tests {
                 "gif",
                 4,
                 raw(&|f| {
-                    // A second frame, which is not shown.
+                    // A second frame, which is ignored.
                     let frames = [picture(255), RgbaImage::from_pixel(20, 14, Rgba([1, 2, 3, 255]))].map(Frame::new);
                     GifEncoder::new(f).encode_frames(frames).unwrap()
                 }),
@@ -220,7 +220,7 @@ mod tests {
                     assert!((v - f32::from(w) / 255.0).abs() < 1e-6, "{name}: {pixel:?} instead of {wanted:?}");
                 }
             }
-            // Decoded as sRGB, all but alpha.
+            // Decoded as sRGB, except alpha.
             let curved = decode_photo(&file, Encoding::Srgb).unwrap().image;
             assert!((curved.pixel(19, 13)[1] - srgb_to_linear(99.0 / 255.0)).abs() < 1e-6);
             assert!(channels == 3 || curved.pixel(19, 13)[3] == image.pixel(19, 13)[3]);
@@ -241,7 +241,7 @@ mod tests {
     fn truncated_files_are_errors() {
         let lossy = riff(&[(b"VP8 ", LOSSY)]);
         for (name, _, file) in files().into_iter().chain([("lossy webp", 3, lossy)]) {
-            // The last frame, the end and padding say nothing of the first frame.
+            // Errors in the last frame, the end and the padding do not affect the first frame.
             let needed = match name {
                 "gif" => file.len() / 2,
                 "lossy webp" => 30,
@@ -250,7 +250,7 @@ mod tests {
             for cut in 0..needed {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "{name} cut at {cut}");
             }
-            // Nor does a changed byte do more than change the picture.
+            // A changed byte may change the picture, and must not do more.
             for at in 0..file.len().min(200) {
                 for value in [0, 1, 127, 255] {
                     let mut bad = file.clone();
@@ -274,7 +274,7 @@ mod tests {
         gif[frame + 5..frame + 9].copy_from_slice(&[255; 4]);
         let error = probe(&gif).unwrap_err();
         assert!(error.kind == ErrorKind::Format && error.message.contains("65535 x 65535 pixels"), "{error}");
-        // An animation on a canvas of 2^24 pixels a side.
+        // An animation on a canvas of 2^24 pixels per side.
         let canvas = [&[2, 0, 0, 0][..], &[255; 6]].concat();
         let webp = riff(&[(b"VP8X", &canvas), (b"ANIM", &[0; 6]), (b"ANMF", &[0; 32])]);
         assert_eq!(probe(&webp).unwrap_err().kind, ErrorKind::Format);

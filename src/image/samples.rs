@@ -1,6 +1,6 @@
-//! The samples of an OpenEXR layer, in memory that is asked for, and each line where a picture has it. (The reader of
-//! the crate itself ends the process where there is no room, and takes the file's word for which resolution a tile is
-//! of.)
+//! The samples of an OpenEXR layer: allocates memory fallibly and puts each line at its place in the picture. (The
+//! reader of the crate `exr` aborts the process if memory is short, and trusts the file about the resolution that a
+//! tile belongs to.)
 
 use crate::image::try_vec;
 use exr::block::chunk::TileCoordinates;
@@ -12,10 +12,10 @@ use exr::meta::header::Header;
 use exr::prelude::{FlatSamples, Vec2, f16};
 use std::io::ErrorKind;
 
-/// Reads the largest of a layer's resolutions.
+/// Reads the largest resolution of a layer.
 pub(super) struct Largest;
 
-/// Samples of one channel, as far as they are read.
+/// The samples of one channel that have been read so far.
 pub(super) struct Samples {
     width: usize,
     samples: FlatSamples,
@@ -48,7 +48,7 @@ impl SamplesReader for Samples {
 
     fn read_line(&mut self, line: LineRef<'_>) -> UnitResult {
         let at = line.location;
-        // A tile may say otherwise than the table of tiles did.
+        // The head of a tile may contradict the table of tiles.
         let misplaced = || Error::Invalid("a block that is not where the table of blocks has it".into());
         if at.level != Vec2(0, 0) || at.position.0 + at.sample_count > self.width {
             return Err(misplaced());

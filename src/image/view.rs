@@ -6,7 +6,7 @@ use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
 use crate::image::{Image, MAX_SIDE};
 use half::f16;
 
-/// How one channel of a pixel is stored.
+/// The format of a channel of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
     U8,
@@ -25,10 +25,10 @@ impl Sample {
     }
 }
 
-/// What the numbers mean.
+/// The meaning of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColourSpace {
-    /// Scene-linear Rec.709, or data that is no colour.
+    /// Scene-linear Rec.709, or data other than colour.
     Linear,
     /// sRGB-encoded colour; a fourth channel is alpha and stays linear.
     Srgb,
@@ -42,9 +42,9 @@ pub struct Layout {
     pub colour_space: ColourSpace,
     pub width: usize,
     pub height: usize,
-    /// Bytes from a pixel to the next; 0 = packed.
+    /// Bytes from one pixel to the next; 0 = packed.
     pub pixel_stride: usize,
-    /// Bytes from a row to the next; 0 = packed.
+    /// Bytes from one row to the next; 0 = packed.
     pub row_stride: usize,
     /// Whether the first row in memory is the bottom one.
     pub bottom_up: bool,
@@ -103,13 +103,13 @@ impl Layout {
         y * self.row_stride + x * self.pixel_stride
     }
 
-    /// Whether a channel carries the sRGB curve.
+    /// Whether a channel is sRGB-encoded.
     fn is_encoded(&self, channel: usize) -> bool {
         self.colour_space == ColourSpace::Srgb && channel < 3 && !(self.channels == 2 && channel == 1)
     }
 }
 
-/// Reads the caller's pixels as linear values. NaN and infinity are kept: what they mean is for each stage to say.
+/// Reads the caller's pixels as linear values. NaN and infinity are kept; each stage handles them.
 pub fn read(layout: Layout, bytes: &[u8]) -> Result<Image> {
     let layout = layout.checked(bytes.len())?;
     let mut image = Image::new(layout.width, layout.height, layout.channels)?;

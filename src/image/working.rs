@@ -1,15 +1,14 @@
-//! Bytes that reading a picture file takes beside the picture that it becomes: for budgets, which count them while the
-//! file is read.
+//! Bytes of memory for reading a picture file, in addition to the resulting picture: for memory budgets, which count
+//! them while the file is read.
 
 use super::containers::png_chunks;
 use super::file_colour::{self, icc};
 use super::format::Format;
-use super::{openexr, radiance, raster, room, tiff};
+use super::{memory, openexr, radiance, raster, tiff};
 use crate::error::Result;
 use image::ImageFormat;
 
-/// An upper bound, from the headers alone. No codec runs, and nothing is allocated but a colour profile, which is freed
-/// again.
+/// An upper bound from the headers alone. No codec runs, and only a colour profile is allocated, which is freed again.
 pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
     let format = Format::of(bytes)?;
     let pixels = match format {
@@ -24,7 +23,7 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
     Ok(pixels.saturating_add(profile) as u64)
 }
 
-/// For a PNG: its samples as they are stored, in as many bytes as the decoder makes of them, and its other chunks.
+/// For a PNG: its samples in the decoder's format, and its other chunks.
 fn png(bytes: &[u8]) -> usize {
     let mut total = 0usize;
     for (name, _, content) in png_chunks(bytes) {
@@ -34,11 +33,11 @@ fn png(bytes: &[u8]) -> usize {
                 // Grey, RGB and palettes may have a transparent colour, which becomes alpha.
                 let channels = if matches!(colour, 0 | 4) { 2 } else { 4 };
                 let pixel = channels * if depth == 16 { 2 } else { 1 };
-                let row = room::pixels(bytes, ImageFormat::Png, width, height, pixel);
+                let row = memory::pixels(bytes, ImageFormat::Png, width, height, pixel);
                 width.saturating_mul(height).saturating_mul(pixel).saturating_add(row)
             }
-            // They grow by doubling.
-            _ => room::chunk(name, content.len(), bytes.len()).saturating_mul(2),
+            // The buffers of chunks grow by doubling.
+            _ => memory::chunk(name, content.len(), bytes.len()).saturating_mul(2),
         };
         total = total.saturating_add(own);
     }

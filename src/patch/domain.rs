@@ -1,6 +1,6 @@
 //! Sets of usable patches.
 
-use super::field::pack;
+use super::position::pack;
 use crate::error::Result;
 use crate::image::{try_collect, try_vec, try_with_capacity};
 

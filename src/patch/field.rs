@@ -1,22 +1,9 @@
 //! The nearest-neighbour field.
 
 use super::domain::Domain;
+use super::position::{NONE, pack, unpack};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
-
-/// Marks a patch without a match.
-pub const NONE: u32 = u32::MAX;
-
-/// Packs a position into one integer.
-#[inline]
-pub fn pack(x: usize, y: usize) -> u32 {
-    (y as u32) << 16 | x as u32
-}
-
-#[inline]
-pub fn unpack(position: u32) -> (usize, usize) {
-    ((position & 0xffff) as usize, (position >> 16) as usize)
-}
 
 /// For each patch of one image, its match in another image and their distance.
 #[derive(Clone, Debug, PartialEq, Eq)]

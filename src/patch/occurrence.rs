@@ -7,7 +7,8 @@
 //! everywhere, and an identity field remains an identity.
 
 use super::domain::Domain;
-use super::field::{Field, NONE, unpack};
+use super::field::Field;
+use super::position::{NONE, unpack};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -74,7 +75,7 @@ fn pixels(position: u32, width: usize, patch: usize) -> impl Iterator<Item = usi
 
 #[cfg(test)]
 mod tests {
-    use super::super::field::pack;
+    use super::super::position::pack;
     use super::*;
 
     #[test]

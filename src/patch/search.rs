@@ -4,9 +4,10 @@
 //! field as it was before the sweep, and writes all tiles back at the end.
 
 use super::domain::Domain;
-use super::field::{Field, NONE, pack, unpack};
+use super::field::Field;
 use super::kernel::{Kernel, Patch};
 use super::occurrence::Occurrence;
+use super::position::{NONE, pack, unpack};
 use super::quantised::QuantisedImage;
 use crate::error::Result;
 use crate::exec;
@@ -210,22 +211,7 @@ impl Tile {
 
             // Random search, in the forward direction only.
             if !backwards {
-                let mut rng = Rng::new(key, &[index as u64]);
-                if best.error == u32::MAX {
-                    for _ in 0..sweep.initial_samples {
-                        let members = search.allowed.members();
-                        let (px, py) = unpack(members[rng.below(members.len())]);
-                        best.try_at(search, px as isize, py as isize);
-                    }
-                }
-                let mut radius = sweep.radius;
-                while radius > 0 && best.at != NONE {
-                    let (px, py) = unpack(best.at);
-                    let (bits, span) = (rng.next_u64(), 2 * radius as u64 + 1);
-                    let offset = |half: u64| ((half * span) >> 32) as isize - radius as isize;
-                    best.try_at(search, px as isize + offset(bits & 0xffff_ffff), py as isize + offset(bits >> 32));
-                    radius /= 2;
-                }
+                best.search_randomly(search, sweep, Rng::new(key, &[index as u64]));
             }
             if best.error == total && best.at == self.at[i] {
                 continue;
@@ -309,6 +295,26 @@ pub(super) struct Best {
 }
 
 impl Best {
+    /// Tries uniformly random positions if there is no match yet, then positions around the best one, at falling radii.
+    #[inline(always)]
+    fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
+        if self.error == u32::MAX {
+            for _ in 0..sweep.initial_samples {
+                let members = search.allowed.members();
+                let (px, py) = unpack(members[rng.below(members.len())]);
+                self.try_at(search, px as isize, py as isize);
+            }
+        }
+        let mut radius = sweep.radius;
+        while radius > 0 && self.at != NONE {
+            let (px, py) = unpack(self.at);
+            let (bits, span) = (rng.next_u64(), 2 * radius as u64 + 1);
+            let offset = |half: u64| ((half * span) >> 32) as isize - radius as isize;
+            self.try_at(search, px as isize + offset(bits & 0xffff_ffff), py as isize + offset(bits >> 32));
+            radius /= 2;
+        }
+    }
+
     #[inline]
     pub fn try_at(&mut self, search: &Search, px: isize, py: isize) {
         if px < 0 || py < 0 || px as usize >= search.allowed.width || py as usize >= search.allowed.height {

@@ -5,7 +5,8 @@
 //! initial field are needed.
 
 use super::domain::Domain;
-use super::field::{Field, pack, unpack};
+use super::field::Field;
+use super::position::{pack, unpack};
 use super::quantised::QuantisedImage;
 use super::search::{Best, Search};
 use crate::error::Result;

@@ -1,7 +1,8 @@
 //! Reconstructs the image from a field: the average of the pixels that overlapping matches place at each position
 //! (Algorithm 1).
 
-use super::field::{Field, NONE, pack, unpack};
+use super::field::Field;
+use super::position::{NONE, pack, unpack};
 use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
@@ -55,25 +56,11 @@ pub fn vote(
                 pixel.copy_from_slice(colour(offset));
                 continue;
             }
-            // Collect the exemplar pixels that the patches over this position place here.
-            ballots.clear();
-            for fy in fields_over(y, patch, field.height) {
-                for fx in fields_over(x, patch, field.width) {
-                    let i = fy * field.width + fx;
-                    if field.at[i] == NONE {
-                        continue;
-                    }
-                    let offset = field.at[i].wrapping_sub(pack(fx, fy));
-                    let weight = match how {
-                        Vote::Weighted => 1.0 / (1.0 + f64::from(field.error[i]) / scale),
-                        _ => 1.0,
-                    };
-                    match ballots.iter_mut().find(|b| b.offset == offset) {
-                        Some(b) => (b.count, b.weight) = (b.count + 1, b.weight + weight),
-                        None => ballots.push(Ballot { offset, count: 1, weight }),
-                    }
-                }
-            }
+            let weight = |i: usize| match how {
+                Vote::Weighted => 1.0 / (1.0 + f64::from(field.error[i]) / scale),
+                _ => 1.0,
+            };
+            collect(&mut ballots, field, patch, [x, y], weight);
             match &ballots[..] {
                 [] => continue,
                 [only] => {
@@ -99,6 +86,26 @@ pub fn vote(
             }
         }
     })
+}
+
+/// Collects the exemplar pixels that the patches over a position place there; `weight` is that of a patch.
+#[inline(always)]
+fn collect(ballots: &mut Vec<Ballot>, field: &Field, patch: usize, [x, y]: [usize; 2], weight: impl Fn(usize) -> f64) {
+    ballots.clear();
+    for fy in fields_over(y, patch, field.height) {
+        for fx in fields_over(x, patch, field.width) {
+            let i = fy * field.width + fx;
+            if field.at[i] == NONE {
+                continue;
+            }
+            let offset = field.at[i].wrapping_sub(pack(fx, fy));
+            let weight = weight(i);
+            match ballots.iter_mut().find(|b| b.offset == offset) {
+                Some(b) => (b.count, b.weight) = (b.count + 1, b.weight + weight),
+                None => ballots.push(Ballot { offset, count: 1, weight }),
+            }
+        }
+    }
 }
 
 /// The source offset on which all matches over a position agree; `None` if they differ or one is missing.

@@ -32,16 +32,16 @@ pub struct Params {
     pub unit: Unit,
     /// Value of the darkest colour, ≥ 0; must be > 0 on a logarithmic scale, where 0 selects a thousandth of the
     /// largest.
-    pub least: f64,
-    /// Value of the lightest colour, > `least`; 0 selects the largest value of the image.
-    pub most: f64,
+    pub minimum: f64,
+    /// Value of the lightest colour, > `minimum`; 0 selects the largest value of the image.
+    pub maximum: f64,
     /// Whether to draw the scale bar beside the image, which widens it.
     pub bar: bool,
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self { scale: Scale::Linear, unit: Unit::Luminance, least: 0.0, most: 0.0, bar: true }
+        Self { scale: Scale::Linear, unit: Unit::Luminance, minimum: 0.0, maximum: 0.0, bar: true }
     }
 }
 
@@ -123,39 +123,39 @@ fn value(image: &Image, x: usize, y: usize) -> f32 {
 
 struct Range {
     scale: Scale,
-    least: f64,
-    most: f64,
+    minimum: f64,
+    maximum: f64,
 }
 
 impl Range {
     fn new(params: &Params, image: &Image) -> Result<Self> {
-        check_range("least", params.least, 0.0, f64::from(f32::MAX))?;
-        check_range("most", params.most, 0.0, f64::from(f32::MAX))?;
+        check_range("minimum", params.minimum, 0.0, f64::from(f32::MAX))?;
+        check_range("maximum", params.maximum, 0.0, f64::from(f32::MAX))?;
         let largest = || {
             let all = (0..image.height).flat_map(|y| (0..image.width).map(move |x| value(image, x, y)));
             f64::from(all.filter(|v| v.is_finite()).fold(0.0, f32::max))
         };
-        let most = if params.most > 0.0 { params.most } else { largest() };
-        let least = match params.scale {
-            Scale::Logarithmic if params.least == 0.0 => most / 1e3,
-            _ => params.least,
+        let maximum = if params.maximum > 0.0 { params.maximum } else { largest() };
+        let minimum = match params.scale {
+            Scale::Logarithmic if params.minimum == 0.0 => maximum / 1e3,
+            _ => params.minimum,
         };
-        if !(most > least) {
+        if !(maximum > minimum) {
             return Err(Error::argument(format!(
-                "the scale goes from {least} to {most}; the second must be larger: set least and most, or give an \
+                "the scale goes from {minimum} to {maximum}; the second must be larger: set minimum and maximum, or give an \
                  image with light"
             )));
         }
-        Ok(Self { scale: params.scale, least, most })
+        Ok(Self { scale: params.scale, minimum, maximum })
     }
 
     /// The position of a value on the scale, in `[0, 1]`; NaN stays NaN.
     fn share(&self, value: f64) -> f64 {
         let share = match self.scale {
-            Scale::Linear => (value - self.least) / (self.most - self.least),
+            Scale::Linear => (value - self.minimum) / (self.maximum - self.minimum),
             // Put 0 at the dark end.
             Scale::Logarithmic if value <= 0.0 => 0.0,
-            Scale::Logarithmic => (value / self.least).ln() / (self.most / self.least).ln(),
+            Scale::Logarithmic => (value / self.minimum).ln() / (self.maximum / self.minimum).ln(),
         };
         share.clamp(0.0, 1.0)
     }
@@ -164,17 +164,17 @@ impl Range {
     fn ticks(&self, count: usize) -> Vec<f64> {
         let nice = |exponent: i32, digit: f64| digit * 10f64.powi(exponent);
         let exponents =
-            (self.least.max(self.most / 1e6).log10().floor() as i32 - 1)..=(self.most.log10().ceil() as i32);
-        let within = |v: &f64| *v >= self.least * (1.0 - 1e-9) && *v <= self.most * (1.0 + 1e-9);
+            (self.minimum.max(self.maximum / 1e6).log10().floor() as i32 - 1)..=(self.maximum.log10().ceil() as i32);
+        let within = |v: &f64| *v >= self.minimum * (1.0 - 1e-9) && *v <= self.maximum * (1.0 + 1e-9);
         match self.scale {
             Scale::Linear => {
                 // Choose the smallest round step that is wide enough.
-                let wide = (self.most - self.least) / count.max(1) as f64;
+                let wide = (self.maximum - self.minimum) / count.max(1) as f64;
                 let exponent = wide.log10().floor() as i32;
                 let steps = [(exponent, 1.0), (exponent, 2.0), (exponent, 5.0), (exponent + 1, 1.0)];
                 let step = steps.map(|(e, d)| nice(e, d)).into_iter().find(|s| *s >= wide * (1.0 - 1e-9));
                 let step = step.unwrap_or(wide);
-                let first = (self.least / step * (1.0 - 1e-12)).ceil();
+                let first = (self.minimum / step * (1.0 - 1e-12)).ceil();
                 (0..=count).map(|i| (first + i as f64) * step).filter(within).collect()
             }
             Scale::Logarithmic => {
@@ -274,19 +274,19 @@ mod tests {
         let at = |params: &Params, x| render(&image, params).unwrap().rgb(x, 0);
         let close = |a: Vec3, share: f64| (a - colour_of(share)).abs().max_element() < 0.01;
         assert!(close(at(&plain, 2), 1.0) && close(at(&plain, 1), 0.1) && at(&plain, 3) == NO_VALUE);
-        let log = Params { scale: Scale::Logarithmic, least: 1.0, most: 1e4, ..plain.clone() };
+        let log = Params { scale: Scale::Logarithmic, minimum: 1.0, maximum: 1e4, ..plain.clone() };
         assert!(close(at(&log, 0), 0.0) && close(at(&log, 1), 0.25) && close(at(&log, 2), 0.5));
         // Colour images are shown by their luminance.
         let green = Image::from_fn(1, 1, |_, _| [0.0, 100.0, 0.0]).unwrap();
-        let shown = render(&green, &Params { most: 143.033_74, ..plain.clone() }).unwrap().rgb(0, 0);
+        let shown = render(&green, &Params { maximum: 143.033_74, ..plain.clone() }).unwrap().rgb(0, 0);
         assert!(close(shown, 0.5), "{shown}");
         // Invalid ranges are rejected.
         let dark = Image::new(2, 2, 1).unwrap();
         for (image, params) in [
             (&dark, plain.clone()),
-            (&image, Params { least: 5.0, most: 5.0, ..plain.clone() }),
-            (&image, Params { least: -1.0, ..plain.clone() }),
-            (&image, Params { most: f64::NAN, ..plain.clone() }),
+            (&image, Params { minimum: 5.0, maximum: 5.0, ..plain.clone() }),
+            (&image, Params { minimum: -1.0, ..plain.clone() }),
+            (&image, Params { maximum: f64::NAN, ..plain.clone() }),
         ] {
             assert!(render(image, &params).is_err(), "{params:?}");
         }
@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round_numbers() {
-        let range = |scale, least, most| Range { scale, least, most };
+        let range = |scale, minimum, maximum| Range { scale, minimum, maximum };
         assert_eq!(range(Scale::Linear, 0.0, 1000.0).ticks(5), [0.0, 200.0, 400.0, 600.0, 800.0, 1000.0]);
         assert_eq!(range(Scale::Linear, 120.0, 310.0).ticks(4), [150.0, 200.0, 250.0, 300.0]);
         assert_eq!(range(Scale::Logarithmic, 1.0, 1000.0).ticks(12).len(), 10);

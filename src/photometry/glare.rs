@@ -71,26 +71,43 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
     let view = View::new(width, height, params.fov_y);
     let threshold = match params.threshold {
         t if t > 0.0 => t,
-        _ => {
-            let (light, angle) = (0..width * height).fold((0.0, 0.0), |(light, angle), i| {
-                let (_, omega) = view.pixel(i);
-                (light + luminance(i) * omega, angle + omega)
-            });
-            5.0 * light / angle
-        }
+        _ => default_threshold(width * height, &luminance, &view),
     };
-
-    // Compute the background luminance, weighted by the illuminance at the eye.
     let glares = |i: usize| threshold > 0.0 && luminance(i) >= threshold;
+    let background = background((0..width * height).filter(|&i| !glares(i)), &luminance, &view);
+    let sources = sources([width, height], &luminance, &glares, &view)?;
+    let sum: f64 = sources.iter().map(|s| s.luminance * s.luminance * s.solid_angle / (s.position * s.position)).sum();
+    let ugr = 8.0 * (0.25 / background.max(f64::MIN_POSITIVE) * sum).log10();
+    Ok(Rating { ugr, background, threshold, sources })
+}
+
+/// Five times the mean luminance of the image over its solid angle.
+fn default_threshold(pixels: usize, luminance: &impl Fn(usize) -> f64, view: &View) -> f64 {
+    let (light, angle) = (0..pixels).fold((0.0, 0.0), |(light, angle), i| {
+        let (_, omega) = view.pixel(i);
+        (light + luminance(i) * omega, angle + omega)
+    });
+    5.0 * light / angle
+}
+
+/// Background luminance: the mean over the pixels, weighted by their illuminance at the eye.
+fn background(pixels: impl Iterator<Item = usize>, luminance: &impl Fn(usize) -> f64, view: &View) -> f64 {
     let (mut light, mut weight) = (0.0, 0.0);
-    for i in (0..width * height).filter(|&i| !glares(i)) {
+    for i in pixels {
         let (direction, omega) = view.pixel(i);
         light += luminance(i) * omega * -direction.z;
         weight += omega * -direction.z;
     }
-    let background = if weight > 0.0 { light / weight } else { 0.0 };
+    if weight > 0.0 { light / weight } else { 0.0 }
+}
 
-    // Collect the glare sources by flood fill.
+/// Collects the glare sources by flood fill.
+fn sources(
+    [width, height]: [usize; 2],
+    luminance: &impl Fn(usize) -> f64,
+    glares: &impl Fn(usize) -> bool,
+    view: &View,
+) -> Result<Vec<Source>> {
     let mut seen = try_vec(width * height, false)?;
     let (mut open, mut sources) = (Vec::new(), Vec::new());
     for start in 0..width * height {
@@ -125,9 +142,7 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
             position: position_index(patch.direction.normalize()),
         });
     }
-    let sum: f64 = sources.iter().map(|s| s.luminance * s.luminance * s.solid_angle / (s.position * s.position)).sum();
-    let ugr = 8.0 * (0.25 / background.max(f64::MIN_POSITIVE) * sum).log10();
-    Ok(Rating { ugr, background, threshold, sources })
+    Ok(sources)
 }
 
 /// A pinhole camera that looks along -z, with y up.

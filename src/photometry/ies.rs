@@ -52,24 +52,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let mut lines = text.numbered();
     let mut luminaire = Luminaire::lambertian("", 0.0, [0.0; 3]);
 
-    // Read the keywords, up to the TILT line.
-    let mut last = 1;
-    let tilt = loop {
-        let Some((number, line)) = lines.next() else {
-            return Err(at(last, "the file has no line TILT=: it is not an IES file, or it is truncated"));
-        };
-        last = number;
-        if let Some(tilt) = line.strip_prefix("TILT=") {
-            break tilt.trim();
-        }
-        if let Some((key, value)) = line.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
-            match key.to_ascii_uppercase().as_str() {
-                "LUMINAIRE" => luminaire.name = value.trim().into(),
-                "MANUFAC" => luminaire.manufacturer = value.trim().into(),
-                _ => {}
-            }
-        }
-    };
+    let (last, tilt) = keywords(&mut lines, &mut luminaire)?;
     let list: Vec<_> = lines
         .flat_map(|(n, line)| line.split([' ', '\t', ',']).filter(|w| !w.is_empty()).map(move |word| (n, word)))
         .collect();
@@ -116,6 +99,28 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     (luminaire.planes, luminaire.candela) = unfold(&horizontal, candela, gammas, words.line)?;
     luminaire.check().map_err(|e| e.within(format_args!("line {}", words.line)))?;
     Ok(luminaire)
+}
+
+/// Reads the keywords up to the TILT line. Returns the number and the value of that line.
+fn keywords<'a>(
+    lines: &mut impl Iterator<Item = (usize, &'a str)>,
+    luminaire: &mut Luminaire,
+) -> Result<(usize, &'a str)> {
+    let mut last = 1;
+    for (number, line) in lines {
+        last = number;
+        if let Some(tilt) = line.strip_prefix("TILT=") {
+            return Ok((number, tilt.trim()));
+        }
+        if let Some((key, value)) = line.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+            match key.to_ascii_uppercase().as_str() {
+                "LUMINAIRE" => luminaire.name = value.trim().into(),
+                "MANUFAC" => luminaire.manufacturer = value.trim().into(),
+                _ => {}
+            }
+        }
+    }
+    Err(at(last, "the file has no line TILT=: it is not an IES file, or it is truncated"))
 }
 
 /// Expands the planes to the full circle by the file's symmetry.

@@ -80,19 +80,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let factor = rows.within("the conversion factor", 0.0, 1e9)?;
     rows.skip(1, "the tilt")?;
 
-    // Read the lamp sets; the first is the measured one. A negative number of lamps declares absolute photometry.
-    let sets = rows.count("the number of sets of lamps", 1, MAX_SETS)?;
-    let (mut lumens, mut watts, mut absolute) = (0.0, 0.0, false);
-    for set in 0..sets {
-        let lamps = rows.within("the number of lamps", -1e6, 1e6)?;
-        rows.next("the type of lamps")?;
-        let flux = rows.within("the lamps' flux", 0.0, 1e12)?;
-        rows.skip(2, "the colour rendering")?;
-        let power = rows.within("the power", 0.0, 1e9)?;
-        if set == 0 {
-            (lumens, watts, absolute) = (flux, power, lamps < 0.0);
-        }
-    }
+    let LampSet { lumens, watts, absolute } = lamp_sets(&mut rows)?;
     rows.list(ROOM_INDICES, "a direct ratio", -1e9, 1e9)?;
 
     let angles = rows.list(planes, "the angle of a C plane", 0.0, 360.0)?;
@@ -102,18 +90,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let mut values = rows.list(stored.len() * gammas, "an intensity", 0.0, 1e12)?;
     values.iter_mut().for_each(|v| *v *= scale);
 
-    // Map every plane of the circle to the stored plane that it equals.
-    let single = symmetry == 1;
-    let (mut shown, mut candela) = (Vec::new(), Vec::new());
-    for plane in 0..if single { 1 } else { planes } {
-        if !single && angles[plane] >= 360.0 {
-            continue;
-        }
-        let source = image_of(symmetry, plane, planes);
-        let at_stored = stored.iter().position(|s| *s == source).unwrap_or(0);
-        shown.push(if single { 0.0 } else { angles[plane] });
-        candela.extend_from_slice(&values[at_stored * gammas..][..gammas]);
-    }
+    let (shown, candela) = unfold(symmetry, &angles, &stored, &values, gammas);
     let luminaire = Luminaire {
         name,
         manufacturer,
@@ -126,6 +103,48 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     };
     luminaire.check().map_err(|e| e.within(format_args!("line {}", rows.line)))?;
     Ok(luminaire)
+}
+
+/// The lamps of a luminaire.
+struct LampSet {
+    lumens: f64,
+    watts: f64,
+    /// Whether the file declares absolute photometry.
+    absolute: bool,
+}
+
+/// Reads the lamp sets; the first is the measured one. A negative number of lamps declares absolute photometry.
+fn lamp_sets<'a>(rows: &mut Rows<'a, impl Iterator<Item = (usize, &'a str)>>) -> Result<LampSet> {
+    let sets = rows.count("the number of sets of lamps", 1, MAX_SETS)?;
+    let mut first = LampSet { lumens: 0.0, watts: 0.0, absolute: false };
+    for set in 0..sets {
+        let lamps = rows.within("the number of lamps", -1e6, 1e6)?;
+        rows.next("the type of lamps")?;
+        let flux = rows.within("the lamps' flux", 0.0, 1e12)?;
+        rows.skip(2, "the colour rendering")?;
+        let power = rows.within("the power", 0.0, 1e9)?;
+        if set == 0 {
+            first = LampSet { lumens: flux, watts: power, absolute: lamps < 0.0 };
+        }
+    }
+    Ok(first)
+}
+
+/// Angles and intensities of all planes of the circle: each equals a stored plane.
+fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
+    let single = symmetry == 1;
+    let planes = angles.len();
+    let (mut shown, mut candela) = (Vec::new(), Vec::new());
+    for plane in 0..if single { 1 } else { planes } {
+        if !single && angles[plane] >= 360.0 {
+            continue;
+        }
+        let source = image_of(symmetry, plane, planes);
+        let at_stored = stored.iter().position(|s| *s == source).unwrap_or(0);
+        shown.push(if single { 0.0 } else { angles[plane] });
+        candela.extend_from_slice(&values[at_stored * gammas..][..gammas]);
+    }
+    (shown, candela)
 }
 
 /// Indices of the planes that a file stores, by its symmetry.
@@ -157,6 +176,13 @@ fn image_of(symmetry: usize, plane: usize, planes: usize) -> usize {
     }
 }
 
+/// The luminaire without its light above the horizontal.
+fn below_horizon(l: &Luminaire) -> Luminaire {
+    let is_below = |i: usize| l.gammas[i % l.gammas.len()] <= 90.0;
+    let candela = l.candela.iter().enumerate().map(|(i, v)| if is_below(i) { *v } else { 0.0 });
+    Luminaire { candela: candela.collect(), ..l.clone() }
+}
+
 /// Writes a luminaire as a file without symmetry, unless it has a single plane.
 ///
 /// # Errors
@@ -173,18 +199,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     };
     let flux = l.flux();
     let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { flux };
-    let down: f64 = {
-        let below = Luminaire {
-            candela: l
-                .candela
-                .iter()
-                .enumerate()
-                .map(|(i, v)| if l.gammas[i % l.gammas.len()] <= 90.0 { *v } else { 0.0 })
-                .collect(),
-            ..l.clone()
-        };
-        if flux > 0.0 { 100.0 * below.flux() / flux } else { 0.0 }
-    };
+    let down = if flux > 0.0 { 100.0 * below_horizon(l).flux() / flux } else { 0.0 };
     let output_ratio = if lumens > 0.0 { 100.0 * flux / lumens } else { 0.0 };
     let [length, width, height] = l.size.map(|m| m * 1e3);
     let (length, width) = if length < 0.0 { (-length, 0.0) } else { (length, width.abs()) };

@@ -40,7 +40,8 @@ impl Luminaire {
     }
 
     /// # Errors
-    /// `Format` if angles are not ascending or out of range, values are negative, not finite, or not as many.
+    /// `Format` if angles are not ascending or out of range, or if values are negative, not finite or of the wrong
+    /// number.
     pub fn check(&self) -> Result<()> {
         let ascending = |angles: &[f64]| angles.windows(2).all(|w| w[0] < w[1]) && angles.iter().all(|a| a.is_finite());
         let (gammas, planes) = (&self.gammas, &self.planes);

@@ -8,12 +8,12 @@ use crate::render::pilot::{self, PATHS, REPLICATIONS, nets};
 use crate::render::{self, Pilot, World};
 use crate::scene::Camera;
 
-/// Minimum number of paths per pixel for which the error is estimated [origin not recorded].
-const MIN_PATHS: f64 = 4.0;
+/// Minimum number of paths per pixel for which the error is estimated: one per replication [convention].
+const MIN_PATHS: f64 = REPLICATIONS as f64;
 /// Maximum number of paths per pixel [convention].
 const MAX_PATHS: f64 = (1u32 << 20) as f64;
-/// Paths per pixel after which adaptive sampling starts, if there is a target error [origin not recorded].
-const ADAPTIVE_FROM: f64 = 16.0;
+/// Paths per pixel after which adaptive sampling starts, if there is a target error: as in the renderer [convention].
+const ADAPTIVE_FROM: f64 = pilot::MIN_UNIFORM_PATHS as f64;
 
 /// A planned rendering.
 #[derive(Clone, Debug, PartialEq)]

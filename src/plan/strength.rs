@@ -15,10 +15,8 @@ const TRIALS: u64 = 6;
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Radiance in cd/m² far above that of any other light [convention].
 const DOMINANT: f32 = 1e9;
-/// Minimum and maximum number of paths of a solution [origin not recorded].
-const SOLUTION_PATHS: [f64; 2] = [2048.0, (1u32 << 30) as f64];
-/// Safety margin in the forecast of a solution that stops at a target error [origin not recorded].
-const MARGIN: f64 = 1.1;
+/// Minimum and maximum number of paths of a solution: its first round, and the limit of its parameter [convention].
+const SOLUTION_PATHS: [f64; 2] = [(relight::BATCHES as u32 * relight::FIRST_ROUND) as f64, (1u32 << 30) as f64];
 /// Ratio of an interval's half-width to its standard error, for the number of batches used [convention].
 const HALF_WIDTH: f64 = 2.04;
 
@@ -90,7 +88,7 @@ impl Strength {
         let count = |paths: f64| paths.clamp(SOLUTION_PATHS[0], SOLUTION_PATHS[1]) as u32;
         let plain = relight::Params { target_error: 0.0, time_budget_ms: 0, ..params.clone() };
         if matches!(goal, Goal::Error(_)) {
-            let expected = Expected { seconds: MARGIN * paths * self.seconds_per_path, error };
+            let expected = Expected { seconds: relight::FORECAST_MARGIN * paths * self.seconds_per_path, error };
             let target_error = error.min(1.0) as f32;
             (relight::Params { paths: count(MAX_COST * paths), target_error, ..plain }, expected)
         } else {

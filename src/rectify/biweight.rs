@@ -51,10 +51,10 @@ fn integrate(deviation: f64) -> Biweight {
     let mut sums = [0.0; 4];
     for step in 0..STEPS {
         let square = ((step as f64 + 0.5) / STEPS as f64 * far).powi(2);
-        let density = (-0.5 * square / variance).exp();
+        let gaussian = (-0.5 * square / variance).exp();
         let agreement = 1.0 - square;
         let values = [1.0, square, agreement * (1.0 - 5.0 * square), square * agreement.powi(4)];
-        sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += density * value);
+        sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += gaussian * value);
     }
     let [all, square, slope, influence] = sums;
     Biweight { square: square / (all * variance), slope: slope / all, influence: influence / (all * variance) }

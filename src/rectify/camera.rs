@@ -1,18 +1,14 @@
 //! The camera from its vanishing points: focal length and orthonormal room axes, given the principal point.
 
+use super::focal::{Expected, USUAL_SPREAD};
+use super::params::Params;
 use super::sphere::{Refined, round_covariance};
 use super::squareness::{self, Squareness};
-use super::vanishing::Vanishing;
-use super::{Params, VanishingPoint};
+use super::vanishing::{Vanishing, VanishingPoint};
 use crate::geometry::linear::symmetric_eigen;
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{FocalSource, Perspective};
 use glam::{DMat3, DVec2, DVec3};
-
-/// Prior of the focal length over photos of rooms: its typical value as a share of the image width, and the standard
-/// deviation of its logarithm [origin not recorded].
-const USUAL_FOCAL: f64 = 0.85;
-pub const USUAL_SPREAD: f64 = 0.35;
 
 /// The error in radians of an axis that is fixed by convention alone [convention].
 pub const FREE_ERROR: f64 = 0.5;
@@ -88,29 +84,6 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     Oriented { perspective, vanishing_points, squareness, expected, axis_of }
 }
 
-/// The prior of a focal length, in pixels, and the standard deviation of its logarithm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expected {
-    pub focal: f64,
-    pub spread: f64,
-    source: FocalSource,
-}
-
-impl Expected {
-    /// From the photo's metadata, or else the prior of photos of that width.
-    fn new(params: &Params, width: usize) -> Self {
-        match params.expected_focal {
-            Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },
-            None => Self { focal: USUAL_FOCAL * width as f64, spread: USUAL_SPREAD, source: FocalSource::Assumed },
-        }
-    }
-
-    /// Longer by the given number of standard deviations.
-    pub fn moved(self, deviations: f64) -> Self {
-        Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
-    }
-}
-
 /// The focal length in pixels: the given one, or else an estimate from the points and the prior.
 fn focal_length(
     points: &[VanishingPoint],
@@ -142,8 +115,8 @@ pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: 
     Perspective { focal, axes, ..*camera }
 }
 
-/// The relative standard deviation of a focal length that was not given: of what the vanishing points of the axes and
-/// photos in general say together.
+/// The relative standard deviation of a focal length that was not given, from the vanishing points of the axes and the
+/// prior together.
 pub fn focal_spread(camera: &Perspective, points: &[VanishingPoint; 3]) -> f64 {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let from_lines =

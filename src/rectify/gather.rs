@@ -1,8 +1,8 @@
 //! Weighted sums of the taps of a run of pixels.
 
 use super::footprint::RUN;
-use super::lanes::{GreyLanes, PixelLanes, RgbLanes};
-use super::taps::{TAPS, Taps};
+use super::lanes::{GreyLanes, PixelLanes, RgbLanes, TAPS};
+use super::taps::Taps;
 use crate::image::Image;
 use crate::simd::Level;
 use glam::Vec4;

@@ -2,10 +2,12 @@
 //!
 //! Every instruction set performs the operations in the same order, so sums are identical to the bit.
 
-use super::taps::TAPS;
 use glam::{Vec4, Vec4Swizzles};
 
-/// Most samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after them that fill
+/// Taps along each side of a pixel, and pixels in a register.
+pub const TAPS: usize = 4;
+
+/// Maximum number of samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after them that fill
 /// the register.
 pub const MAX_READ: usize = 16;
 

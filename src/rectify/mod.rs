@@ -30,6 +30,7 @@ mod biweight;
 mod camera;
 pub mod canny;
 mod distortion;
+mod focal;
 mod footprint;
 mod gather;
 pub mod gradient;
@@ -37,6 +38,7 @@ pub mod hough;
 mod lanes;
 mod manhattan;
 pub mod metric;
+mod params;
 mod plane;
 mod quad;
 mod resample;
@@ -51,124 +53,23 @@ mod unwarp;
 pub mod vanishing;
 mod warnings;
 
-pub use camera::Expected;
 pub use distortion::Distortion;
+pub use focal::Expected;
+pub use params::{LineDetector, Metric, Params, Search, UnwarpParams};
 pub use resample::warp;
 pub use squareness::Squareness;
 pub use unwarp::unwarp;
+pub use vanishing::VanishingPoint;
 
-use crate::error::{Error, Result, check_range};
+use crate::error::{Error, Result};
 use crate::geometry::{Homography, Perspective, Segment};
 use crate::image::{Image, pyramid};
 use crate::job::Job;
-use glam::{DMat3, DVec2, DVec3};
+use glam::DVec2;
 
 /// Longest side, in pixels, of the image in which lines are detected. Larger photos are reduced first: lenses and
 /// walls deviate from straight lines by more than the precision lost.
 const DETECTION_SIDE: usize = 1600;
-
-/// How lines are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LineDetector {
-    /// Regions of similar gradient direction, with sub-pixel end points.
-    Regions,
-    /// The paper's gradient-restricted Hough transform of Canny edges; its lines are trimmed to the edges they cover.
-    Hough,
-}
-
-/// How vanishing points are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Search {
-    /// Three orthogonal directions and the focal length jointly; then each direction is refined freely.
-    Manhattan,
-    /// The paper's search: one group of lines after the other.
-    Successive,
-}
-
-/// Distance between a vanishing point and a line in [`Search::Successive`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Metric {
-    /// The paper's measure on the detected segment, in homogeneous form: finite at infinity.
-    Segment,
-    /// As printed: `min(d_naive, d_vanishing)` on the whole visible line (Eq. 2).
-    VisibleLine,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    pub detector: LineDetector,
-    pub search: Search,
-    pub metric: Metric,
-    /// Half-width in radians of the band around the gradient direction that votes in the Hough transform, in `(0, pi /
-    /// 2]`; default 2.5° [paper §5.1].
-    pub hough_band: f64,
-    /// Focal length in pixels, if known; > 0.
-    pub focal: Option<f64>,
-    /// Focal length in pixels that the photo's metadata gives, and its standard deviation; > 0. It counts as one more
-    /// observation beside the lines, if `focal` is absent. Without it the prior is 0.85 of the width, with a wide spread.
-    pub expected_focal: Option<[f64; 2]>,
-    /// Principal point in pixels: the point where the optical axis meets the image plane; the image centre if absent.
-    /// In cropped photos and photos by shifted lenses it lies elsewhere, possibly outside the image.
-    pub principal: Option<DVec2>,
-    pub seed: u64,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self {
-            detector: LineDetector::Regions,
-            search: Search::Manhattan,
-            metric: Metric::Segment,
-            hough_band: 2.5f64.to_radians(),
-            focal: None,
-            expected_focal: None,
-            principal: None,
-            seed: 1,
-        }
-    }
-}
-
-impl Params {
-    /// The paper's method as printed.
-    pub fn printed() -> Self {
-        Self {
-            detector: LineDetector::Hough,
-            search: Search::Successive,
-            metric: Metric::VisibleLine,
-            ..Self::default()
-        }
-    }
-
-    /// Checks that every setting is in its range.
-    pub fn check(&self) -> Result<()> {
-        check_range("hough_band", self.hough_band, 1e-4, std::f64::consts::FRAC_PI_2)?;
-        if let Some(focal) = self.focal {
-            check_range("focal", focal, 1e-3, 1e9)?;
-        }
-        if let Some([focal, error]) = self.expected_focal {
-            check_range("expected_focal", focal, 1e-3, 1e9)?;
-            check_range("error of expected_focal", error, 1e-6 * focal, 10.0 * focal)?;
-        }
-        if let Some(principal) = self.principal {
-            check_range("principal.x", principal.x, -1e9, 1e9)?;
-            check_range("principal.y", principal.y, -1e9, 1e9)?;
-        }
-        Ok(())
-    }
-}
-
-#[derive(Clone, Debug)]
-pub struct VanishingPoint {
-    /// In homogeneous pixel coordinates, normalised to unit length; the third coordinate is 0 for a point at infinity.
-    pub point: DVec3,
-    /// Number of segments that run to the point; 0 if the point was derived from the other two.
-    pub support: usize,
-    /// Standard deviation of its direction in camera space, in radians.
-    pub error: f64,
-    /// Covariance of that direction in radians squared; its trace is the square of `error`. Lines that meet far away
-    /// constrain the direction across them better than along them.
-    pub covariance: DMat3,
-}
 
 /// The camera geometry that the lines of a photo imply.
 #[derive(Clone, Debug)]
@@ -266,31 +167,6 @@ pub fn view_from_segments(
         distortion: None,
         expected_focal: oriented.expected,
     })
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct UnwarpParams {
-    /// The two room axes that span the plane; chosen by the lines inside the mask if absent.
-    pub axes: Option<[usize; 2]>,
-    /// Longest side of the unwarped image in pixels, in `[16, 16384]`; the photo's own resolution decides below it.
-    pub max_side: usize,
-    /// Largest magnification of the photo, > 0; parts of the plane farther away are cut off.
-    pub max_magnification: f64,
-}
-
-impl Default for UnwarpParams {
-    fn default() -> Self {
-        Self { axes: None, max_side: 2048, max_magnification: 16.0 }
-    }
-}
-
-impl UnwarpParams {
-    /// Checks that every setting is in its range.
-    pub fn check(&self) -> Result<()> {
-        check_range("max_side", self.max_side, 16, 16_384)?;
-        check_range("max_magnification", self.max_magnification, f64::MIN_POSITIVE, 1e6)?;
-        Ok(())
-    }
 }
 
 /// A plane of the photo in fronto-parallel view, rotated so that right and down are nearly those of the photo.

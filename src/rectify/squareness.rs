@@ -4,7 +4,7 @@
 //! Walls at other angles show here; so do non-square pixels and a wrong principal point. Some photos cannot reveal
 //! this: where two directions run parallel to the image sides, any pixel aspect ratio is consistent.
 
-use super::camera::Expected;
+use super::focal::Expected;
 use super::sphere::Refined;
 use glam::DVec3;
 

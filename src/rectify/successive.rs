@@ -2,8 +2,8 @@
 //! optimises each point over `(alpha, theta)`.
 
 use super::metric::{Line, visible};
+use super::params::{Metric, Params};
 use super::sphere::Frame;
-use super::{Metric, Params};
 use crate::error::Result;
 use crate::exec;
 use crate::geometry::Segment;

@@ -6,11 +6,8 @@
 //! out in between.
 
 use super::footprint::{Footprints, RUN};
-use super::lanes::MAX_READ;
+use super::lanes::{MAX_READ, TAPS};
 use crate::image::Image;
-
-/// Taps along each side.
-pub const TAPS: usize = 4;
 
 /// Longest side of a rectangle that the taps cover at any sub-pixel position: `TAPS - 1` [convention].
 pub const MAX_SIDE: f32 = 3.0;
@@ -194,10 +191,16 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
             taps.start[j][i] = start as usize;
         }
     }
+    mark_inside(footprints, source, taps);
+}
+
+/// Marks the pixels that are visible and whose taps all lie inside the source.
+#[inline(always)]
+fn mark_inside(footprints: &Footprints, source: &Image, taps: &mut Taps) {
     // First columns grow or shrink monotonically from row to row, so checking the first row and the last suffices. A
     // load of three channels reads past the fourth pixel; in the last row that must stay inside the image.
     let last_start = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
-    let beyond = if channels == 3 { MAX_READ.div_ceil(3) - TAPS } else { 0 } as i32;
+    let beyond = if source.channels == 3 { MAX_READ.div_ceil(3) - TAPS } else { 0 } as i32;
     for i in 0..RUN {
         let (a, b, line) = (taps.column[0][i], taps.column[TAPS - 1][i], taps.line[i]);
         let last = last_start[0] - if line == last_start[1] { beyond } else { 0 };

@@ -8,7 +8,7 @@ use crate::exec::Pool;
 use crate::geometry::FocalSource;
 use crate::job::Monitor;
 use crate::rng::Rng;
-use glam::{DMat3, DQuat};
+use glam::{DMat3, DQuat, DVec3};
 
 const SIZE: (usize, usize) = (800, 600);
 
@@ -112,7 +112,8 @@ fn points_at_the_centre_and_at_infinity_are_exact() {
 fn the_files_focal_length_decides_where_lines_do_not() {
     let expected = |focal: f64| Params { expected_focal: Some([focal, 0.05 * focal]), ..Params::default() };
     let mask = Image::from_fn(SIZE.0, SIZE.1, |_, y| [f32::from(y < 200)]).unwrap();
-    // Straight along the room: lines say nothing of the focal length, and so of how long the ceiling is.
+    // The camera looks straight along the room, so the lines determine neither the focal length nor the length of the
+    // ceiling.
     let ahead = camera(0.0, 0.0, 0.0, 1000.0);
     let (photo, lines) = (ceiling(&ahead), room(&ahead, [20, 20, 20], 0.0, 3));
     let unwarped = |params: &Params| {
@@ -130,7 +131,8 @@ fn the_files_focal_length_decides_where_lines_do_not() {
     let (focal, source, _) = unwarped(&Params { focal: Some(900.0), ..expected(1000.0) });
     assert!(focal == 900.0 && source == FocalSource::Given);
 
-    // Across it lines are surer than any file.
+    // For a camera that looks across the room, the lines determine the focal length better than the metadata of a
+    // file.
     let across = camera(0.5, 0.3, 0.05, 700.0);
     let view = view_of(&room(&across, [40, 40, 40], 0.1, 8), &expected(1000.0)).unwrap();
     assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.01, "{}", view.perspective.focal);
@@ -175,7 +177,7 @@ fn two_families_give_the_third() {
 
 #[test]
 fn families_that_no_camera_could_see_at_right_angles_still_give_orthogonal_axes() {
-    // Vanishing points on one side of the centre: their rays meet at less than a right angle whatever the focal length.
+    // Vanishing points on one side of the centre: for any focal length their rays meet at less than a right angle.
     let points = [DVec2::new(1500.0, 320.0), DVec2::new(2500.0, 350.0)];
     let segments: Vec<Segment> = (0..80)
         .map(|i| {

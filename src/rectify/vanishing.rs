@@ -1,10 +1,11 @@
 //! Vanishing points from line segments (§5.2): up to three directions, orthogonal in the Manhattan search, each then
 //! refined freely with its own covariance.
 
+use super::params::{Params, Search};
 use super::sphere::{
     Frame, Refined, RightAngle, WeightedLine, project, refine, refine_near, round_covariance, unproject,
 };
-use super::{Params, Search, VanishingPoint, manhattan, successive};
+use super::{manhattan, successive};
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Segment;
 use crate::job::Job;
@@ -20,6 +21,19 @@ const MAX_ERROR: f64 = 0.2;
 /// logarithm of the focal length during their refinement [bench vp].
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
+
+#[derive(Clone, Debug)]
+pub struct VanishingPoint {
+    /// In homogeneous pixel coordinates, normalised to unit length; the third coordinate is 0 for a point at infinity.
+    pub point: DVec3,
+    /// Number of segments that run to the point; 0 if the point was derived from the other two.
+    pub support: usize,
+    /// Standard deviation of its direction in camera space, in radians.
+    pub error: f64,
+    /// Covariance of that direction in radians squared; its trace is the square of `error`. Lines that meet far away
+    /// constrain the direction across them better than along them.
+    pub covariance: DMat3,
+}
 
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
@@ -60,50 +74,20 @@ pub fn from_segments(
     weighted_lines.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
     let lines: Vec<WeightedLine> = weighted_lines.iter().take(MAX_LINES).map(|(_, e)| *e).collect();
 
-    let given = params.focal.map(|f| f / frame.scale);
-    let mut focal = given.unwrap_or(manhattan::USUAL_FOCAL);
-    let mut found: Vec<Found> = Vec::new();
-    match params.search {
+    let (found, focal) = match params.search {
         Search::Manhattan => {
-            if let Some(triplet) = manhattan::search(&lines, given, params.seed, job.part(0.0, 0.8))? {
-                focal = triplet.focal;
-                let axes = [0, 1, 2].map(|k| triplet.axes.col(k));
-                found = refine_freely(&lines, &axes, focal);
-            }
-            // Find further directions from the lines that run along none of the three.
-            while found.len() < count && !found.is_empty() {
-                let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
-                let rest: Vec<WeightedLine> =
-                    lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
-                let Some(start) = manhattan::strongest(&rest, focal, params.seed, job.part(0.8, 0.9))? else { break };
-                let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < MAX_ERROR) else { break };
-                found.push(Found { expected: point, free: point });
-            }
+            let given = params.focal.map(|f| f / frame.scale);
+            orthogonal_and_further(&lines, given, count, params.seed, job)?
         }
         Search::Successive => {
+            let focal = params.focal.map_or(manhattan::USUAL_FOCAL, |f| f / frame.scale);
             let points = successive::search(&frame, segments, width, height, count, params, job.part(0.0, 0.8))?;
-            found.extend(points.iter().map(|&p| {
-                let direction = unproject(frame.from_pixels(p), focal);
-                let covariance = refine(&lines, direction, focal)
-                    .map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);
-                let point = Refined { direction, covariance };
-                Found { expected: point, free: point }
-            }));
+            (points.iter().map(|&p| refine_at(&lines, unproject(frame.from_pixels(p), focal), focal)).collect(), focal)
         }
-    }
+    };
 
-    // Assign every segment to the point it agrees with best, and count the support of each point.
     let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
-    let mut members = vec![None; segments.len()];
-    let mut support = vec![(0usize, 0.0f64); points.len()];
-    for (index, e) in &weighted_lines {
-        let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
-            members[*index] = Some(k);
-            support[k] = (support[k].0 + 1, support[k].1 + e.weight);
-        }
-    }
-
+    let (mut members, support) = assign(&weighted_lines, &points, segments.len());
     // Keep points with at least two lines; sort by falling support within the orthogonal three.
     let mut order: Vec<usize> = (0..points.len()).filter(|&k| support[k].0 >= 2).collect();
     order.sort_by(|&a, &b| (a >= 3).cmp(&(b >= 3)).then(support[b].1.total_cmp(&support[a].1)));
@@ -118,18 +102,65 @@ pub fn from_segments(
     for member in &mut members {
         *member = member.and_then(|k: usize| order.iter().position(|&o| o == k));
     }
-    let points = order
-        .iter()
-        .map(|&k| VanishingPoint {
-            point: frame.to_pixels(points[k]),
-            support: support[k].0,
-            error: found[k].expected.error(),
-            covariance: found[k].expected.covariance,
-        })
-        .collect();
+    let point = |&k: &usize| VanishingPoint {
+        point: frame.to_pixels(points[k]),
+        support: support[k].0,
+        error: found[k].expected.error(),
+        covariance: found[k].expected.covariance,
+    };
+    let points = order.iter().map(point).collect();
     let free = order.iter().map(|&k| found[k].free).collect();
     job.report(1.0);
     Ok(Vanishing { points, members, free, focal: focal * frame.scale })
+}
+
+/// Finds three orthogonal directions jointly with the focal length, and then further directions. Returns the focal
+/// length too.
+fn orthogonal_and_further(
+    lines: &[WeightedLine],
+    given: Option<f64>,
+    count: usize,
+    seed: u64,
+    job: Job,
+) -> Result<(Vec<Found>, f64)> {
+    let Some(triplet) = manhattan::search(lines, given, seed, job.part(0.0, 0.8))? else {
+        return Ok((Vec::new(), given.unwrap_or(manhattan::USUAL_FOCAL)));
+    };
+    let focal = triplet.focal;
+    let mut found = refine_freely(lines, &[0, 1, 2].map(|k| triplet.axes.col(k)), focal);
+    // Find further directions from the lines that run along none of the three.
+    while found.len() < count && !found.is_empty() {
+        let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
+        let rest: Vec<WeightedLine> =
+            lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
+        let Some(start) = manhattan::strongest(&rest, focal, seed, job.part(0.8, 0.9))? else { break };
+        let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < MAX_ERROR) else { break };
+        found.push(Found { expected: point, free: point });
+    }
+    Ok((found, focal))
+}
+
+/// A direction with the covariance that its lines give it.
+fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Found {
+    let covariance =
+        refine(lines, direction, focal).map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);
+    let point = Refined { direction, covariance };
+    Found { expected: point, free: point }
+}
+
+/// Assigns every segment to the point it agrees with best. Returns the assignment, and the number and the total weight
+/// of the lines of each point.
+fn assign(lines: &[(usize, WeightedLine)], points: &[DVec3], count: usize) -> (Vec<Option<usize>>, Vec<(usize, f64)>) {
+    let mut members = vec![None; count];
+    let mut support = vec![(0usize, 0.0f64); points.len()];
+    for (index, e) in lines {
+        let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
+            members[*index] = Some(k);
+            support[k] = (support[k].0 + 1, support[k].1 + e.weight);
+        }
+    }
+    (members, support)
 }
 
 /// Refines each direction on the lines that agree with it better than with the others; then once more with priors on

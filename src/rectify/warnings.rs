@@ -1,31 +1,33 @@
 //! Reasons to doubt a camera and an unwarped plane.
 
-use super::camera::{USUAL_SPREAD, focal_spread};
+use super::camera::focal_spread;
+use super::focal::USUAL_SPREAD;
 use super::{Unwarped, View};
 use crate::geometry::FocalSource;
 use crate::warning::{Code, Warning, percent};
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Relative standard deviation of a focal length about which the lines say as much as photos in general do: where
-/// they say less, it counts as assumed. [convention]
+/// Relative standard deviation above which a focal length counts as assumed: the lines then determine it no better
+/// than the prior of photos in general. [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
-/// Standard deviation of a room axis in radians. [judged on 38 photos]
+/// Maximum standard deviation of a room axis in radians. [judged on 38 photos]
 const MAX_DIRECTION_ERROR: f64 = 0.035;
-/// Share of their distance from the centre by which the lens moves the corners of the photo. [judged on 38 photos]
+/// Maximum displacement of the photo's corners by the lens, as a share of their distance from the centre. [judged on
+/// 38 photos]
 const MAX_DISTORTION: f64 = 0.02;
-/// Radians by which room axes are off a right angle. [judged on 38 photos]
+/// Maximum deviation of the angles between room axes from a right angle, in radians. [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
-/// Standard deviations from which on a measured figure is no chance. [convention]
+/// Number of standard deviations from which a measured figure is significant. [convention]
 const SIGNIFICANT: f64 = 3.0;
 
-/// Magnification of the photo beyond which the edge of a lamp is a guess. [judged on 38 photos]
+/// Magnification of the photo above which the position of a lamp's edge is uncertain. [judged on 38 photos]
 const SHARP_MAGNIFICATION: f64 = 4.0;
-/// Share of the plane that may be magnified beyond it. [judged on 38 photos]
+/// Maximum share of the plane with a larger magnification. [judged on 38 photos]
 const MAX_MAGNIFIED: f64 = 0.8;
-/// Sine of the angle between the plane and the rays that see it, for half of the plane. [judged on 38 photos]
+/// Minimum sine of the angle between the plane and the viewing rays, for half of the plane. [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
-/// Pixels of the unwarped plane that are looked at, along each side.
+/// Number of sampled pixels of the unwarped plane along each side.
 const GRID: usize = 96;
 
 impl View {
@@ -87,13 +89,13 @@ impl View {
     }
 }
 
-/// How the photo sees a place of the plane.
+/// The footprint in the photo of a pixel of the unwarped plane.
 struct Footprint {
-    /// In the photo.
+    /// Its centre in pixels of the photo.
     place: DVec2,
-    /// Unwarped pixels per photo pixel, the root of their ratio in area.
+    /// Unwarped pixels per photo pixel along a side: the root of the ratio of areas.
     magnification: f64,
-    /// Sine of the angle between the plane and the ray, as the shape of the pixel shows it.
+    /// Sine of the angle between the plane and the viewing ray, from the axis ratio of the footprint.
     incidence: f64,
 }
 
@@ -104,7 +106,7 @@ impl Unwarped {
         [magnified(&footprints), near_horizon(&footprints)].into_iter().flatten().collect()
     }
 
-    /// Footprints of valid pixels, evenly over the plane.
+    /// Footprints of valid pixels on a regular grid over the plane.
     fn footprints(&self) -> Vec<Footprint> {
         let (width, height) = (self.valid.width, self.valid.height);
         let steps = |size: usize| (0..size).step_by(size.div_ceil(GRID).max(1));
@@ -117,7 +119,7 @@ impl Unwarped {
         let [right, down] = [0, 1].map(|k| self.to_photo.0.col(k));
         let seen = self.to_photo.apply_homogeneous(pixel);
         let place = seen.truncate() / seen.z;
-        // The Jacobian of the map, and the axes of the ellipse that it makes of a pixel.
+        // The Jacobian of the map, and the axes of the ellipse onto which it maps a pixel.
         let jacobian = DMat2::from_cols(
             (right.truncate() - place * right.z) / seen.z,
             (down.truncate() - place * down.z) / seen.z,

@@ -41,9 +41,9 @@ impl Pyramid {
     /// The texture at `uv`, filtered so that a texel of level 0 grows to `2^level` times its side.
     pub fn look_up(&self, uv: DVec2, level: f64) -> TextureSample {
         let last = (self.levels.len() - 1) as f64;
-        let within = level.clamp(0.0, last);
-        let fine = within as usize;
-        let share = within - fine as f64;
+        let clamped = level.clamp(0.0, last);
+        let fine = clamped as usize;
+        let share = clamped - fine as f64;
         let a = self.levels[fine].look_up(uv);
         if share == 0.0 {
             return a;

@@ -11,15 +11,15 @@ pub(super) struct Bounds<const N: usize> {
     pub period: [f64; N],
 }
 
-/// Largest number of steps. [judged, not recorded]
+/// Largest number of steps. [origin not recorded]
 const MAX_STEPS: usize = 60;
 /// Largest number of halvings of a step. [convention]
 const MAX_HALVINGS: usize = 30;
 /// Smallest accepted decrease relative to the linear prediction (Armijo condition). [convention]
 const ARMIJO: f64 = 1e-4;
-/// Length of the first step. [judged, not recorded]
+/// Length of the first step. [origin not recorded]
 const FIRST_STEP: f64 = 0.05;
-/// Relative decrease below which the search ends. [judged, not recorded]
+/// Relative decrease below which the search ends. [origin not recorded]
 const MIN_RELATIVE_GAIN: f64 = 1e-10;
 
 impl<const N: usize> Bounds<N> {

@@ -47,14 +47,14 @@ pub struct GroupParams {
     pub levels: Vec<f64>,
     /// Weight of the regularisation towards equal lamps, in `[1e-9, 1e3]`: small values meet the goals, large values
     /// keep the lamps equal.
-    pub evenness: f64,
+    pub regularisation: f64,
     /// Largest relative miss with which a goal counts as met, in `[1e-6, 1]`; the noise is added to it.
     pub tolerance: f64,
 }
 
 impl Default for GroupParams {
     fn default() -> Self {
-        Self { colour: Colour::Kept, max_scale: Vec::new(), levels: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
+        Self { colour: Colour::Kept, max_scale: Vec::new(), levels: Vec::new(), regularisation: 1e-6, tolerance: 0.01 }
     }
 }
 
@@ -110,7 +110,7 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams,
     Ok(GroupSolution { scale, half_width, outcomes, unreachable })
 }
 
-/// Number of groups processed per task. [judged, not recorded]
+/// Number of groups processed per task. [convention]
 const GROUPS_PER_RUN: usize = 1024;
 
 /// The power of each group: one list for all channels, or one list per channel.
@@ -171,7 +171,7 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
             "a goal asks for luminance alone, which says nothing about channels that are free: keep the groups' colours",
         ));
     }
-    check_range("evenness", params.evenness, 1e-9, 1e3)?;
+    check_range("regularisation", params.regularisation, 1e-9, 1e3)?;
     check_range("tolerance", params.tolerance, 1e-6, 1.0)?;
     if !params.max_scale.is_empty() && params.max_scale.len() != responses.lamps() {
         return Err(Error::argument(format!(
@@ -180,7 +180,7 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
             responses.lamps()
         )));
     }
-    params.max_scale.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))?;
+    params.max_scale.iter().try_for_each(|&max| check_range("max_scale", max, 0.0, f64::INFINITY).map(drop))?;
     if params.levels.len() > MAX_LEVELS {
         return Err(Error::argument(format!("there are {} levels; at most {MAX_LEVELS} may be", params.levels.len())));
     }
@@ -203,13 +203,13 @@ struct Equations {
 }
 
 impl Equations {
-    fn solve(&self, upper: &[f64], evenness: f64) -> Result<Vec<f64>> {
+    fn solve(&self, upper: &[f64], regularisation: f64) -> Result<Vec<f64>> {
         // Regularise towards the best powers that are equal for all lamps.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
         let equal = sided::common_power(&together, &self.right, &self.senses);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
         let Self { matrix, right, senses, .. } = self;
-        Problem { matrix, right, senses, regularisation: evenness, preferred: &preferred, upper }.solve()
+        Problem { matrix, right, senses, regularisation: regularisation, preferred: &preferred, upper }.solve()
     }
 }
 
@@ -261,7 +261,7 @@ impl System<'_> {
 
     fn solve(&self, measured: &Measured) -> Result<Powers> {
         let upper = self.upper();
-        self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.evenness))
+        self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.regularisation))
     }
 
     /// The powers rounded to levels.

@@ -77,7 +77,7 @@ const MAX_CELLS: usize = 512;
 
 /// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells if that is less; at most 64. With
 /// too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
-/// [judged, not recorded]
+/// [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;
@@ -212,8 +212,8 @@ impl Importance {
                 let mut sum = DVec3::ZERO;
                 for j in 0..nv {
                     for i in 0..nu {
-                        let within = Vec2::new((i as f32 + 0.5) / nu as f32, (j as f32 + 0.5) / nv as f32);
-                        let uv = (Vec2::new(x as f32, y as f32) + within) * cell;
+                        let offset = Vec2::new((i as f32 + 0.5) / nu as f32, (j as f32 + 0.5) / nv as f32);
+                        let uv = (Vec2::new(x as f32, y as f32) + offset) * cell;
                         let value = texture.nearest(placement.transform_point2(uv)).truncate();
                         sum += value.max(Vec3::ZERO).as_dvec3();
                     }

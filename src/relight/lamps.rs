@@ -1,8 +1,8 @@
-//! The lamps of an emission: connected patches of its texture, connected pieces of its meshes, or punctual lights such
+//! The lamps of an emission: connected regions of its texture, connected pieces of its meshes, or punctual lights such
 //! as luminaires.
 
 use crate::error::{Error, Result};
-use crate::image::patches::Patches;
+use crate::image::regions::Regions;
 use crate::image::{Image, try_vec};
 use crate::scene::{PunctualLight, Scene};
 use glam::{DVec2, DVec3, Vec2, Vec3};
@@ -20,7 +20,7 @@ pub struct Lamps {
     sizes: Vec<f32>,
 }
 
-/// Relative gap in area, from one lamp to the next larger one, that separates two types. [judged, not recorded]
+/// Relative gap in area, from one lamp to the next larger one, that separates two types. [origin not recorded]
 const TYPE_GAP: f32 = 0.25;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +56,7 @@ impl Lamps {
 
     /// Lamps from a texture: every 8-connected patch of emissive texels is a lamp.
     pub fn of_texture(texture: &Image) -> Result<Self> {
-        let Patches { labels, count } = Patches::of(texture)?;
+        let Regions { labels, count } = Regions::of(texture)?;
         Self::numbered(texture.width, texture.height, labels, count)
     }
 
@@ -143,7 +143,7 @@ impl Lamps {
         self.count
     }
 
-    /// Centre of each lamp: texture coordinates for patches of a texture, metres for pieces of meshes and punctual
+    /// Centre of each lamp: texture coordinates for regions of a texture, metres for pieces of meshes and punctual
     /// lights, 0 for directional lights.
     pub fn centres(&self) -> &[Vec3] {
         &self.centres
@@ -162,7 +162,7 @@ impl Lamps {
     /// A texture with each lamp multiplied by its own scale; texels outside the lamps stay unchanged.
     ///
     /// # Errors
-    /// `InvalidArgument` unless the lamps are patches of a texture of this size and there is a scale for each of them.
+    /// `InvalidArgument` unless the lamps are regions of a texture of this size and there is a scale for each of them.
     pub fn scaled(&self, texture: &Image, scale: &[DVec3]) -> Result<Image> {
         let fits = match &self.division {
             Division::Texels { width, height } => (*width, *height) == (texture.width, texture.height),
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn patches_of_texels_and_pieces_of_meshes_are_lamps() {
-        // Two patches; one of them is connected only at a corner.
+        // Two regions; one of them is connected only at a corner.
         let rows = ["#....", ".#..#", "....#"];
         let image = Image::from_fn(5, 3, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
         let lamps = Lamps::of_texture(&image).unwrap();

@@ -44,6 +44,7 @@ pub use primaries::{MAX_PRIMARIES, Mixture, mix_primaries};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
 pub use sided::Sense;
 pub use solution::{Solution, TargetStatus};
+pub use transport::{FIRST_ROUND, FORECAST_MARGIN};
 
 #[cfg(test)]
 mod tests;

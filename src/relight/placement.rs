@@ -91,9 +91,9 @@ pub struct Placement {
     pub response: Response,
 }
 
-/// Largest number of cells along each side of the map used for the search. [judged, not recorded]
+/// Largest number of cells along each side of the map used for the search. [origin not recorded]
 const MAX_CELLS: usize = 64;
-/// Number of starting points that are descended from. [judged, not recorded]
+/// Number of starting points that are descended from. [origin not recorded]
 const MAX_DESCENTS: usize = 8;
 
 impl Importance {

@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Largest number of primaries of a luminaire. [convention]
 pub const MAX_PRIMARIES: usize = 64;
 
-/// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [judged, not
+/// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [origin not
 /// recorded]
 const REGULARISATION: f64 = 1e-9;
 /// Relative colour error that counts as zero. [rounding]
@@ -46,7 +46,7 @@ pub fn mix_primaries(primaries: &[DVec3], max_drive: f64, wanted: DVec3) -> Resu
     if let Some(i) = primaries.iter().position(|p| !p.is_finite()) {
         return Err(Error::argument(format!("primary {i} is {}; it must be finite", primaries[i])));
     }
-    check_range("most", max_drive, 0.0, f64::INFINITY)?;
+    check_range("max_drive", max_drive, 0.0, f64::INFINITY)?;
     for channel in wanted.to_array() {
         check_range("colour", channel, 0.0, f64::from(f32::MAX))?;
     }

@@ -14,12 +14,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Paths per batch in the first round. [judged, not recorded]
-const FIRST_ROUND: u32 = 64;
-/// Smallest and largest growth factor of the number of paths in later rounds. [judged, not recorded]
+/// Paths per batch in the first round. [origin not recorded]
+pub const FIRST_ROUND: u32 = 64;
+/// Smallest and largest growth factor of the number of paths in later rounds. [origin not recorded]
 const GROWTH: [f64; 2] = [1.25, 4.0];
-/// Safety factor on the predicted number of paths: with 32 batches, an error is known to 13 %. [judged, not recorded]
-const FORECAST_MARGIN: f64 = 1.1;
+/// Safety factor on the predicted number of paths: with 32 batches, an error is known to 13 %. [origin not recorded]
+pub const FORECAST_MARGIN: f64 = 1.1;
 
 /// Stopping conditions: target error, time budget, and number of paths.
 pub(super) struct Stop {

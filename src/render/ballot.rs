@@ -4,7 +4,7 @@
 //! With up to [`CANDIDATES`] surfaces in a pixel the counts are exact, in any order of counting and merging. With more
 //! surfaces, votes for rare candidates cancel each other; a majority still wins.
 
-/// Largest number of candidates. [judged, not recorded]
+/// Largest number of candidates. [origin not recorded]
 const CANDIDATES: usize = 4;
 /// Numbers per ballot: pairs of a candidate and its votes. A pair without votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;

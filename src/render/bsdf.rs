@@ -16,7 +16,7 @@ use std::f32::consts::FRAC_1_PI;
 pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
 /// Smallest perceptual roughness at which a vertex is shared among neighbouring pixels, which look from nearly the same
-/// place. [judged, not recorded]
+/// place. [origin not recorded]
 const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
 /// The material parameters at one point.
@@ -340,7 +340,7 @@ impl<'a> TopAlbedo<'a> {
 
 /// Tilts a shading normal that faces away from the viewer until the viewer sees it at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
-    // Smallest cosine towards the viewer. [judged, not recorded]
+    // Smallest cosine towards the viewer. [origin not recorded]
     const MIN_COSINE: f32 = 1e-3;
     let cosine = normal.dot(wo);
     if cosine >= MIN_COSINE { normal } else { (normal + wo * (MIN_COSINE - cosine)).normalize_or(wo) }

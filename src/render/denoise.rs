@@ -64,16 +64,16 @@ const TAP: f32 = 0.5;
 /// Variance of a half, relative to the variance of the mean of both halves: exact for independent halves. [convention]
 const HALF: f32 = 2.0;
 /// Squared difference in luminance, relative to the sum of both variances, that lowers a weight by a factor e at
-/// strength 1. [judged, not recorded]
+/// strength 1. [origin not recorded]
 const RANGE: f32 = 12.0;
-/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by e. [judged, not
+/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by e. [origin not
 /// recorded]
 const PLANE: f32 = 0.01;
-/// 1 - cosine of the angle between normals that lowers a weight by e. [judged, not recorded]
+/// 1 - cosine of the angle between normals that lowers a weight by e. [origin not recorded]
 const FACING: f32 = 0.02;
-/// Squared difference in albedo that lowers a weight by e. [judged, not recorded]
+/// Squared difference in albedo that lowers a weight by e. [origin not recorded]
 const COLOUR: f32 = 0.02;
-/// Smallest albedo to divide by, so that lamps and black surfaces keep their light. [judged, not recorded]
+/// Smallest albedo to divide by, so that lamps and black surfaces keep their light. [origin not recorded]
 const MIN_ALBEDO: f32 = 0.02;
 /// Side in pixels of the squares over which the bias is averaged. [convention]
 const SQUARE: usize = 8;

@@ -54,8 +54,8 @@ impl Distribution {
         let low = (self.guide[k] as usize).saturating_sub(1);
         let high =
             self.guide.get(k + 1).map_or(self.cumulative.len(), |&g| (g as usize + 1).min(self.cumulative.len()));
-        let within = self.cumulative[low..high].partition_point(|&c| c <= target);
-        let index = (low + within).min(self.cumulative.len() - 1);
+        let offset = self.cumulative[low..high].partition_point(|&c| c <= target);
+        let index = (low + offset).min(self.cumulative.len() - 1);
         let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
         let width = self.cumulative[index] - before;
         (index, if width > 0.0 { ((target - before) / width).min(1.0 - f64::EPSILON) } else { 0.0 })

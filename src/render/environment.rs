@@ -47,12 +47,12 @@ impl EnvironmentSampler {
                 (Vec3::new(sine * angle.cos(), cosine, sine * angle.sin()), 1.0 / (4.0 * PI))
             }
             Self::Image { rows, columns } => {
-                let (y, within) = rows.sample(u);
+                let (y, remainder) = rows.sample(u);
                 let (x, across) = columns[y].sample(f64::from(v));
                 let (width, height) = (columns[y].len(), columns.len());
                 // Sample uniformly by solid angle within the pixel: uniform in the cosine of the polar angle.
                 let (top, bottom) = polar_cosines(y, height);
-                let cosine = (top + (bottom - top) * within) as f32;
+                let cosine = (top + (bottom - top) * remainder) as f32;
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
                 let angle = ((x as f64 + across) / width as f64 - 0.5) as f32 * TAU;
                 let direction = Vec3::new(sine * angle.sin(), cosine, -sine * angle.cos());
@@ -209,8 +209,8 @@ mod tests {
                 let height = columns.len();
                 let row = (d.y.clamp(-1.0, 1.0).acos() / std::f64::consts::PI * height as f64).min(height as f64 - 1.0);
                 let (top, bottom) = polar_cosines(row as usize, height);
-                let within = (d.y - top) / (bottom - top);
-                let back = running(rows, row as usize) + within * rows.pmf(row as usize);
+                let remainder = (d.y - top) / (bottom - top);
+                let back = running(rows, row as usize) + remainder * rows.pmf(row as usize);
                 let table = &columns[row as usize];
                 let column = (0.5 + d.x.atan2(-d.z) / std::f64::consts::TAU) * table.len() as f64;
                 let at = (column as usize).min(table.len() - 1);

@@ -79,7 +79,7 @@ pub struct AlbedoTable {
     averages: Vec<Vec2>,
 }
 
-/// Entries of the table along each axis. [judged, not recorded]
+/// Entries of the table along each axis. [origin not recorded]
 const SIDE: usize = 32;
 
 impl AlbedoTable {
@@ -145,7 +145,7 @@ fn cosine_average(row: &[Vec2]) -> Vec2 {
 }
 
 fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
-    // Number of Hammersley points. [judged, not recorded]
+    // Number of Hammersley points. [origin not recorded]
     const N: u32 = 256;
     let wo = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let lobe = Lobe::new(wo, alpha);

@@ -65,7 +65,7 @@ pub struct Output {
 }
 
 /// Number of independent estimates of each point; their variance gives its standard error.
-/// [judged, not recorded]
+/// [origin not recorded]
 const BATCHES: u32 = 16;
 
 /// Computes the illuminance at a place. Call it on the library's own thread pool.

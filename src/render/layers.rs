@@ -122,8 +122,9 @@ impl<'a> Layers<'a> {
             kept[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
         let (light, sums) = sums.split_at(colours.len());
         colours.iter_mut().zip(light).for_each(|(kept, &sum)| *kept = sum as f32);
-        if let (Some((hits, mut kept)), Some((met, mut sums))) = (surfaces.split_first_mut(), sums.split_first()) {
-            *hits = *met as f32;
+        if let (Some((hits, mut kept)), Some((hit_count, mut sums))) = (surfaces.split_first_mut(), sums.split_first())
+        {
+            *hits = *hit_count as f32;
             for aov in &self.outputs.aovs {
                 let (of_sums, of_kept);
                 (of_kept, kept) = kept.split_at_mut(aov.kept());
@@ -201,9 +202,9 @@ impl<'a> Layers<'a> {
                         continue;
                     }
                     let sums = sums(place);
-                    let (samples, met) = (f64::from(place.2.max(1)), f64::from(sums[hits]));
-                    aov.value(&sums[first..][..aov.kept()], met, samples, out);
-                    if aov == Aov::Position && met > 0.0 {
+                    let (samples, hit_count) = (f64::from(place.2.max(1)), f64::from(sums[hits]));
+                    aov.value(&sums[first..][..aov.kept()], hit_count, samples, out);
+                    if aov == Aov::Position && hit_count > 0.0 {
                         self.world.in_scene(Vec3::from_slice(out)).write_to_slice(out);
                     }
                 }

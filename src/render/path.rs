@@ -22,7 +22,7 @@ const ROULETTE_START: u32 = 2;
 /// Measured on rooms, the product of time and variance is smallest near this value. [judged on rooms]
 const CERTAIN_SHARE: f32 = 0.5;
 /// Largest survival probability: a path between white walls must end eventually. Walls of an albedo above its square
-/// root make the variance infinite. [judged, not recorded]
+/// root make the variance infinite. [origin not recorded]
 const MAX_SURVIVAL: f32 = 0.998;
 
 /// Largest number of bounces. It only guards against endless paths: at [`MAX_SURVIVAL`] one path in ten million gets so

@@ -299,7 +299,7 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
 
 /// Upper bound of the albedo of a parameter set over all directions.
 fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
-    // Number of cosines at which the albedo is evaluated. [judged, not recorded]
+    // Number of cosines at which the albedo is evaluated. [origin not recorded]
     const STEPS: usize = 64;
     let mut bound = Vec3::ZERO;
     for i in 0..=STEPS {

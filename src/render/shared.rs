@@ -18,7 +18,7 @@ use super::world::{Pane, World};
 use crate::scene::accel::Ray;
 use glam::Vec3;
 
-/// Largest number of paths that share vertices. [judged, not recorded]
+/// Largest number of paths that share vertices. [origin not recorded]
 pub const MAX_SHARED: usize = 8;
 
 /// An observer of several paths that have the same first segment.

@@ -12,10 +12,10 @@ pub enum PunctualLight {
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
     /// Illuminance per channel in lux on a surface perpendicular to the light, which travels along `direction`.
     Directional { direction: Vec3, illuminance: Vec3 },
-    /// A measured luminaire in the far field: small relative to its distance from what it lights. `axis` is the
-    /// direction of γ = 0 (down for a hanging luminaire); `c0` is the direction of C = 0, perpendicular to it. C
-    /// increases anticlockwise as seen against the axis, from above. Both are unit vectors. Each channel is `colour`
-    /// times the intensity of one of the scene's distributions.
+    /// A measured luminaire in the far field, so small that it acts as a point at the distance of the lit surfaces.
+    /// `axis` is the direction of γ = 0 (down for a hanging luminaire); `c0` is the direction of C = 0, perpendicular
+    /// to it. C increases anticlockwise as seen against the axis, from above. Both are unit vectors. Each channel is
+    /// `colour` times the intensity of one of the scene's distributions.
     Luminaire { position: Vec3, axis: Vec3, c0: Vec3, colour: Vec3, distribution: usize },
 }
 

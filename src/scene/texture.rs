@@ -1,7 +1,7 @@
 //! Textures: images with wrapping and bilinear sampling.
 
 use crate::image::Image;
-use crate::image::patches::any_light;
+use crate::image::regions::any_light;
 use glam::{Vec2, Vec4};
 
 /// Continuation of a texture outside `[0, 1]`.

@@ -1,14 +1,14 @@
-//! Reasons to doubt that a scene is shown as its maker meant it.
+//! Reasons to doubt that a scene is rendered as its author intended.
 
 use super::Scene;
 use crate::warning::{Code, Warning};
 use glam::Vec3;
 
-/// Height in metres above which the unit of a scene is hardly the metre. [convention]: few interiors are higher, and
-/// rooms of 2 to 4 m are 79 to 157 in inches, and more in smaller units.
+/// Maximum height in metres of a plausible scene. [convention]: few interiors are higher, and rooms of 2 to 4 m would
+/// be 79 to 157 in inches, and more in smaller units.
 pub const MAX_HEIGHT: f64 = 50.0;
 
-/// Height of a usual room in metres, by which the unit is guessed. [convention]
+/// Height of a usual room in metres, from which the likely unit is derived. [convention]
 const USUAL_HEIGHT: f64 = 3.0;
 
 /// Units of modelling programs, in metres. [convention]
@@ -24,7 +24,7 @@ impl Scene {
         self.implausible_size().into_iter().chain(unrendered).collect()
     }
 
-    /// A height that suggests another unit than the metre.
+    /// A warning if the height suggests a unit other than the metre.
     fn implausible_size(&self) -> Option<Warning> {
         let (low, high) = self.bounds()?;
         let height = f64::from((high - low).y);
@@ -38,7 +38,7 @@ impl Scene {
         Warning::above(Code::ImplausibleSize, height, MAX_HEIGHT, message, &advice)
     }
 
-    /// The corners of the box around all triangles.
+    /// The corners of the bounding box of all triangles.
     fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let positions = self
             .meshes
@@ -58,7 +58,7 @@ mod tests {
     use crate::scene::Mesh;
     use crate::scene::unrendered::note;
 
-    /// A wall of a height.
+    /// A wall of the given height.
     fn room(height: f32) -> Scene {
         let wall = Mesh::parallelogram(Vec3::ZERO, Vec3::X * height, Vec3::Y * height, 0);
         Scene { meshes: vec![wall], ..Scene::default() }

@@ -14,11 +14,14 @@
 mod detect;
 mod fit;
 mod page;
+mod params;
 
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Error, Result, check_range};
+pub use params::Params;
+
+use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::geometry::linear::solve;
 use crate::image::colour::{linear_to_srgb, luminance, srgb_to_linear};
@@ -27,37 +30,6 @@ use crate::job::Job;
 use crate::{exec, rectify};
 use glam::{DVec2, Vec3};
 use page::Page;
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// Size of the paper in millimetres, each in `[60, 2000]`.
-    pub paper: DVec2,
-    /// Dots per inch of the printed sheet, in `[20, 1200]`.
-    pub dpi: f64,
-    /// Contrast of the printed picture, in `[0, 1]`; 1 prints it unchanged.
-    pub contrast: f32,
-    /// Distance of the marks from the edge of the paper in millimetres, in `[0, 50]`: printers need a margin.
-    pub margin: f64,
-    /// Whether to remove uneven illumination from the photo.
-    pub even_light: bool,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self { paper: DVec2::new(297.0, 210.0), dpi: 300.0, contrast: 0.25, margin: 8.0, even_light: true }
-    }
-}
-
-impl Params {
-    fn check(&self) -> Result<()> {
-        check_range("paper_width", self.paper.x, 60.0, 2000.0)?;
-        check_range("paper_height", self.paper.y, 60.0, 2000.0)?;
-        check_range("dpi", self.dpi, 20.0, 1200.0)?;
-        check_range("contrast", self.contrast, 0.0, 1.0)?;
-        check_range("margin", self.margin, 0.0, 50.0)?;
-        Ok(())
-    }
-}
 
 /// Width and height of a sheet in pixels.
 pub fn size(params: &Params) -> Result<(usize, usize)> {

@@ -1,6 +1,6 @@
 //! The layout of the page: picture and marks.
 
-use super::Params;
+use super::params::Params;
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::image::MAX_SIDE;

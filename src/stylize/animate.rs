@@ -5,10 +5,10 @@
 //! random set of blocks per frame, which flicker like hand-painted frames (after the temporal noise control of Fišer
 //! et al. 2014, "Color Me Noisy").
 
-use super::Params;
 use super::budget::budget;
 use super::level::{Level, Problem};
-use super::multires::paint;
+use super::params::Params;
+use super::picture::paint;
 use crate::error::Result;
 use crate::image::{Image, try_collect};
 use crate::job::Job;

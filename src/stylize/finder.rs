@@ -1,7 +1,7 @@
 //! The nearest-patch searches: PatchMatch, or a k-d table.
 
 use super::level::Level;
-use super::{Finder, Params};
+use super::params::{Finder, Params};
 use crate::error::Result;
 use crate::job::Job;
 use crate::patch::{Domain, Field, Means, Search, Sweep, Table};

@@ -1,7 +1,8 @@
 //! One resolution of the problem, quantised for matching.
 
 use super::guides::{Channels, no_guides};
-use super::{Input, Mode, Params, check_side, pca};
+use super::params::{Input, Mode, Params, check_side};
+use super::pca;
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::colour::linear_to_srgb;
@@ -66,16 +67,7 @@ impl Problem {
             };
             mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
         }
-        if let Some(motion) = input.motion {
-            motion.check_same_size("motion", first.target, "the target of the guides")?;
-            if motion.channels != 2 || input.previous.is_none() {
-                return Err(Error::argument(format!(
-                    "motion has {} channels and previous is {}; motion needs 2 channels and a previous field",
-                    motion.channels,
-                    if input.previous.is_some() { "given" } else { "missing" }
-                )));
-            }
-        }
+        check_motion(input, first.target)?;
         if params.preview {
             pca::compress(&mut guides, job)?;
         }
@@ -128,6 +120,20 @@ impl Problem {
             broken: self.broken,
         })
     }
+}
+
+/// Checks the motion, if any, against the target of the guides.
+fn check_motion(input: &Input, target: &Image) -> Result<()> {
+    let Some(motion) = input.motion else { return Ok(()) };
+    motion.check_same_size("motion", target, "the target of the guides")?;
+    if motion.channels != 2 || input.previous.is_none() {
+        return Err(Error::argument(format!(
+            "motion has {} channels and previous is {}; motion needs 2 channels and a previous field",
+            motion.channels,
+            if input.previous.is_some() { "given" } else { "missing" }
+        )));
+    }
+    Ok(())
 }
 
 /// Halves the mask of usable pixels of an image of the size of `of`. All four pixels under a pixel must be usable,

@@ -3,20 +3,41 @@
 
 use super::animate::{keep, moved};
 use super::finder::Nearest;
+use super::greedy;
 use super::level::{Level, Problem};
+use super::output::{Glimpse, Output, Publish};
+use super::params::{Finder, Input, Mode, Params};
+use super::picture::{Provenance, decode, decode_into, paint, restore_known};
 use super::report::{LevelReport, Report, Usage, energy, guide_error, sources};
-use super::retrieve::retrieve;
-use super::{Finder, Glimpse, Input, Mode, Output, Params, Publish, greedy};
+use super::retrieve::{Pass, retrieve};
 use crate::error::{Error, Result};
-use crate::exec;
-use crate::image::colour::srgb_to_linear;
 use crate::image::{Image, try_collect};
 use crate::job::Job;
-use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, origin, unpack, vote};
+use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, unpack};
 use crate::rng::hash;
 
 /// Maximum number of patch pairs for which the initial field is found by exhaustive comparison.
 const EXHAUSTIVE: usize = 1 << 24;
+
+/// The constants of a run over the levels.
+struct Setup<'a> {
+    input: &'a Input<'a>,
+    params: &'a Params,
+    /// Number of levels.
+    levels: usize,
+    /// Number of halvings from the artwork's size to the finest level: 1 for a preview.
+    halved: usize,
+    /// The matches of the previous frame, advected into this one.
+    moved: Option<Field>,
+}
+
+/// The state of a level between two iterations.
+struct State {
+    field: Field,
+    picture: Image,
+    /// Patches that keep the match of the previous frame; empty without motion.
+    kept: Vec<bool>,
+}
 
 pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
     let halved = usize::from(!problem.is_of(input.artwork));
@@ -25,11 +46,11 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         (Some(before), Some(motion)) => Some(moved(&checked_size(before, problem)?, motion, problem, halved, job)?),
         _ => None,
     };
-    let goes_on = input.previous.is_some() && (moved.is_none() || params.coherence == 1.0);
+    let continues = input.previous.is_some() && (moved.is_none() || params.coherence == 1.0);
     // Build the pyramid; the coarsest level is at least five patches wide.
     let levels = match params.mode {
         Mode::LitSphere => 1,
-        _ if goes_on => 1,
+        _ if continues => 1,
         _ => level_count(problem.shortest_side(), 5 * problem.patch, params.levels),
     };
     let mut coarser: Vec<Problem> = Vec::new();
@@ -44,10 +65,11 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     let mut done = 0.0;
     let mut reports = Vec::new();
     let mut field = match (&moved, input.previous) {
-        _ if !goes_on => None,
+        _ if !continues => None,
         (None, Some(previous)) => Some(checked_size(previous, problem)?),
         (moved, _) => moved.as_ref().map(Field::try_clone).transpose()?,
     };
+    let setup = Setup { input, params, levels, halved, moved };
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
         done += cost(l);
@@ -55,124 +77,146 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         let popped = if l > 0 { coarser.pop() } else { None };
         let problem = popped.as_ref().unwrap_or(problem);
         let seed = hash(params.seed, &[l as u64]);
-        let guides = if l > 0 { params.coarse_guides } else { 1.0 };
-        let weights = Params { guide_weight: params.guide_weight * guides, ..params.clone() };
-        let mut level = Level::new(problem, &weights, 1.0, seed, job.part(0.0, 0.01))?;
-        if level.allowed.is_empty() {
-            return Err(Error::degenerate(
-                "no exemplar patch can be used: every patch is outside source_mask or has a pixel that is not finite"
-                    .to_string(),
-            ));
-        }
-
-        // Start from the coarser field, or from the guides alone.
-        let (width, height) = (level.wanted.width, level.wanted.height);
-        let mut current = match field.take() {
-            Some(coarse) if l + 1 < levels => coarse.upsample(width, height, &level.allowed)?,
-            Some(previous) => checked(previous, &level)?,
-            None => by_guides_alone(problem, params, seed, job.part(0.0, 0.1))?,
-        };
-        // Keep the matches of the previous frame where they fit.
-        let kept = match &moved {
-            Some(moved) if l == 0 => {
-                let mut moved = checked(moved.try_clone()?, &level)?;
-                let kept = keep(&mut level, &mut moved, params, hash(seed, &[1]), job.part(0.1, 0.1))?;
-                for i in (0..kept.len()).filter(|&i| kept[i]) {
-                    (current.at[i], current.error[i]) = (moved.at[i], moved.error[i]);
-                }
-                kept
-            }
-            _ => Vec::new(),
-        };
-        let mut picture = problem.blank_picture()?;
-        let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
-        paint(&mut picture, &current, problem, how, job.part(0.1, 0.12), |_| true)?;
-
-        // Alternate matching and voting.
-        let iterations = match (params.mode, l) {
-            (Mode::LitSphere, _) => 0,
-            (Mode::Greedy, _) => 1,
-            (_, 0) => params.finest_iterations + params.polish,
-            (_, 1) => params.iterations,
-            _ => params.coarse_iterations,
-        };
-        let mut report = LevelReport {
-            width: problem.guides.target.width,
-            height: problem.guides.target.height,
-            energy: Vec::new(),
-            passes: Vec::new(),
-        };
-        for k in 0..iterations {
-            let part = |from: f64, to: f64| {
-                let n = iterations as f64;
-                job.part(0.12 + 0.88 * (k as f64 + from) / n, 0.12 + 0.88 * (k as f64 + to) / n)
-            };
-            // Only patches over changed pixels can have changed distances; but the first polishing iteration rematches
-            // all patches assigned under the budget.
-            let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
-            let anew = k == 0 || polishes && k == params.finest_iterations;
-            let mut changed = if anew {
-                try_collect(level.wanted.flags().iter().copied())?
-            } else {
-                level.changed_by(&picture, part(0.0, 0.01))?
-            };
-            level.set_picture(&picture, part(0.0, 0.01))?;
-            match params.mode {
-                Mode::Budget if polishes => {
-                    changed.iter_mut().zip(&kept).for_each(|(changed, kept)| *changed &= !kept);
-                    nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?;
-                }
-                Mode::Budget | Mode::Uniform => {
-                    report.passes.push(retrieve(
-                        &level,
-                        &mut current,
-                        &changed,
-                        &kept,
-                        params,
-                        k as u64,
-                        part(0.0, 0.9),
-                    )?);
-                }
-                Mode::Nearest | Mode::LitSphere | Mode::Occurrence => {
-                    nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?;
-                }
-                Mode::Greedy => {
-                    nearest(&level, &mut current, &changed, params, k, part(0.0, 0.5))?;
-                    greedy::run(&mut level, &mut current, &mut picture, l, part(0.5, 0.9))?;
-                }
-            }
-            report.energy.push(energy(&current, &level));
-            // The greedy mode paints while it matches.
-            let how = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
-            match params.mode {
-                Mode::Greedy => restore_known(&mut picture, problem),
-                _ => paint(&mut picture, &current, problem, how, part(0.9, 1.0), |_| true)?,
-            }
-        }
-        reports.push(report);
-
+        let mut level = quantise(problem, params, l, seed, job.part(0.0, 0.01))?;
+        let mut state = initialise(&mut level, field.take(), &setup, l, job)?;
+        reports.push(iterate(&mut level, &mut state, params, l, job)?);
         if l == 0 {
-            let usage = Usage::of(&current, &level)?;
-            drop(level);
-            let mut image = picture.try_clone()?;
-            let provenance = Provenance { field: &current, problem, artwork: input.artwork, known: input.known };
-            decode_into(&mut image, &picture, provenance, job.part(1.0, 1.0), |_| true)?;
-            let report = Report {
-                levels: reports,
-                usage,
-                guide_error: guide_error(&current, problem, job)?,
-                sources: sources(&current, problem, halved, job)?,
-                halvings: halved,
-                patch: problem.patch,
-                broken_source: problem.broken.0,
-                broken_target: problem.broken.1,
-            };
-            return Ok(Output { image, field: current, report });
+            return finish(level, state, reports, &setup, job);
         }
-        publish(Glimpse { picture: decode(&picture, job)?, halvings: l + halved, levels: &reports });
-        field = Some(current);
+        publish(Glimpse { picture: decode(&state.picture, job)?, halvings: l + halved, levels: &reports });
+        field = Some(state.field);
     }
     Err(Error::new(crate::error::ErrorKind::Internal, "the pyramid has no levels"))
+}
+
+/// Quantises level `l` with its weight of the guides.
+fn quantise<'a>(problem: &'a Problem, params: &Params, l: usize, seed: u64, job: Job) -> Result<Level<'a>> {
+    let guides = if l > 0 { params.coarse_guides } else { 1.0 };
+    let weights = Params { guide_weight: params.guide_weight * guides, ..params.clone() };
+    let level = Level::new(problem, &weights, 1.0, seed, job)?;
+    if level.allowed.is_empty() {
+        return Err(Error::degenerate(
+            "no exemplar patch can be used: every patch is outside source_mask or has a pixel that is not finite"
+                .to_string(),
+        ));
+    }
+    Ok(level)
+}
+
+/// The first field and picture of level `l`, from the field of the next coarser level or of an earlier result.
+fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, job: Job) -> Result<State> {
+    let (problem, params) = (level.problem, setup.params);
+    // Start from the coarser field, or from the guides alone.
+    let (width, height) = (level.wanted.width, level.wanted.height);
+    let mut field = match field {
+        Some(coarse) if l + 1 < setup.levels => coarse.upsample(width, height, &level.allowed)?,
+        Some(previous) => checked(previous, level)?,
+        None => by_guides_alone(problem, params, level.seed, job.part(0.0, 0.1))?,
+    };
+    // Keep the matches of the previous frame where they fit.
+    let kept = match &setup.moved {
+        Some(moved) if l == 0 => {
+            let mut moved = checked(moved.try_clone()?, level)?;
+            let kept = keep(level, &mut moved, params, hash(level.seed, &[1]), job.part(0.1, 0.1))?;
+            for i in (0..kept.len()).filter(|&i| kept[i]) {
+                (field.at[i], field.error[i]) = (moved.at[i], moved.error[i]);
+            }
+            kept
+        }
+        _ => Vec::new(),
+    };
+    let mut picture = problem.blank_picture()?;
+    let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
+    paint(&mut picture, &field, problem, how, job.part(0.1, 0.12), |_| true)?;
+    Ok(State { field, picture, kept })
+}
+
+/// Alternates matching and voting on level `l`.
+fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job: Job) -> Result<LevelReport> {
+    let iterations = match (params.mode, l) {
+        (Mode::LitSphere, _) => 0,
+        (Mode::Greedy, _) => 1,
+        (_, 0) => params.finest_iterations + params.polish,
+        (_, 1) => params.iterations,
+        _ => params.coarse_iterations,
+    };
+    let target = &level.problem.guides.target;
+    let mut report = LevelReport { width: target.width, height: target.height, energy: Vec::new(), passes: Vec::new() };
+    for k in 0..iterations {
+        let part = |from: f64, to: f64| {
+            let n = iterations as f64;
+            job.part(0.12 + 0.88 * (k as f64 + from) / n, 0.12 + 0.88 * (k as f64 + to) / n)
+        };
+        let passes = rematch(level, state, params, l, k, part(0.0, 0.9))?;
+        report.passes.extend(passes);
+        report.energy.push(energy(&state.field, level));
+        // The greedy mode paints while it matches.
+        let how = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
+        match params.mode {
+            Mode::Greedy => restore_known(&mut state.picture, level.problem),
+            _ => paint(&mut state.picture, &state.field, level.problem, how, part(0.9, 1.0), |_| true)?,
+        }
+    }
+    Ok(report)
+}
+
+/// Iteration `k` of matching on level `l`. Returns the passes of a retrieval.
+fn rematch(
+    level: &mut Level,
+    state: &mut State,
+    params: &Params,
+    l: usize,
+    k: usize,
+    job: Job,
+) -> Result<Option<Vec<Pass>>> {
+    let State { field, picture, kept } = state;
+    // Only patches over changed pixels can have changed distances; but the first polishing iteration rematches all
+    // patches assigned under the budget.
+    let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
+    let rematches_all = k == 0 || polishes && k == params.finest_iterations;
+    let mut changed = if rematches_all {
+        try_collect(level.wanted.flags().iter().copied())?
+    } else {
+        level.changed_by(picture, job.part(0.0, 0.01))?
+    };
+    level.set_picture(picture, job.part(0.0, 0.01))?;
+    match params.mode {
+        Mode::Budget if polishes => {
+            changed.iter_mut().zip(&*kept).for_each(|(changed, kept)| *changed &= !kept);
+            nearest(level, field, &changed, params, k, job)?;
+        }
+        Mode::Budget | Mode::Uniform => {
+            return retrieve(level, field, &changed, kept, params, k as u64, job).map(Some);
+        }
+        Mode::Nearest | Mode::LitSphere | Mode::Occurrence => nearest(level, field, &changed, params, k, job)?,
+        Mode::Greedy => {
+            nearest(level, field, &changed, params, k, job.part(0.0, 0.55))?;
+            greedy::run(level, field, picture, l, job.part(0.55, 1.0))?;
+        }
+    }
+    Ok(None)
+}
+
+/// Decodes the picture of the finest level and completes the report.
+fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
+    let State { field, picture, .. } = state;
+    let problem = level.problem;
+    let usage = Usage::of(&field, &level)?;
+    drop(level);
+    let mut image = picture.try_clone()?;
+    let provenance = Provenance { field: &field, problem, artwork: setup.input.artwork, known: setup.input.known };
+    decode_into(&mut image, &picture, provenance, job.part(1.0, 1.0), |_| true)?;
+    let report = Report {
+        levels,
+        usage,
+        guide_error: guide_error(&field, problem, job)?,
+        sources: sources(&field, problem, setup.halved, job)?,
+        halvings: setup.halved,
+        patch: problem.patch,
+        broken_source: problem.broken.0,
+        broken_target: problem.broken.1,
+    };
+    Ok(Output { image, field, report })
 }
 
 /// Finds the nearest exemplar patch of each target patch that has changed; the others are up to date.
@@ -239,70 +283,4 @@ fn checked(field: Field, level: &Level) -> Result<Field> {
         return Err(Error::argument("previous has matches outside the exemplar".to_string()));
     }
     Ok(field)
-}
-
-/// Votes for the pixels for which `wanted` holds, and restores known pixels.
-pub(super) fn paint(
-    picture: &mut Image,
-    field: &Field,
-    problem: &Problem,
-    how: Vote,
-    job: Job,
-    wanted: impl Fn(usize) -> bool + Sync,
-) -> Result<()> {
-    vote(picture, field, &problem.style, problem.patch, how, job, wanted)?;
-    restore_known(picture, problem);
-    Ok(())
-}
-
-fn restore_known(picture: &mut Image, problem: &Problem) {
-    if let (Some(mask), Some(known)) = (&problem.target_mask, &problem.known) {
-        let channels = picture.channels;
-        let pixels = picture.data.chunks_exact_mut(channels).zip(known.data.chunks_exact(channels));
-        pixels.zip(mask).filter(|(_, made)| !**made).for_each(|((p, k), _)| p.copy_from_slice(k));
-    }
-}
-
-fn decode(picture: &Image, job: Job) -> Result<Image> {
-    let mut out = picture.try_clone()?;
-    let row_len = out.row_len();
-    exec::for_rows(&mut out.data, row_len, job.part(1.0, 1.0), |_, row| {
-        row.iter_mut().for_each(|v| *v = srgb_to_linear(*v));
-    })?;
-    Ok(out)
-}
-
-/// The inputs that produced an encoded picture.
-pub(super) struct Provenance<'a> {
-    pub field: &'a Field,
-    pub problem: &'a Problem,
-    /// The artwork and the known part of the target, linear.
-    pub artwork: &'a Image,
-    pub known: Option<&'a Image>,
-}
-
-/// Decodes the pixels of a picture for which `wanted` holds into `image`, in linear colour. Pixels on which all
-/// patches agree, and known pixels, are copied from the linear originals, so that they equal them to the bit.
-pub(super) fn decode_into(
-    image: &mut Image,
-    picture: &Image,
-    provenance: Provenance,
-    job: Job,
-    wanted: impl Fn(usize) -> bool + Sync,
-) -> Result<()> {
-    let Provenance { field, problem, artwork, known } = provenance;
-    let (width, channels, whole) = (image.width, image.channels, problem.is_of(artwork));
-    let left_out = |i: usize| whole && problem.target_mask.as_ref().is_some_and(|mask| !mask[i]);
-    exec::for_rows(&mut image.data, width * channels, job, |y, row| {
-        for (x, pixel) in row.chunks_exact_mut(channels).enumerate().filter(|(x, _)| wanted(y * width + x)) {
-            match (left_out(y * width + x), known) {
-                (true, Some(known)) => pixel.copy_from_slice(known.pixel(x, y)),
-                (true, None) => pixel.fill(0.0),
-                _ => match whole.then(|| origin(field, problem.patch, x, y)).flatten() {
-                    Some((px, py)) => pixel.copy_from_slice(artwork.pixel(px, py)),
-                    None => pixel.iter_mut().zip(picture.pixel(x, y)).for_each(|(p, v)| *p = srgb_to_linear(*v)),
-                },
-            }
-        }
-    })
 }

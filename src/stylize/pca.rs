@@ -21,12 +21,30 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     }
     let roots: Vec<f64> = guides.weights.iter().map(|w| w.sqrt()).collect();
 
-    // Compute the covariance of the weighted channels over exemplar and target, from about 2¹⁶ pixels.
+    let (values, vectors) = symmetric_eigen(covariance(guides, &roots), n);
+    let total: f64 = values.iter().sum();
+    let mut kept = 0.0;
+    let count = values.iter().take_while(|&&v| {
+        let more = kept < KEPT_VARIANCE * total;
+        kept += v;
+        more
+    });
+    let count = count.count().clamp(1, MAX_COMPONENTS);
+    let source = project(&guides.source, &vectors, &roots, count, job)?;
+    let target = project(&guides.target, &vectors, &roots, count, job)?;
+    (guides.source, guides.target) = (source, target);
+    guides.weights = stretch(&mut guides.source, &mut guides.target);
+    Ok(())
+}
+
+/// Covariance of the weighted channels over exemplar and target, from about 2¹⁶ pixels.
+fn covariance(guides: &Channels, roots: &[f64]) -> Vec<f64> {
+    let n = roots.len();
     let pixels = || guides.source.data.chunks_exact(n).chain(guides.target.data.chunks_exact(n));
     let step = (((guides.source.data.len() + guides.target.data.len()) / n) >> 16).max(1);
     let (mut mean, mut count) = (vec![0.0; n], 0.0);
     for p in pixels().step_by(step) {
-        mean.iter_mut().zip(p).zip(&roots).for_each(|((m, v), r)| *m += r * f64::from(*v));
+        mean.iter_mut().zip(p).zip(roots).for_each(|((m, v), r)| *m += r * f64::from(*v));
         count += 1.0;
     }
     mean.iter_mut().for_each(|m| *m /= count);
@@ -47,31 +65,28 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
             covariance[j * n + i] = covariance[i * n + j];
         }
     }
-    let (values, vectors) = symmetric_eigen(covariance, n);
-    let total: f64 = values.iter().sum();
-    let mut kept = 0.0;
-    let count = values.iter().take_while(|&&v| {
-        let more = kept < KEPT_VARIANCE * total;
-        kept += v;
-        more
-    });
-    let count = count.count().clamp(1, MAX_COMPONENTS);
+    covariance
+}
 
-    // Project the channels, then stretch each component to its joint range.
-    let project = |image: &Image| -> Result<Image> {
-        let mut out = Image::new(image.width, image.height, count)?;
-        exec::for_rows(&mut out.data, image.width * count, job, |y, row| {
-            for (o, p) in row.chunks_exact_mut(count).zip(image.row(y).chunks_exact(n)) {
-                for (k, value) in o.iter_mut().enumerate() {
-                    let axis = &vectors[k * n..(k + 1) * n];
-                    let sum: f64 = p.iter().zip(axis).zip(&roots).map(|((v, a), r)| a * r * f64::from(*v)).sum();
-                    *value = sum as f32;
-                }
+/// The first `count` components of an image; `vectors` are rows of length `roots.len()`.
+fn project(image: &Image, vectors: &[f64], roots: &[f64], count: usize, job: Job) -> Result<Image> {
+    let n = roots.len();
+    let mut out = Image::new(image.width, image.height, count)?;
+    exec::for_rows(&mut out.data, image.width * count, job, |y, row| {
+        for (o, p) in row.chunks_exact_mut(count).zip(image.row(y).chunks_exact(n)) {
+            for (k, value) in o.iter_mut().enumerate() {
+                let axis = &vectors[k * n..(k + 1) * n];
+                let sum: f64 = p.iter().zip(axis).zip(roots).map(|((v, a), r)| a * r * f64::from(*v)).sum();
+                *value = sum as f32;
             }
-        })?;
-        Ok(out)
-    };
-    let (mut source, mut target) = (project(&guides.source)?, project(&guides.target)?);
+        }
+    })?;
+    Ok(out)
+}
+
+/// Stretches each component to `[0, 1]` over both images; returns the weights of the components.
+fn stretch(source: &mut Image, target: &mut Image) -> Vec<f64> {
+    let count = source.channels;
     let mut weights = Vec::with_capacity(count);
     for k in 0..count {
         let all = source.data.iter().skip(k).step_by(count).chain(target.data.iter().skip(k).step_by(count));
@@ -79,12 +94,11 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
         let range = high - low;
         weights.push(f64::from(range).powi(2));
         let scale = if range > 0.0 { 1.0 / range } else { 0.0 };
-        for image in [&mut source, &mut target] {
+        for image in [&mut *source, &mut *target] {
             image.data.iter_mut().skip(k).step_by(count).for_each(|v| *v = (*v - low) * scale);
         }
     }
-    (guides.source, guides.target, guides.weights) = (source, target, weights);
-    Ok(())
+    weights
 }
 
 /// Eigenvalues of a symmetric matrix, largest first, and unit eigenvectors as rows (cyclic Jacobi rotations).

@@ -1,7 +1,8 @@
 //! Predictions of time and energy for settings, from pilot runs at reduced resolution.
 
 use super::level::Problem;
-use super::{Input, Params, multires};
+use super::multires;
+use super::params::{Input, Params};
 use crate::error::Result;
 use crate::image::Image;
 use crate::job::Job;

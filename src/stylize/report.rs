@@ -39,8 +39,8 @@ pub struct Report {
     /// One channel per target pixel: root mean square difference of the weighted guides between the target and the
     /// exemplar position painted there, in `[0, 1]`. High where the exemplar has nothing suitable (Fig. 17).
     pub guide_error: Image,
-    /// Two channels per target pixel: x and y, in pixels of the artwork, of the source of its paint, according to the
-    /// patch with the nearest centre; -1 where there is none.
+    /// For each target pixel the position in the artwork, x and y in pixels, from which its paint comes, by the patch
+    /// with the nearest centre; -1 without a patch. Two channels.
     pub sources: Image,
     /// Number of halvings from the target's size to the result's: 1 in preview, else 0.
     pub halvings: usize,

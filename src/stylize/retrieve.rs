@@ -18,7 +18,7 @@
 use super::budget::budget;
 use super::finder::Nearest;
 use super::level::Level;
-use super::{Mode, Params};
+use super::params::{Mode, Params};
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_collect;

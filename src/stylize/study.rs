@@ -3,9 +3,11 @@
 //! to the affected area; quantising the guides and the artwork is repeated in full.
 
 use super::level::{Level, Problem, encode, encoded};
-use super::multires::{self, Provenance, paint};
+use super::multires;
+use super::output::{Output, Publish};
+use super::params::{Input, Params};
+use super::picture::{Provenance, decode_into, paint};
 use super::report::sources;
-use super::{Input, Output, Params, Publish};
 use crate::error::{Error, Result};
 use crate::image::{Image, try_vec};
 use crate::job::Job;
@@ -98,7 +100,7 @@ impl Study {
             known: self.known.as_ref(),
         };
         let old = |i: usize| self.old[i];
-        multires::decode_into(&mut self.image, &self.picture, provenance, job.part(0.9, 1.0), old)?;
+        decode_into(&mut self.image, &self.picture, provenance, job.part(0.9, 1.0), old)?;
         let image = self.image.try_clone()?;
         self.pending.fill(false);
         self.old.fill(false);

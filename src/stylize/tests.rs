@@ -1,7 +1,9 @@
 use super::*;
 use crate::error::ErrorKind;
 use crate::exec::Pool;
+use crate::image::Image;
 use crate::job::Monitor;
+use crate::patch::Vote;
 use crate::rng::Rng;
 use std::sync::Mutex;
 

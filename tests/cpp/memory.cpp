@@ -197,7 +197,7 @@ int main() {
         plane.add_strokes(strokes, LUXFER_PHASE_PLANE);
         plane.start().wait();
         lights.set_features(features.image(LUXFER_FEATURES_CHANNELS));
-        lights.set_within(plane.image(LUXFER_SEGMENT_MASK));
+        lights.set_region(plane.image(LUXFER_SEGMENT_MASK));
         lights.clear_strokes();
         lights.add_strokes(strokes, LUXFER_PHASE_LIGHTS);
         luxfer::SegmentParams colour;

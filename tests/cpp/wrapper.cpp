@@ -432,7 +432,7 @@ void lights_have_names() {
     CHECK(ok(luxfer::preset_name(context, 0)).find("office") == 0);
     CHECK_ERROR(luxfer::preset(context, 1000), LUXFER_NOT_FOUND);
     luxfer::FalseColourParams range;
-    range.most = 10;
+    range.maximum = 10;
     CHECK(ok(ok(luxfer::false_colour(new_image(context), range)).size()).width > ok(new_image(context).size()).width);
     const char *panel = "IESNA:LM-63-2002\n[LUMINAIRE] Panel\nTILT=NONE\n"
                         "1 -1 1 3 1 1 2 0.6 0.6 0\n1 1 30\n0 45 90\n0\n1000 707 0\n";
@@ -467,7 +467,7 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(relight.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(lamps.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(lamps.add_mesh(0, LUXFER_QUANTITY_OUTGOING, {1, 1, 1}), LUXFER_INVALID_OPERATION);
-    CHECK_ERROR(lamps.set_sense(0, LUXFER_SENSE_AT_LEAST), LUXFER_NOT_FOUND);
+    CHECK_ERROR(lamps.set_constraint(0, LUXFER_CONSTRAINT_AT_LEAST), LUXFER_NOT_FOUND);
     CHECK_ERROR(lamps.set_levels({0, 0.5, -1}), LUXFER_INVALID_ARGUMENT);
     CHECK_ERROR(importance.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(guides.start(), LUXFER_INVALID_OPERATION);

@@ -77,7 +77,7 @@ void lighting_transfer(const Context &context) {
     CHECK(plane.report().positive_samples > 0);
     const auto lights = luxfer::Segment::create(context);
     lights.set_features(channels);
-    lights.set_within(plane.image(LUXFER_SEGMENT_MASK));
+    lights.set_region(plane.image(LUXFER_SEGMENT_MASK));
     lights.add_strokes(strokes, LUXFER_PHASE_LIGHTS);
     luxfer::SegmentParams colour;
     colour.channels = 7;

@@ -1,4 +1,4 @@
-//! What a host of the library does all the time: makes a context, images and a scene through the C functions.
+//! Common calls of a host: creates a context, images and a scene through the C functions.
 
 #![allow(dead_code, reason = "each test program uses a part")]
 
@@ -6,7 +6,7 @@ use luxfer::ffi::*;
 use std::ffi::{CStr, c_char};
 use std::ptr::{null, null_mut};
 
-/// Calls a function that creates something; its handle.
+/// Calls a function that creates an object; returns the handle.
 pub fn made<T>(create: impl FnOnce(*mut *mut T) -> luxfer_status) -> *mut T {
     let mut handle = null_mut();
     assert_eq!(create(&mut handle), LUXFER_OK);

@@ -1,16 +1,16 @@
-//! Two estimates of the same numbers, each from independent runs whose scatter is the noise: are they alike?
+//! Compares two estimates of the same numbers, each from independent runs whose scatter gives the noise.
 
-/// How two means differ, and by how much they may.
+/// Difference of two means, and its allowed size.
 #[derive(Debug)]
 pub struct Difference {
     pub first: f64,
     pub second: f64,
     pub off: f64,
-    /// What is exceeded with a chance of 0.1 % by any of all tests together.
+    /// Difference that is exceeded with probability 0.1 % in any of all tests together.
     pub interval: f64,
 }
 
-/// Welch's t-test of one number of rows of which each is a run, one of `tests` (Šidák).
+/// Welch's t-test of one number in two sets of rows, one row per run; one of `tests` tests (Šidák).
 pub fn welch(first: &[Vec<f64>], second: &[Vec<f64>], number: usize, tests: usize) -> Difference {
     let outside = 1.0 - (1.0 - 1e-3f64).powf(1.0 / tests as f64);
     let ((a, va), (b, vb)) = (statistics(first, number), statistics(second, number));
@@ -28,9 +28,9 @@ pub fn statistics(rows: &[Vec<f64>], number: usize) -> (f64, f64) {
     (mean, variance)
 }
 
-/// Beyond what Student's t lies with a probability of `outside` on both sides together, by bisection of its integral.
+/// Two-sided quantile of Student's t distribution, exceeded with probability `outside`, by bisection of its integral.
 fn student_quantile(outside: f64, degrees: f64) -> f64 {
-    // The tail in the angle whose tangent is t / sqrt(degrees), where the density is a power of the cosine.
+    // Integrate the tail over the angle whose tangent is t / sqrt(degrees); the pdf is a power of the cosine there.
     let steps = 20_000;
     let weight = |angle: f64| angle.cos().powf(degrees - 1.0);
     let step = std::f64::consts::FRAC_PI_2 / f64::from(steps);

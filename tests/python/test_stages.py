@@ -20,7 +20,7 @@ class Transfer(Case):
         report, solution = transfer.report, transfer.solution
         off = np.array(solution.scale) * solution.response - 100 * np.array(report.target)
         self.assertTrue((np.abs(off) <= np.multiply(solution.half_width, solution.response)).all(), off)
-        self.assertEqual(solution.reach, (luxfer.types.Reach.MET,) * 3)
+        self.assertEqual(solution.outcome, (luxfer.types.Outcome.MET,) * 3)
         self.assertTrue((transfer.image("render").numpy() >= 0).all())
         self.assertGreater(transfer.image("render").numpy().mean(), 0)
 
@@ -82,7 +82,7 @@ class Transfer(Case):
         self.assertEqual(view.report.vanishing_points, transfer.view.vanishing_points)
 
         lights = luxfer.Segment(context(), features.image())
-        lights.set_within(plane.image())
+        lights.set_region(plane.image())
         lights.add_strokes_image(strokes, "lights")
         lights.run(channels=7)
         view.set_mask(plane.image())
@@ -145,7 +145,7 @@ class Transfer(Case):
         relight.set_scene(room, material, mesh)
         relight.set_target((12, 10, 8))
         self.assertEqual(relight.run(paths=1 << 14).warnings, [])
-        relight.set_sense(("at-least", "exactly", "exactly"))
+        relight.set_constraint(("at-least", "equal", "equal"))
         clipped = relight.run(paths=1 << 14).warnings
         self.assertEqual([w.code for w in clipped], [luxfer.types.WarningCode.TARGET_CLIPPED])
 
@@ -290,7 +290,7 @@ class Rendering(Case):
         self.assertTrue((np.abs(off) <= np.multiply(report.half_width, report.response)).all(), off)
         # A channel that may be brighter keeps what the others ask for.
         relight.set_target((12, 12, 1e-3))
-        relight.set_sense(("exactly", "exactly", "at-least"))
+        relight.set_constraint(("equal", "equal", "at-least"))
         scale = relight.run(paths=1 << 16).report.scale
         self.assertAlmostEqual(scale[2], (scale[0] + scale[1]) / 2, delta=1e-9 * scale[2])
 
@@ -344,10 +344,10 @@ class Rendering(Case):
         lamps.set_levels([])
         # Limits: neither desk may have less, and what they have more is theirs.
         for goal in (0, 1):
-            lamps.set_sense(goal, "at-least")
+            lamps.set_constraint(goal, "at-least")
         self.assertEqual(lamps.run(paths=1 << 14).report.met, 1, lamps.reason)
         for goal in (0, 1):
-            lamps.set_sense(goal, ("exactly",) * 3)
+            lamps.set_constraint(goal, ("equal",) * 3)
         # All lamps alike cannot light one desk more than the other.
         report = lamps.run(paths=1 << 14, group="all", tolerance=0.001).report
         self.assertEqual((report.groups, report.met), (1, 0))

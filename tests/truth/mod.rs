@@ -1,9 +1,9 @@
-//! Photos with known cameras and labelled sets of segments, and how far vanishing points are from what they say: shared
-//! by `tests/real_rectify.rs` and `benches/vp.rs`.
+//! Photos with known cameras and labelled sets of segments, and the errors of vanishing points against them: shared by
+//! `tests/real_rectify.rs` and `benches/vp.rs`.
 //!
-//! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without them the tests skip, in CI they fail.
+//! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without them tests are skipped; in CI they fail.
 
-// Each crate that shares this uses a part of it.
+// Each crate that includes this module uses a part of it.
 #![allow(dead_code)]
 
 use glam::{DMat3, DVec2, DVec3};
@@ -83,7 +83,8 @@ pub fn errors(truth: &[DVec3], points: &[DVec3], k: DMat3) -> Vec<f64> {
         .collect()
 }
 
-/// The least total over all one-to-one assignments of rows to columns, by trying all; short lists only.
+/// The minimum total cost of a one-to-one assignment of rows to columns, by trying all assignments; for short lists
+/// only.
 fn assigned(cost: &[Vec<f64>], row: usize, free: u32) -> (f64, Vec<f64>) {
     if row == cost.len() {
         return (0.0, Vec::new());
@@ -101,7 +102,7 @@ fn assigned(cost: &[Vec<f64>], row: usize, free: u32) -> (f64, Vec<f64>) {
     best
 }
 
-/// Segments found by others in many images, with the true directions that some of them run along.
+/// Segments detected by others in many images, with the true directions of some of them.
 pub struct GivenSet {
     pub width: usize,
     pub height: usize,
@@ -132,8 +133,8 @@ pub fn given_set(name: &str) -> Option<GivenSet> {
 }
 
 impl GivenSet {
-    /// The published protocol (Kluger et al. 2020): the method is told how many directions there are; estimates are
-    /// assigned one to one by the least total angle; one that is missing counts 90 degrees. Sorted angles in degrees.
+    /// The published protocol (Kluger et al. 2020): the method knows the number of directions; estimates are assigned
+    /// one to one with the minimum total angle; a missing one counts as 90 degrees. Returns sorted angles in degrees.
     pub fn angles(&self, params: &Params) -> Vec<f64> {
         let monitor = Monitor::default();
         let mut all = Vec::new();
@@ -150,9 +151,9 @@ impl GivenSet {
         all
     }
 
-    /// What lines can say at most: each true direction found anew, with the camera known, from the segments that run along it
-    /// more nearly than along the others. Angles in degrees of each image, in the order of its directions.
-    pub fn told_which_lines(&self) -> Vec<Vec<f64>> {
+    /// Upper bound of the accuracy from lines: each true direction estimated from the segments that are nearest to it,
+    /// with the camera known. Returns for each image the angles in degrees, in the order of its directions.
+    pub fn from_labelled_lines(&self) -> Vec<Vec<f64>> {
         let (monitor, k) = (Monitor::default(), self.intrinsics);
         let params = Params { focal: Some(k.x_axis.x), principal: Some(k.z_axis.truncate()), ..Params::default() };
         let of_image = |(segments, truth): &(Vec<Segment>, Vec<DVec3>)| {
@@ -177,7 +178,7 @@ impl GivenSet {
         self.images.iter().map(of_image).collect()
     }
 
-    /// The images with their first three directions only, which in York Urban are those of the published labels.
+    /// The images with their first three directions only, which for York Urban are the published labels.
     pub fn first_three(mut self) -> Self {
         for (_, truth) in &mut self.images {
             truth.truncate(3);
@@ -186,8 +187,8 @@ impl GivenSet {
     }
 }
 
-/// Area under the cumulative curve of the angles up to a limit, as a share: each angle below the limit adds what is left
-/// of the limit above it.
+/// Area under the cumulative curve of the angles up to a limit, as a share of the full area: each angle below the
+/// limit adds its distance from the limit.
 pub fn area(angles: &[f64], limit: f64) -> f64 {
     angles.iter().map(|e| (limit - e).max(0.0)).sum::<f64>() / (limit * angles.len() as f64)
 }

@@ -35,10 +35,10 @@ public:
         return call(luxfer_lamps_add_grid, &grid, lux, weight);
     }
 
-    /// Makes a goal a limit; a LUXFER_SENSE_ value for all channels, or for each.
-    Result<> set_sense(std::uint32_t goal, luxfer_sense sense) const { return set_sense(goal, sense, sense, sense); }
-    Result<> set_sense(std::uint32_t goal, luxfer_sense red, luxfer_sense green, luxfer_sense blue) const {
-        return call(luxfer_lamps_set_sense, goal, red, green, blue);
+    /// Makes a goal a limit; a LUXFER_CONSTRAINT_ value for all channels, or for each.
+    Result<> set_constraint(std::uint32_t goal, luxfer_constraint constraint) const { return set_constraint(goal, constraint, constraint, constraint); }
+    Result<> set_constraint(std::uint32_t goal, luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
+        return call(luxfer_lamps_set_constraint, goal, red, green, blue);
     }
 
     /// Sets the dimming levels of the lamps' drivers, as factors for the emission; empty for drivers without steps.
@@ -196,13 +196,13 @@ struct Mixture {
 
 /// Mixes a linear colour from the LEDs of a luminaire, with drive levels of at most `most`.
 inline Result<Mixture> mix_primaries(const Context &context, const std::vector<std::array<double, 3>> &primaries,
-                                     std::array<double, 3> colour, double most = 1) {
+                                     std::array<double, 3> colour, double max_drive = 1) {
     std::vector<double> flat;
     for (const auto &primary : primaries) flat.insert(flat.end(), primary.begin(), primary.end());
     Mixture mixture = {std::vector<double>(primaries.size()), {}};
     mixture.light.struct_size = sizeof mixture.light;
     const luxfer_status status =
-        luxfer_mix_primaries(context.get(), flat.data(), static_cast<std::uint32_t>(primaries.size()), most,
+        luxfer_mix_primaries(context.get(), flat.data(), static_cast<std::uint32_t>(primaries.size()), max_drive,
                              colour.data(), mixture.drives.data(), &mixture.light);
     return detail::finish(context.get(), status, std::move(mixture));
 }

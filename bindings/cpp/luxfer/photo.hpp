@@ -99,7 +99,7 @@ public:
     Result<> set_features(const Image &features) const { return call(luxfer_segment_set_features, features.get()); }
 
     /// Restricts the segmentation to a mask; may be empty: everywhere.
-    Result<> set_within(const Image &within) const { return call(luxfer_segment_set_within, within.get()); }
+    Result<> set_region(const Image &region) const { return call(luxfer_segment_set_region, region.get()); }
 
     /// Adds a stroke along a polyline: points holds x and y of each, in pixels.
     Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {

@@ -135,9 +135,9 @@ public:
         return call(luxfer_relight_set_target, target.red, target.green, target.blue);
     }
 
-    /// Makes the target a limit; a LUXFER_SENSE_ value for each channel.
-    Result<> set_sense(luxfer_sense red, luxfer_sense green, luxfer_sense blue) const {
-        return call(luxfer_relight_set_sense, red, green, blue);
+    /// Makes the target a limit; a LUXFER_CONSTRAINT_ value for each channel.
+    Result<> set_constraint(luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
+        return call(luxfer_relight_set_constraint, red, green, blue);
     }
 
     Result<Job> start(const luxfer_relight_params &params = RelightParams()) const {

@@ -133,13 +133,13 @@ LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_FIT_MEAN = 0
 LUXFER_FIT_LEAST_SQUARES = 1
-LUXFER_SENSE_EXACTLY = 0
-LUXFER_SENSE_AT_LEAST = 1
-LUXFER_SENSE_AT_MOST = 2
-LUXFER_REACH_MET = 0
-LUXFER_REACH_TOO_BRIGHT = 1
-LUXFER_REACH_DARK = 2
-LUXFER_REACH_TOO_DIM = 3
+LUXFER_CONSTRAINT_EQUAL = 0
+LUXFER_CONSTRAINT_AT_LEAST = 1
+LUXFER_CONSTRAINT_AT_MOST = 2
+LUXFER_OUTCOME_MET = 0
+LUXFER_OUTCOME_TOO_BRIGHT = 1
+LUXFER_OUTCOME_DARK = 2
+LUXFER_OUTCOME_TOO_DIM = 3
 LUXFER_GROUP_ALL = 0
 LUXFER_GROUP_EACH = 1
 LUXFER_GROUP_FIRST = 2
@@ -412,7 +412,7 @@ class luxfer_surface(Structure):
         ("normal", c_float * 3),
         ("size", c_float * 2),
         ("area", c_float),
-        ("bent", c_float),
+        ("sloped_area", c_float),
     ]
     result = types.Surface
 
@@ -842,9 +842,9 @@ class luxfer_illuminance_report(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("points", c_uint32),
-        ("least", c_double),
+        ("minimum", c_double),
         ("mean", c_double),
-        ("largest", c_double),
+        ("maximum", c_double),
         ("mean_error", c_double),
     ]
     result = types.IlluminanceReport
@@ -875,12 +875,12 @@ class luxfer_relight_report(Structure):
         ("half_width", c_double * 3),
         ("response", c_double * 3),
         ("background", c_double * 3),
-        ("reach", c_int32 * 3),
+        ("outcome", c_int32 * 3),
         ("reserved", c_uint32),
         ("error", c_double),
         ("delta_e", c_double),
     ]
-    enumerations: dict[str, type] = {"reach": types.Reach}
+    enumerations: dict[str, type] = {"outcome": types.Outcome}
     result = types.RelightReport
 
 
@@ -892,8 +892,8 @@ class luxfer_lamps_params(Structure):
         ("group", c_int32),
         ("row_tolerance", c_float),
         ("free_colour", c_uint32),
-        ("most", c_double),
-        ("evenness", c_double),
+        ("max_scale", c_double),
+        ("regularisation", c_double),
         ("tolerance", c_double),
         ("paths", c_uint32),
         ("target_error", c_float),
@@ -936,13 +936,13 @@ class luxfer_lamps_goal(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reach", c_int32 * 3),
+        ("outcome", c_int32 * 3),
         ("target", c_double * 3),
         ("achieved", c_double * 3),
         ("half_width", c_double * 3),
         ("background", c_double * 3),
     ]
-    enumerations: dict[str, type] = {"reach": types.Reach}
+    enumerations: dict[str, type] = {"outcome": types.Outcome}
     result = types.LampsGoal
 
 
@@ -997,12 +997,12 @@ class luxfer_placement_params(Structure):
         ("aim", c_int32),
         ("radiance", c_float * 3),
         ("starts", c_uint32),
-        ("least_offset", c_double * 2),
-        ("most_offset", c_double * 2),
-        ("least_scale", c_double * 2),
-        ("most_scale", c_double * 2),
-        ("least_rotation", c_double),
-        ("most_rotation", c_double),
+        ("min_offset", c_double * 2),
+        ("max_offset", c_double * 2),
+        ("min_scale", c_double * 2),
+        ("max_scale", c_double * 2),
+        ("min_rotation", c_double),
+        ("max_rotation", c_double),
         ("seed", c_uint64),
     ]
     enumerations: dict[str, type] = {"aim": types.Aim}
@@ -1047,8 +1047,8 @@ class luxfer_false_colour_params(Structure):
         ("scale", c_int32),
         ("unit", c_int32),
         ("bar", c_uint32),
-        ("least", c_double),
-        ("most", c_double),
+        ("minimum", c_double),
+        ("maximum", c_double),
     ]
     enumerations: dict[str, type] = {"scale": types.Scale, "unit": types.Unit}
 
@@ -1275,7 +1275,7 @@ class luxfer_stylize_report(Structure):
         ("levels", c_uint32),
         ("halvings", c_uint32),
         ("patch", c_uint32),
-        ("most_used", c_uint32),
+        ("max_uses", c_uint32),
         ("energy", c_double),
         ("used", c_double),
         ("entropy", c_double),
@@ -1454,7 +1454,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_segment_params_init": (c_int32, [("params", POINTER(luxfer_segment_params)), ("size", c_size_t)]),
     "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
     "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
-    "luxfer_segment_set_within": (c_int32, [("segment", POINTER(luxfer_segment)), ("within", POINTER(luxfer_image))]),
+    "luxfer_segment_set_region": (c_int32, [("segment", POINTER(luxfer_segment)), ("region", POINTER(luxfer_image))]),
     "luxfer_segment_add_stroke": (c_int32, [("segment", POINTER(luxfer_segment)), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
     "luxfer_segment_add_strokes_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("drawing", POINTER(luxfer_image)), ("phase", c_int32)]),
     "luxfer_segment_add_strokes_text": (c_int32, [("segment", POINTER(luxfer_segment)), ("description", c_char_p), ("phase", c_int32)]),
@@ -1518,7 +1518,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
     "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
     "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
-    "luxfer_relight_set_sense": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
+    "luxfer_relight_set_constraint": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
     "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report))]),
     "luxfer_relight_retain": (c_int32, [("relight", POINTER(luxfer_relight))]),
@@ -1531,7 +1531,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_lamps_release": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
     "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
     "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
-    "luxfer_lamps_set_sense": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
+    "luxfer_lamps_set_constraint": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
     "luxfer_lamps_set_levels": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("levels", POINTER(c_double)), ("count", c_uint32)]),
     "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
     "luxfer_lamps_get_report": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("report", POINTER(luxfer_lamps_report))]),
@@ -1557,7 +1557,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_image_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report))]),
     "luxfer_false_colour_params_init": (c_int32, [("params", POINTER(luxfer_false_colour_params)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("most", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture))]),
+    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture))]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit))]),
     "luxfer_power_density": (c_int32, [("context", POINTER(luxfer_context)), ("flux", c_double), ("efficacy", c_double), ("area", c_double), ("density", POINTER(c_double))]),
     "luxfer_preset_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),

@@ -25,7 +25,7 @@ class Illuminance(StageBase):
     >>> lux = Illuminance(context, lit_room).run_grid(desk, columns=4, rows=3)
     >>> lux.image("lux").size
     (4, 3, 1)
-    >>> lux.report.least <= lux.report.mean <= lux.report.largest
+    >>> lux.report.minimum <= lux.report.mean <= lux.report.maximum
     True
     """
 

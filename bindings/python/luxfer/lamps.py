@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from . import _abi, _params
 from .image import Image
 from .job import Job, Progress, StageBase
-from .types import Lamp, LampsGoal, LampsReport, LampsResponse, Quantity, Sense
+from .types import Lamp, LampsGoal, LampsReport, LampsResponse, Quantity, Constraint
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -50,9 +50,9 @@ class Lamps(StageBase):
         metres."""
         self._call("add_grid", _params.fill(_abi.luxfer_illuminance_grid, grid, [], "grid."), lux, weight)
 
-    def set_sense(self, goal: int, sense: Sense | str | Sequence[Sense | str]) -> None:
+    def set_constraint(self, goal: int, constraint: Constraint | str | Sequence[Constraint | str]) -> None:
         """Makes a goal a limit, "at-least" or "at-most", in all channels or separately in each."""
-        self._call("set_sense", goal, *_params.per_channel(Sense, sense))
+        self._call("set_constraint", goal, *_params.per_channel(Constraint, constraint))
 
     def set_levels(self, levels: Sequence[float]) -> None:
         """Sets the dimming levels of the lamps' drivers, as factors for the emission; empty for drivers without

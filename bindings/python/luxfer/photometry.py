@@ -101,7 +101,7 @@ def false_colour(context: Context, image: ImageLike, **params: Unpack[FalseColou
 
 
 def mix_primaries(
-    context: Context, primaries: Sequence[Sequence[float]], colour: Sequence[float], most: float = 1
+    context: Context, primaries: Sequence[Sequence[float]], colour: Sequence[float], max_drive: float = 1
 ) -> tuple[list[float], Mixture]:
     """The drive levels of a luminaire's LEDs for a linear colour, and the mixture that they give.
 
@@ -113,7 +113,7 @@ def mix_primaries(
     drives = (ctypes.c_double * len(primaries))()
     report = _params.sized(_abi.luxfer_mixture)
     leds, wanted = (ctypes.c_double * len(flat))(*flat), _three(colour)
-    call(context, "luxfer_mix_primaries", context, leds, len(primaries), most, wanted, drives, report)
+    call(context, "luxfer_mix_primaries", context, leds, len(primaries), max_drive, wanted, drives, report)
     return list(drives), cast(Mixture, _params.report(report))
 
 

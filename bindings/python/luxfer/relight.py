@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
 from .job import Job, Progress, StageBase
-from .types import RelightReport, Sense
+from .types import RelightReport, Constraint
 from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
@@ -41,9 +41,9 @@ class Relight(StageBase):
         red, green, blue = (float(v) for v in radiance)
         self._call("set_target", red, green, blue)
 
-    def set_sense(self, sense: Sense | str | Sequence[Sense | str]) -> None:
+    def set_constraint(self, constraint: Constraint | str | Sequence[Constraint | str]) -> None:
         """Makes the target a limit, "at-least" or "at-most", in all channels or separately in each."""
-        self._call("set_sense", *_params.per_channel(Sense, sense))
+        self._call("set_constraint", *_params.per_channel(Constraint, constraint))
 
     def start(self, **params: Unpack[RelightParams]) -> Job[Relight]:
         """Starts the work."""

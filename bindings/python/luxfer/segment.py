@@ -52,9 +52,9 @@ class Segment(StageBase):
         """Sets the channels of Features, or any image of 1 to 16 channels."""
         self._call("set_features", image_of(self._context, features))
 
-    def set_within(self, within: ImageLike | None) -> None:
+    def set_region(self, region: ImageLike | None) -> None:
         """Restricts the segmentation to pixels where the mask is 1; None: everywhere."""
-        self._call("set_within", None if within is None else image_of(self._context, within))
+        self._call("set_region", None if region is None else image_of(self._context, region))
 
     def add_stroke(self, points: ArrayLike, radius: float, positive: bool) -> None:
         """Adds a stroke along points (n, 2) in pixels; positive on the class that is sought."""

@@ -240,16 +240,16 @@ class DepthSource(IntEnum):
 
 
 class Subject(IntEnum):
-    """What is segmented."""
+    """The subject of a segmentation."""
 
     AUTO = 0
-    """Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a
+    """Lamps if luxfer_segment_set_region gave a mask and the features are those of luxfer_features; else a
     surface."""
     SURFACE = 1
     """A surface, such as the plane that carries the lamps: each pixel is judged by its features."""
     LAMPS = 2
     """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
-    one or more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_within
+    one or more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region
     are found as well. Negative strokes are not needed. The first three channels of the features must be
     CIELAB."""
 
@@ -369,10 +369,10 @@ class Fit(IntEnum):
     where CV is the coefficient of variation of the response over the target."""
 
 
-class Sense(IntEnum):
+class Constraint(IntEnum):
     """Whether light should equal its target value, or stay above or below it."""
 
-    EXACTLY = 0
+    EQUAL = 0
     """The light should equal the value."""
     AT_LEAST = 1
     """The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a
@@ -381,7 +381,7 @@ class Sense(IntEnum):
     """The light should be at most the value, as a limit against glare."""
 
 
-class Reach(IntEnum):
+class Outcome(IntEnum):
     """Whether the target is met in a colour channel, and if not, the reason."""
 
     MET = 0
@@ -914,7 +914,7 @@ class Surface:
     """Lengths of the sides along u and v, in metres."""
     area: float
     """Area of the triangles in m²."""
-    bent: float
+    sloped_area: float
     """Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75
     degrees, as those of a vault; they receive no emission."""
 
@@ -1266,8 +1266,8 @@ class SegmentParams(TypedDict, total=False):
     """Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
     neighbours as one surface, in [1e-3, 1e6]; default 8."""
     subject: Subject | str | int
-    """What the positive strokes lie on: Subject; default Subject.AUTO. Of lamps the settings above do not
-    matter."""
+    """The subject of the positive strokes: Subject; default Subject.AUTO. For lamps the settings above have no
+    effect."""
 
 
 @dataclass(frozen=True)
@@ -1500,11 +1500,11 @@ class IlluminanceReport:
 
     points: int
     """Number of points; on a mesh, the texels that the surface covers."""
-    least: float
-    """Smallest illuminance; least / mean is the uniformity U0."""
+    minimum: float
+    """Smallest illuminance; minimum / mean is the uniformity U0."""
     mean: float
     """Mean illuminance."""
-    largest: float
+    maximum: float
     """Largest illuminance."""
     mean_error: float
     """Standard error of the mean."""
@@ -1542,8 +1542,8 @@ class RelightReport:
     """Mean radiance of the target from the emission at scale 1, in cd/m²."""
     background: tuple[float, float, float]
     """Mean radiance of the target from all other light, in cd/m²."""
-    reach: tuple[Reach, Reach, Reach]
-    """Reach of each channel."""
+    outcome: tuple[Outcome, Outcome, Outcome]
+    """Outcome of each channel."""
     error: float
     """The largest relative half-width among the channels that meet their target."""
     delta_e: float
@@ -1562,9 +1562,9 @@ class LampsParams(TypedDict, total=False):
     free_colour: int
     """1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default:
     solve for the power only."""
-    most: float
+    max_scale: float
     """Largest factor for the emission of a group, >= 0; default infinity."""
-    evenness: float
+    regularisation: float
     """Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep
     the powers equal; default 1e-6."""
     tolerance: float
@@ -1615,8 +1615,8 @@ class Lamp:
 class LampsGoal:
     """The light that a goal receives."""
 
-    reach: tuple[Reach, Reach, Reach]
-    """Reach of each channel."""
+    outcome: tuple[Outcome, Outcome, Outcome]
+    """Outcome of each channel."""
     target: tuple[float, float, float]
     """Mean radiance of the goal, in cd/m²; illuminance / pi for a grid."""
     achieved: tuple[float, float, float]
@@ -1682,18 +1682,18 @@ class PlacementParams(TypedDict, total=False):
     """Mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default 0."""
     starts: int
     """Number of placements at which the search starts, in [1, 4096]; default 64."""
-    least_offset: Sequence[float]
+    min_offset: Sequence[float]
     """Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5."""
-    most_offset: Sequence[float]
+    max_offset: Sequence[float]
     """Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value
     is fixed."""
-    least_scale: Sequence[float]
+    min_scale: Sequence[float]
     """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
-    most_scale: Sequence[float]
+    max_scale: Sequence[float]
     """Largest number of repetitions, in [1/64, 64]; default 1."""
-    least_rotation: float
+    min_rotation: float
     """Smallest rotation in radians, in [-2 pi, 2 pi]; default 0."""
-    most_rotation: float
+    max_rotation: float
     """Largest rotation in radians, in [-2 pi, 2 pi]; default 0."""
     seed: int
     """Seed of the starting placements; default 1."""
@@ -1747,11 +1747,11 @@ class FalseColourParams(TypedDict, total=False):
     """Unit, written above the bar; default Unit.LUMINANCE."""
     bar: int
     """1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar."""
-    least: float
+    minimum: float
     """Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the
     lightest colour; default 0."""
-    most: float
-    """Value of the lightest colour, greater than least; 0, the default, means the largest value of the
+    maximum: float
+    """Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the
     image."""
 
 
@@ -2071,7 +2071,7 @@ class StylizeReport:
     """Number of times that the sides of the target were halved to get the size of the picture."""
     patch: int
     """Width of the patches, in pixels."""
-    most_used: int
+    max_uses: int
     """Largest number of uses of an exemplar patch."""
     energy: float
     """Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The

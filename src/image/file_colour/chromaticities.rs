@@ -19,8 +19,8 @@ const BRADFORD: DMat3 = DMat3::from_cols(
 /// White of the connection space of ICC profiles (ICC.1:2022, 7.2.16).
 const D50: DVec3 = DVec3::new(0.9642, 1.0, 0.8249);
 
-/// Matrices that differ from the identity by no more are the identity. [rounding]: files store chromaticities with
-/// four digits, and ICC profiles their columns with 16 bits.
+/// Maximum deviation of a matrix from the identity that is ignored. [rounding]: files store chromaticities with four
+/// digits, and ICC profiles their columns with 16 bits.
 const SAME: f64 = 1e-3;
 
 /// Matrices with a larger element come from primaries that lie almost on one line. [convention]
@@ -35,6 +35,7 @@ impl Chromaticities {
 
     /// By the codes of Recommendation ITU-T H.273, table 2.
     pub fn of_code(code: u8) -> Option<Self> {
+        // [convention: Recommendation ITU-T H.273]
         const D65: [f64; 2] = Chromaticities::REC709.white;
         const C: [f64; 2] = [0.310, 0.316];
         let (primaries, white) = match code {
@@ -53,19 +54,19 @@ impl Chromaticities {
         Some(Self { primaries, white })
     }
 
-    /// The matrix to linear Rec.709 that keeps white; nothing if the primaries span no space.
+    /// The matrix to linear Rec.709 that maps white to white; `None` if the primaries are collinear.
     pub fn to_rec709(self) -> Option<DMat3> {
         self.to_rec709_from_white(self.white)
     }
 
-    /// The matrix to linear Rec.709 that makes white of another chromaticity than the colour (1, 1, 1).
+    /// The matrix to linear Rec.709 for a white whose chromaticity differs from that of the colour (1, 1, 1).
     pub fn to_rec709_from_white(self, white: [f64; 2]) -> Option<DMat3> {
         let target = Self::REC709;
         let matrix = target.to_xyz()?.inverse() * adaptation(xyz(white)?, xyz(target.white)?) * self.to_xyz()?;
         usable(matrix)
     }
 
-    /// Linear colours to CIE XYZ; the Y of (1, 1, 1) is 1.
+    /// The matrix from linear colours to CIE XYZ; the Y of (1, 1, 1) is 1.
     fn to_xyz(self) -> Option<DMat3> {
         let [r, g, b] = self.primaries.map(|[x, y]| DVec3::new(x, y, 1.0 - x - y));
         let primaries = DMat3::from_cols(r, g, b);
@@ -82,13 +83,13 @@ pub fn of_colorants(colorants: DMat3) -> Option<DMat3> {
     let target = Chromaticities::REC709;
     let to_pcs = adaptation(xyz(target.white)?, D50) * target.to_xyz()?;
     let matrix = usable(to_pcs.inverse() * colorants)?;
-    // Whites are rounded as well: greys stay grey.
+    // The white of profiles is rounded; scale it away, so that greys stay grey.
     let white = matrix * DVec3::ONE;
     let is_white = (white - DVec3::ONE).abs().max_element() < SAME;
     Some(if is_white { DMat3::from_diagonal(white.recip()) * matrix } else { matrix })
 }
 
-/// Whether a matrix changes no colour that a file can tell apart.
+/// Whether a matrix changes colours by less than the precision of files.
 pub fn is_identity(matrix: DMat3) -> bool {
     (matrix - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < SAME)
 }
@@ -130,7 +131,7 @@ mod tests {
             Chromaticities::of_code(9).unwrap().to_rec709().unwrap(),
             [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]],
         );
-        // XYZ with its own white kept, and as the colorimetry of a picture under D65.
+        // XYZ with its own white, and as the colorimetry of a picture under D65.
         let xyz = Chromaticities::of_code(10).unwrap();
         assert!((xyz.to_rec709().unwrap() * DVec3::ONE - DVec3::ONE).abs().max_element() < 1e-9);
         assert_near(

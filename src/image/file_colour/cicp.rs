@@ -1,21 +1,22 @@
 //! Colour spaces by their code points (Recommendation ITU-T H.273).
 
 use super::chromaticities::{Chromaticities, is_identity};
+use super::conversion::Conversion;
 use super::curve::{Curve, bt709, hlg, pq};
-use super::{Conversion, Space};
+use super::space::Space;
 use crate::error::Result;
 use crate::image::colour::srgb_to_linear;
 
 pub const PQ: u8 = 16;
 pub const HLG: u8 = 18;
 
-/// Reference white of high dynamic range, which becomes 1: in cd/m² of PQ, and as a code of HLG (Recommendation ITU-R
-/// BT.2408-7, table 1).
+/// Reference white of high dynamic range, which becomes 1: in cd/m² of PQ, and as a code of HLG
+/// [convention: Recommendation ITU-R BT.2408-7, table 1].
 const PQ_WHITE: f64 = 203.0;
 const HLG_WHITE: f64 = 0.75;
 
-/// The space with these primaries and this transfer function; `full` gives the code in `[0, 1]` of a stored one.
-/// Nothing if a code is unknown.
+/// The space with these primaries and this transfer function; `full` maps a stored code to `[0, 1]`. `None` if a code
+/// is unknown.
 pub fn space(primaries: u8, transfer: u8, full: impl Fn(f64) -> f64) -> Result<Option<Space>> {
     let function: fn(f64) -> f64 = match transfer {
         1 | 6 | 14 | 15 => bt709,

@@ -1,7 +1,5 @@
-//! Colours of a file to linear Rec.709, in place.
+//! Conversion of the colours of a file to linear Rec.709, in place.
 
-use super::Space;
-use super::chromaticities::is_identity;
 use super::curve::Curve;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Image, try_vec};
@@ -9,10 +7,10 @@ use glam::{DMat3, Mat3, Vec3};
 use moxcms::TransformF32Executor;
 use std::sync::Arc;
 
-/// The way from the samples of a file, integers as `[0, 1]`, to linear Rec.709.
+/// The conversion from the samples of a file (integers as `[0, 1]`) to linear Rec.709.
 ///
-/// Colours that Rec.709 cannot hold lose their negative components, as the stages take negative values for damage;
-/// components above 1 stay.
+/// Negative components of colours outside Rec.709 become 0, because the stages treat negative values as damage;
+/// components above 1 are kept.
 #[derive(Clone)]
 pub struct Conversion(Kind);
 
@@ -21,11 +19,11 @@ enum Kind {
     /// One curve, for any number of channels.
     Grey(Curve),
     Rgb {
-        /// None where samples are linear.
+        /// `None` if samples are linear.
         curves: Option<[Curve; 3]>,
         matrix: Mat3,
     },
-    /// By the tables of a profile to sRGB, and by the curve of that.
+    /// The tables of a profile convert to sRGB, and the curve to linear.
     Tables(Arc<TransformF32Executor>, Curve),
 }
 
@@ -38,27 +36,22 @@ impl Conversion {
         Self(Kind::Grey(curve))
     }
 
-    fn linear(matrix: DMat3) -> Self {
+    pub(super) fn linear(matrix: DMat3) -> Self {
         Self(Kind::Rgb { curves: None, matrix: matrix.as_mat3() })
     }
 
-    /// Of integers in sRGB.
+    /// The conversion of sRGB integers.
     pub fn srgb() -> Result<Self> {
         let curve = Curve::srgb()?;
         Ok(Self::new([curve.clone(), curve.clone(), curve], DMat3::IDENTITY))
-    }
-
-    /// The space whose linear colours a matrix converts.
-    pub fn linear_space(matrix: DMat3) -> Space {
-        if is_identity(matrix) { Space::Native } else { Space::Other(Self::linear(matrix)) }
     }
 
     pub fn tables(to_srgb: Arc<TransformF32Executor>) -> Result<Self> {
         Ok(Self(Kind::Tables(to_srgb, Curve::srgb()?)))
     }
 
-    /// Whether a picture with so many channels can be converted: a profile for greys says nothing of colours, nor do
-    /// tables for colours of greys.
+    /// Whether a picture with this number of channels can be converted: grey profiles do not describe colours, nor
+    /// colour tables greys.
     pub fn fits(&self, channels: usize) -> bool {
         match self.0 {
             Kind::Grey(_) => channels != 3,
@@ -93,7 +86,7 @@ fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// A converted colour without negative components that the file does not have. NaN stays NaN.
+/// A converted colour; negative components that the file does not have become 0. NaN stays NaN.
 fn within(colour: Vec3, from: Vec3) -> Vec3 {
     let lowest = Vec3::splat(from.min_element().min(0.0));
     Vec3::select(colour.cmplt(lowest), lowest, colour)

@@ -5,14 +5,14 @@ use crate::image::colour::{linear_to_srgb, srgb_to_linear};
 use crate::image::try_collect;
 use std::sync::Arc;
 
-/// Nodes of a curve: each code of 16 bits, and with 257 steps from one to the next each code of 8.
+/// Number of nodes of a curve: one for each 16-bit code; each 8-bit code is a node too, with a distance of 257 nodes.
 const NODES: usize = 65_536;
 
-/// Curves whose codes differ from sRGB's by no more, of 1, are sRGB. [rounding]: profiles store it in tables of 1024
-/// values of 16 bits, which are wrong by 1e-4 near black.
+/// Maximum difference of a curve from that of sRGB at which it counts as sRGB. [rounding]: profiles store the curve in
+/// tables of 1024 values of 16 bits, with errors of 1e-4 near black.
 const SAME: f32 = 4e-4;
 
-/// A curve on `[0, 1]`, straight beyond, and odd.
+/// A curve on `[0, 1]`, continued linearly above, and odd.
 #[derive(Clone)]
 pub struct Curve(Arc<Vec<f32>>);
 
@@ -37,7 +37,7 @@ impl Curve {
     }
 }
 
-/// Whether a function is the curve of sRGB, as near as files can say it.
+/// Whether a function is the curve of sRGB within the precision of files.
 pub fn is_srgb(function: impl Fn(f64) -> f64) -> bool {
     (0..=255).all(|code| {
         let code = code as f32 / 255.0;
@@ -45,7 +45,7 @@ pub fn is_srgb(function: impl Fn(f64) -> f64) -> bool {
     })
 }
 
-/// Recommendation ITU-R BT.2100-2, table 4: the light of a display in cd/m² by the perceptual quantiser.
+/// Recommendation ITU-R BT.2100-2, table 4: luminance of the display in cd/m² by the perceptual quantiser.
 pub fn pq(code: f64) -> f64 {
     let (m1, m2) = (2610.0 / 16_384.0, 2523.0 / 4096.0 * 128.0);
     let (c1, c2, c3) = (3424.0 / 4096.0, 2413.0 / 4096.0 * 32.0, 2392.0 / 4096.0 * 32.0);
@@ -53,13 +53,13 @@ pub fn pq(code: f64) -> f64 {
     10_000.0 * ((root - c1).max(0.0) / (c2 - c3 * root)).powf(1.0 / m1)
 }
 
-/// Recommendation ITU-R BT.2100-2, table 5: the light of the scene by hybrid log-gamma, 1 at its peak.
+/// Recommendation ITU-R BT.2100-2, table 5: relative light of the scene by hybrid log-gamma, 1 at its peak.
 pub fn hlg(code: f64) -> f64 {
     let (a, b, c) = (0.178_832_77, 0.284_668_92, 0.559_910_73);
     if code <= 0.5 { code * code / 3.0 } else { (((code - c) / a).exp() + b) / 12.0 }
 }
 
-/// Recommendation ITU-R BT.709-6, 1.2, inverted: the light of the scene.
+/// Recommendation ITU-R BT.709-6, 1.2, inverted: relative light of the scene.
 pub fn bt709(code: f64) -> f64 {
     let (alpha, beta) = (1.099_296_826_809_44, 0.018_053_968_510_807);
     if code < 4.5 * beta { code / 4.5 } else { ((code + alpha - 1.0) / alpha).powf(1.0 / 0.45) }

@@ -1,11 +1,13 @@
-//! ICC profiles (ICC.1:2022) as picture files hold them, by the crate `moxcms`: three curves and a matrix, one curve
-//! for greys, or tables for RGB.
+//! ICC profiles (ICC.1:2022) of picture files, by the crate `moxcms`: three curves and a matrix, one curve for greys,
+//! or tables for RGB.
 
 use super::chromaticities::{is_identity, of_colorants};
+use super::cicp;
+use super::conversion::Conversion;
 use super::curve::{Curve, is_srgb};
-use super::{Conversion, Space, cicp};
+use super::space::Space;
 use crate::error::Result;
-use crate::image::{room, try_push, try_vec};
+use crate::image::{memory, try_push, try_vec};
 use glam::DMat3;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 use moxcms::{
@@ -13,17 +15,15 @@ use moxcms::{
 };
 use std::borrow::Cow;
 
-/// Largest profile that is used, in bytes. [convention]: profiles of displays and cameras have a few thousand, of
-/// scanners up to a million.
-pub const MAX_BYTES: usize = 3 << 20;
+pub use crate::image::memory::MAX_PROFILE_BYTES as MAX_BYTES;
 
-/// The tags of a profile may share data, but no more than this many times. [convention]: three curves, three intents,
-/// and each way.
+/// Maximum number of tags that share one piece of data. [convention]: three curves, three intents, and both
+/// directions.
 const MAX_SHARING: usize = 8;
 
 const HEADER_BYTES: usize = 128;
 
-/// The profile in the segments of a JPEG (ICC.1:2022, annex B.4): pieces with their numbers, which begin with 1.
+/// The profile in the segments of a JPEG (ICC.1:2022, annex B.4): pieces with their numbers, counted from 1.
 pub fn of_segments<'a>(segments: impl Iterator<Item = (u8, &'a [u8])>) -> Result<Option<Cow<'a, [u8]>>> {
     let mut pieces = Vec::new();
     for (marker, segment) in segments {
@@ -47,8 +47,8 @@ pub fn of_segments<'a>(segments: impl Iterator<Item = (u8, &'a [u8])>) -> Result
     Ok((len > 0).then_some(profile.into()))
 }
 
-/// The profile in the chunk `iCCP` of a PNG: a name, 0, the method, and what deflate has packed. Nothing if it is
-/// damaged or too long.
+/// The profile in the chunk `iCCP` of a PNG: a name, a zero, the method, and deflated data. `None` if it is damaged or
+/// too long.
 pub fn of_chunk(chunk: &[u8]) -> Result<Option<Vec<u8>>> {
     let name = chunk.iter().take(80).position(|&b| b == 0);
     let Some([_, 0, packed @ ..]) = name.map(|end| &chunk[end..]) else { return Ok(None) };
@@ -60,7 +60,7 @@ pub fn of_chunk(chunk: &[u8]) -> Result<Option<Vec<u8>>> {
             Err(status) => status == HasMoreOutput,
         }
     };
-    // A profile begins with its length.
+    // A profile begins with its length; compare it before unpacking the rest.
     let mut head = [0; 4];
     let len = if unpack(&mut head) { u32::from_be_bytes(head) as usize } else { 0 };
     if !(HEADER_BYTES..=MAX_BYTES).contains(&len) {
@@ -75,10 +75,10 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     if bytes.len() > MAX_BYTES || !shares_little(bytes) {
         return Ok(Space::Unusable);
     }
-    room::check_profile(bytes.len(), has_tables(bytes))?;
+    memory::check_profile(bytes.len(), has_tables(bytes))?;
     let options = ParsingOptions { max_profile_size: MAX_BYTES + 1, ..ParsingOptions::default() };
     let Ok(profile) = ColorProfile::new_from_slice_with_options(bytes, options) else { return Ok(Space::Unusable) };
-    // Curves of profiles end at 1: high dynamic range is stated beside them.
+    // Curves of profiles end at 1, so a profile states high dynamic range by code points.
     if let Some(codes) = &profile.cicp
         && let Some(space) = hdr(codes)?
     {
@@ -92,12 +92,12 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     }
 }
 
-/// Bytes that [`space`] takes for a profile.
+/// Bytes of memory that [`space`] needs for a profile.
 pub fn working_bytes(bytes: &[u8]) -> usize {
-    if bytes.len() > MAX_BYTES { 0 } else { room::profile(bytes.len(), has_tables(bytes)) }
+    if bytes.len() > MAX_BYTES { 0 } else { memory::profile(bytes.len(), has_tables(bytes)) }
 }
 
-/// The tags of a profile: their names, places and lengths.
+/// The tags of a profile: name, offset and length of each.
 fn tags(bytes: &[u8]) -> impl Iterator<Item = &[u8; 12]> {
     let parts = bytes.get(HEADER_BYTES..).and_then(|rest| rest.split_first_chunk());
     let (count, tags) = parts.map_or((0, &[][..]), |(count, tags)| (u32::from_be_bytes(*count), tags));
@@ -108,7 +108,8 @@ fn has_tables(bytes: &[u8]) -> bool {
     tags(bytes).any(|tag| tag.starts_with(b"A2B"))
 }
 
-/// Whether the lengths of all tags are together not much more than the profile: each is unpacked by itself.
+/// Whether the tags together are at most [`MAX_SHARING`] times as long as the profile. Each tag is decoded separately,
+/// so shared data multiplies the memory.
 fn shares_little(bytes: &[u8]) -> bool {
     let total: u64 = tags(bytes).map(|&[.., a, b, c, d]| u64::from(u32::from_be_bytes([a, b, c, d]))).sum();
     bytes.len() > HEADER_BYTES && total <= (MAX_SHARING * bytes.len()) as u64
@@ -154,7 +155,7 @@ fn function(trc: &ToneReprCurve) -> Option<impl Fn(f64) -> f64 + use<>> {
     Some(move |code| f64::from(evaluator.evaluate_value(code as f32)))
 }
 
-/// The intent whose tables are used: colours relative to the medium's white, and others where there are no such tables.
+/// The intent whose tables are used: relative colorimetric, or else the first intent that has tables.
 fn intent(profile: &ColorProfile) -> Option<RenderingIntent> {
     let has = |tables: &Option<_>, intent| tables.is_some().then_some(intent);
     has(&profile.lut_a_to_b_colorimetric, RenderingIntent::RelativeColorimetric)

@@ -20,49 +20,22 @@ mod conversion;
 mod curve;
 pub(super) mod icc;
 mod png;
+mod space;
 #[cfg(test)]
 mod tests;
 
 pub(super) use chromaticities::Chromaticities;
 pub(super) use conversion::Conversion;
+pub(super) use space::Space;
+pub use space::{ExifColour, FileColour};
 
 use super::containers::{jpeg_segments, riff_chunks};
 use super::format::Format;
 use super::photo::Exif;
 use super::tiff;
 use crate::error::Result;
-use curve::Curve;
 use image::ImageFormat;
 use std::borrow::Cow;
-
-/// How the colours of a picture were understood.
-#[repr(i32)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FileColour {
-    /// The picture is not from a file.
-    #[default]
-    None = 0,
-    /// The file states no colour space: integers are taken as sRGB, floating-point numbers as linear Rec.709.
-    Assumed = 1,
-    /// The file states this space.
-    Stated = 2,
-    /// The file states another space, and its colours were converted.
-    Converted = 3,
-    /// The file states a space that cannot be converted. It was read as if it stated none.
-    Unconverted = 4,
-    /// The caller asked for the numbers as they are.
-    Data = 5,
-}
-
-/// The colour space that a file states.
-pub(super) enum Space {
-    Unstated,
-    /// sRGB for integers, linear Rec.709 for floating-point numbers.
-    Native,
-    Other(Conversion),
-    /// One that cannot be converted.
-    Unusable,
-}
 
 impl Space {
     /// The space of a picture of integers.
@@ -95,30 +68,3 @@ pub fn profile(bytes: &[u8], format: Format) -> Result<Option<Cow<'_, [u8]>>> {
         Format::Raster(_) | Format::Exr | Format::Radiance => None,
     })
 }
-
-/// The colour space by the EXIF notes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ExifColour {
-    #[default]
-    Unstated,
-    Srgb,
-    AdobeRgb,
-}
-
-impl ExifColour {
-    fn space(self) -> Result<Space> {
-        match self {
-            Self::Unstated => Ok(Space::Unstated),
-            Self::Srgb => Ok(Space::Native),
-            Self::AdobeRgb => {
-                let curve = Curve::new(|v| v.powf(ADOBE_GAMMA))?;
-                Ok(Chromaticities::ADOBE_RGB.to_rec709().map_or(Space::Unusable, |matrix| {
-                    Space::Other(Conversion::new([curve.clone(), curve.clone(), curve], matrix))
-                }))
-            }
-        }
-    }
-}
-
-/// Adobe RGB (1998), 4.3.1.2: 2 + 51/256.
-const ADOBE_GAMMA: f64 = 563.0 / 256.0;

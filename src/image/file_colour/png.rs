@@ -2,15 +2,17 @@
 //! edition, 4.3).
 
 use super::chromaticities::{Chromaticities, is_identity};
+use super::conversion::Conversion;
 use super::curve::Curve;
-use super::{Conversion, Space, cicp, icc};
+use super::space::Space;
+use super::{cicp, icc};
 use crate::error::Result;
 use crate::image::containers::png_chunks;
 
-/// Numbers of `gAMA` and `cHRM` are stored as 100,000 times their value.
+/// Numbers of `gAMA` and `cHRM` are stored as 100,000 times their value [convention: PNG].
 const UNIT: f64 = 100_000.0;
 
-/// Exponents of `gAMA` that a picture can mean. [convention]
+/// Plausible exponents of `gAMA`; others are ignored. [convention]
 const EXPONENTS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 /// The content of a chunk before the pixels.
@@ -56,8 +58,8 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     }
 }
 
-/// A code of 8 or 16 bits, of which only a range is for video, from its black to its white (Recommendation ITU-T
-/// H.273, 8.3).
+/// Maps an 8-bit or 16-bit code of video range, from its black to its white, to `[0, 1]` (Recommendation ITU-T H.273,
+/// 8.3).
 fn narrow(code: f64, bits: u8) -> f64 {
     let max = f64::from(if bits == 16 { u16::MAX } else { 255 });
     let unit = (max + 1.0) / 256.0;
@@ -75,7 +77,7 @@ fn chromaticities(chunk: &[u8]) -> Option<Chromaticities> {
     Some(Chromaticities { white: point(0)?, primaries: [point(1)?, point(2)?, point(3)?] })
 }
 
-/// Each of the two that is missing is that of sRGB.
+/// The space by its exponent and chromaticities; a missing one is that of sRGB.
 fn by_numbers(exponent: Option<f64>, chromaticities: Option<Chromaticities>) -> Result<Space> {
     let Some(matrix) = chromaticities.unwrap_or(Chromaticities::REC709).to_rec709() else { return Ok(Space::Unusable) };
     let curve = match exponent {

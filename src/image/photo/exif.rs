@@ -1,12 +1,11 @@
-//! What cameras write into their pictures: the EXIF notes of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA
-//! CP-3451).
+//! EXIF metadata of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA CP-3451).
 
 use super::Orientation;
 use crate::image::containers::{jpeg_segments, png_chunks, riff_chunks};
 use crate::image::file_colour::ExifColour;
 use crate::image::tiff::ifd::{Directory, Ifds};
 
-/// Tags of EXIF; the first two stand in the directory of the picture, the others in one of their own.
+/// Tags of EXIF; the first two are in the directory of the picture, the others in the EXIF directory.
 mod tag {
     pub const ORIENTATION: u16 = 0x0112;
     pub const EXIF: u16 = 0x8769;
@@ -27,46 +26,46 @@ mod tag {
     pub const PLANE_Y_RESOLUTION: u16 = 0xa20f;
     pub const PLANE_UNIT: u16 = 0xa210;
     pub const FOCAL_LENGTH_35: u16 = 0xa405;
-    /// In the directory of interoperability.
+    /// In the interoperability directory.
     pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
-/// What the sensitivity of 16 bits says where the number is too large for it.
+/// Value of the 16-bit sensitivity field if the number is too large for it [convention: Exif].
 const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
 
-/// The notes that the library has a use for. Numbers that no camera can mean are absent.
+/// The tags that the library uses. Implausible numbers are absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Exif {
     pub orientation: Orientation,
-    /// Of a lens that shows as much on film of 36 x 24 mm, in millimetres.
+    /// Equivalent focal length for film of 36 x 24 mm, in millimetres.
     pub focal_35: Option<f64>,
-    /// Of the lens, in millimetres.
+    /// Focal length of the lens in millimetres.
     pub focal: Option<f64>,
-    /// Pixels of the recorded size per millimetre of the sensor.
+    /// Pixels per millimetre of the sensor, at the recorded size.
     pub density: Option<f64>,
     /// Width and height that the camera recorded.
     pub recorded: Option<[f64; 2]>,
     pub f_number: Option<f64>,
-    /// In seconds.
+    /// Exposure time in seconds.
     pub exposure_time: Option<f64>,
     pub iso: Option<f64>,
     pub colour: ExifColour,
 }
 
-/// The notes in a file of any format; of files without them nothing is known.
+/// The metadata of a file of any format; all absent in a file without EXIF.
 pub fn read(bytes: &[u8]) -> Exif {
     let picture = notes(bytes).and_then(Ifds::new).and_then(Ifds::first);
     picture.map(|picture| Exif::new(&picture)).unwrap_or_default()
 }
 
-/// The notes of a file, which are a TIFF file without pixels.
+/// The EXIF block of a file, which has the structure of a TIFF file without pixels.
 fn notes(bytes: &[u8]) -> Option<&[u8]> {
     const NAME: &[u8] = b"Exif\0\0";
     match bytes {
         [0xff, 0xd8, ..] => {
             jpeg_segments(bytes).filter(|s| s.0 == 0xe1).find_map(|(_, segment)| segment.strip_prefix(NAME))
         }
-        // Some writers keep the name that only JPEG asks for.
+        // Some programs keep the prefix that only JPEG requires.
         [0x89, b'P', b'N', b'G', ..] => {
             let chunk = png_chunks(bytes).find(|c| c.0 == b"eXIf")?.2;
             Some(chunk.strip_prefix(NAME).unwrap_or(chunk))
@@ -94,7 +93,7 @@ impl Exif {
             let tags = [tag::STANDARD_OUTPUT_SENSITIVITY, tag::RECOMMENDED_EXPOSURE_INDEX, tag::ISO_SPEED];
             tags.into_iter().find_map(positive)
         });
-        // [convention]: what no lens, shutter or sensor of a camera reaches.
+        // [convention]: limits that no lens, shutter or sensor of a camera exceeds.
         Self {
             orientation,
             focal_35: within(positive(tag::FOCAL_LENGTH_35), 1.0, 1e4),
@@ -109,14 +108,14 @@ impl Exif {
     }
 }
 
-/// The colour space. Files for Adobe RGB say that theirs is uncalibrated, and which file by the rules of DCF it is
+/// The colour space. Files in Adobe RGB state "uncalibrated", and the interoperability index of DCF optional files
 /// (CIPA DC-009).
 fn colour(notes: &Directory) -> ExifColour {
     let offset = notes.integer(tag::INTEROPERABILITY).and_then(|offset| u32::try_from(offset).ok());
     let index = offset.and_then(|offset| notes.ifds().directory(offset)?.bytes(tag::INTEROPERABILITY_INDEX));
     match notes.integer(tag::COLOUR_SPACE) {
         Some(1) => ExifColour::Srgb,
-        // Beyond the standard, but written.
+        // Not in the standard, but in use.
         Some(2) => ExifColour::AdobeRgb,
         _ if index.is_some_and(|index| index.starts_with(b"R03")) => ExifColour::AdobeRgb,
         _ => ExifColour::Unstated,
@@ -128,7 +127,7 @@ fn density(notes: &Directory) -> Option<f64> {
     let millimetres = match notes.integer(tag::PLANE_UNIT).unwrap_or(2) {
         2 => 25.4,
         3 => 10.0,
-        // Beyond the standard, but written.
+        // Not in the standard, but in use.
         4 => 1.0,
         5 => 1e-3,
         _ => return None,

@@ -1,10 +1,9 @@
-//! Which way up a photo is stored, and how it is put upright while it is read.
+//! Orientation of a stored photo, and turning it upright while it is read.
 
 use crate::error::Result;
 use crate::image::Image;
 
-/// How the stored rows and columns lie in the scene: the value of EXIF's tag Orientation, 1 to 8 (JEITA CP-3451,
-/// 4.6.4).
+/// Orientation of the stored rows and columns: the value of the EXIF tag Orientation, 1 to 8 (JEITA CP-3451, 4.6.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation(u8);
 
@@ -31,27 +30,28 @@ impl Orientation {
         self.0 >= 5
     }
 
-    /// Whether the upright picture is mirrored after that: left to right, and top to bottom.
+    /// Whether the upright picture is mirrored after the transposition: left to right, and top to bottom.
     fn mirrors(self) -> [bool; 2] {
         [matches!(self.0, 2 | 3 | 6 | 7), matches!(self.0, 3 | 4 | 7 | 8)]
     }
 }
 
-/// An upright image whose pixels are put in by where the file has them.
+/// An upright image whose pixels are written in the order of the file.
 pub struct Upright {
     pub image: Image,
-    /// The sample where the file's first pixel goes, and the steps from there to the next column and row of the file.
+    /// Index of the sample of the file's first pixel, and the steps to the next column and row of the file.
     start: isize,
     steps: [isize; 2],
 }
 
 impl Upright {
-    /// For a stored picture of so many columns and rows.
+    /// For a stored picture with these numbers of columns and rows.
     pub fn new(width: usize, height: usize, channels: usize, orientation: Orientation) -> Result<Self> {
         let is_transposed = orientation.is_transposed();
         let image =
             if is_transposed { Image::new(height, width, channels)? } else { Image::new(width, height, channels)? };
-        // Steps along the upright picture's axes, from its first column and row or back from its last.
+        // Step along each axis of the upright picture, forwards from its first column and row or backwards from its
+        // last.
         let ahead = [channels, image.row_len()];
         let ends = [image.width - 1, image.height - 1];
         let (mut start, mut steps) = (0, [0; 2]);
@@ -66,7 +66,7 @@ impl Upright {
         Ok(Self { image, start, steps })
     }
 
-    /// The place of the pixel in a column and row of the file.
+    /// The samples of the pixel at a column and row of the file.
     #[inline(always)]
     pub fn pixel(&mut self, x: usize, y: usize) -> &mut [f32] {
         let at = (self.start + x as isize * self.steps[0] + y as isize * self.steps[1]) as usize;
@@ -80,8 +80,8 @@ mod tests {
 
     #[test]
     fn rows_and_columns_go_where_the_standard_says() {
-        // An upright picture of three columns and two rows, and what files of each orientation store of it: the tag
-        // names the side of the scene at which the first row, then the first column lies.
+        // An upright picture of three columns and two rows, and the stored rows for each orientation: the tag names
+        // the side of the scene where the first row, and then the first column, lies.
         let stored: [(&[&str], &str); 8] = [
             (&["abc", "def"], "top, left"),
             (&["cba", "fed"], "top, right"),

@@ -10,13 +10,13 @@ const SHORT: u16 = 3;
 const LONG: u16 = 4;
 const RATIONAL: u16 = 5;
 
-/// Notes of a camera: those of the picture, and those in a directory of their own.
+/// EXIF data: the tags of the picture, and the tags in the EXIF directory.
 pub fn notes(order: Order, picture: &[Entry], camera: &[Entry]) -> Vec<u8> {
     let (_, _, u32) = writers(order);
     let with = |offset: u32| [picture, &[(0x8769, LONG, u32(offset))]].concat();
     let first = structure(order, &with(0)).len();
     let mut notes = structure(order, &with(first as u32));
-    // What the second directory points to moves with it: shift every offset by its place.
+    // The offsets in the second directory are relative to the file: add its position.
     let (_, _, u32) = writers(order);
     let own = structure(order, camera);
     let mut own = own[8..].to_vec();
@@ -57,7 +57,7 @@ fn png(image: &Image, notes: &[u8]) -> Vec<u8> {
         (0..8).fold(crc ^ u32::from(*b), |crc, _| if crc & 1 != 0 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
     });
     let chunk = [&(notes.len() as u32).to_be_bytes()[..], &named, &(!crc).to_be_bytes()].concat();
-    // Behind the header.
+    // Insert it after the header.
     [&file[..33], &chunk, &file[33..]].concat()
 }
 
@@ -75,13 +75,12 @@ fn webp(image: &image::RgbImage, notes: &[u8]) -> Vec<u8> {
     [b"RIFF", &(chunks.len() as u32 + 4).to_le_bytes()[..], b"WEBP", &chunks].concat()
 }
 
-/// The letter F, of sixteen pixels a stroke: no turn or reflection leaves it as it is.
+/// The letter F, with strokes sixteen pixels wide, which no rotation or reflection maps to itself.
 fn letter(x: u32, y: u32) -> bool {
     [[1, 1, 1], [1, 0, 0], [1, 1, 0], [1, 0, 0]][y as usize / 16][x as usize / 16] == 1
 }
 
-/// The letter as it is stored for an orientation: the place in the upright picture of each stored pixel, by EXIF's
-/// table.
+/// The letter as stored in an orientation: the position in the upright picture of each stored pixel, by EXIF's table.
 fn stored(code: u16) -> image::RgbImage {
     let (width, height) = if code >= 5 { (64, 48) } else { (48, 64) };
     image::RgbImage::from_fn(width, height, |x, y| {
@@ -132,7 +131,7 @@ fn photos_of_every_orientation_and_format_stand_upright() {
     }
 }
 
-/// What is known of a photo of 4032 x 3024 pixels, made small, with such notes of the camera.
+/// The metadata of a small version of a photo of 4032 x 3024 pixels with these tags.
 fn metadata(camera: &[Entry]) -> PhotoMetadata {
     let picture = image::RgbImage::new(40, 30);
     let notes = notes(Order::Big, &[(0x10f, ASCII, b"Maker\0".to_vec()), short(Order::Big, 0x112, 6)], camera);
@@ -161,14 +160,14 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let all = [&recorded[..], &sensor].concat();
     let by_sensor = 4.3 * 576.0 * 40.0 / 4032.0;
     assert!(near(metadata(&all).focal, by_sensor), "{:?}", metadata(&all));
-    // Both within 10 %: the sensor's; otherwise the one for film.
+    // Both within 10 %: the estimate of the sensor; otherwise the equivalent one.
     assert!(near(metadata(&[&all[..], &[short(big, 0xa405, 21)]].concat()).focal, by_sensor));
     assert!(near(metadata(&[&all[..], &[film.clone()]].concat()).focal, by_film));
     // Cropped to another shape; zero; and no lens at all.
     assert_eq!(metadata(&[short(big, 0xa002, 4032), short(big, 0xa003, 2268), film]).focal, None);
     assert_eq!(metadata(&[short(big, 0xa405, 0)]).focal, None);
     assert_eq!(metadata(&[rational(big, 0x920a, 43, 0)]).focal, None);
-    // A photo turned by an editor, which exchanged its sides.
+    // A photo rotated by an editor that exchanged its sides.
     let turned = [short(big, 0xa002, 3024), short(big, 0xa003, 4032), short(big, 0xa405, 26)];
     assert!(near(metadata(&turned).focal, by_film));
 }

@@ -1,4 +1,4 @@
-//! One chunk of a TIFF's pixels: unpacked, and its predictor undone.
+//! Unpacks one chunk of a TIFF's pixels and undoes its predictor.
 
 use super::ifd::Order;
 use super::layout::{Compression, Depth, Layout, Predictor};
@@ -7,7 +7,7 @@ use half::f16;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 use weezl::{BitOrder, LzwStatus};
 
-/// Unpacks what is stored until `out` is full; an error if it ends before.
+/// Unpacks the stored bytes until `out` is full; returns an error if they end before.
 pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result<()> {
     let needed = out.len();
     let written = match compression {
@@ -18,7 +18,8 @@ pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result
         }
         Compression::PackBits => packbits(stored, out),
         Compression::Lzw => lzw(stored, out),
-        // An error has left what was unpacked before it, which is all where more is stored than needed.
+        // On an error, use the bytes that were unpacked before it: they are all of the chunk if more is stored than
+        // needed.
         Compression::Deflate => match decompress_slice_iter_to_slice(out, std::iter::once(stored), true, true) {
             Ok(written) => written,
             Err(miniz_oxide::inflate::TINFLStatus::HasMoreOutput) => needed,
@@ -31,7 +32,7 @@ pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result
     Err(Error::format(format!("the TIFF's pixels are damaged ({compression:?}): {needed} bytes were expected")))
 }
 
-/// Unpacks runs of literal and of equal bytes (TIFF 6.0, section 9), and says how many bytes were written.
+/// Unpacks runs of literal and of equal bytes (TIFF 6.0, section 9); returns the number of bytes written.
 fn packbits(mut stored: &[u8], out: &mut [u8]) -> usize {
     let mut at = 0;
     while let Some((&head, rest)) = stored.split_first().filter(|_| at < out.len()) {
@@ -55,7 +56,7 @@ fn packbits(mut stored: &[u8], out: &mut [u8]) -> usize {
     at
 }
 
-/// Unpacks LZW, and says how many bytes were written.
+/// Unpacks LZW; returns the number of bytes written.
 fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
     let mut decoder = weezl::decode::Decoder::with_tiff_size_switch(BitOrder::Msb, 8);
     let (mut from, mut to) = (0, 0);
@@ -71,8 +72,8 @@ fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
     to
 }
 
-/// Undoes the predictor on a row, in place; `spare` is as long as the row. Says in which order the bytes of samples
-/// are then.
+/// Undoes the predictor of a row in place; `spare` is as long as the row. Returns the byte order of the samples
+/// afterwards.
 pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: Order) -> Order {
     let samples = layout.samples;
     match (layout.predictor, layout.depth.bits() / 8) {
@@ -85,7 +86,7 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
             order
         }
         (Predictor::Horizontal, size) => {
-            // Numbers of any length are added from the lowest byte up.
+            // Add numbers of any length from the lowest byte up.
             let byte = |k: usize| if order == Order::Little { k } else { size - 1 - k };
             for start in (samples * size..row.len()).step_by(size) {
                 let mut carry = 0;
@@ -98,7 +99,7 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
             }
             order
         }
-        // All highest bytes of a row come first, then those below; all of them as differences.
+        // All highest bytes of a row come first, then the next lower ones; all of them as differences.
         (Predictor::Float, size) => {
             for i in samples..row.len() {
                 row[i] = row[i].wrapping_add(row[i - samples]);
@@ -115,7 +116,7 @@ pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: 
     }
 }
 
-/// The samples of a row by their index; integers stand for `[0, 1]`.
+/// A sample of a row by its index; integers as `[0, 1]`.
 pub fn sample(row: &[u8], index: usize, depth: Depth, order: Order) -> f32 {
     match depth {
         Depth::Bits(bits) => {

@@ -1,16 +1,16 @@
-//! Directories of tagged values, as TIFF files and the EXIF notes of other pictures hold them (TIFF 6.0, section 2).
+//! Directories of tagged values, in TIFF files and in the EXIF blocks of other pictures (TIFF 6.0, section 2).
 //!
-//! The bytes come from anywhere. A directory or a value that is said to lie outside of them is absent, and no chain of
-//! directories is followed, so reading takes no memory and ends after one pass over each directory that is asked for.
+//! The bytes are untrusted. A directory or a value outside of them counts as absent, and chains of directories are not
+//! followed, so reading needs no memory and ends after one pass over each directory that is requested.
 
-/// The bytes of a structure of directories, after its header has been looked at.
+/// The bytes of a structure of directories with a valid header.
 #[derive(Clone, Copy)]
 pub struct Ifds<'a> {
     bytes: &'a [u8],
     order: Order,
 }
 
-/// Which byte of a number comes first.
+/// The byte order of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     Little,
@@ -32,7 +32,7 @@ impl Order {
 }
 
 impl<'a> Ifds<'a> {
-    /// The structure that bytes begin with; nothing if they begin otherwise.
+    /// The structure at the start of `bytes`; `None` without a valid header.
     pub fn new(bytes: &'a [u8]) -> Option<Self> {
         let order = match bytes.first_chunk()? {
             [b'I', b'I', 42, 0] => Order::Little,
@@ -47,7 +47,7 @@ impl<'a> Ifds<'a> {
         self.directory(self.order.u32(*self.bytes.get(4..)?.first_chunk()?))
     }
 
-    /// The directory at an offset, as far as its entries lie within the bytes.
+    /// The directory at an offset, with the entries that lie within the bytes.
     pub fn directory(self, offset: u32) -> Option<Directory<'a>> {
         let (count, entries) = self.bytes.get(offset as usize..)?.split_first_chunk()?;
         let (entries, _) = entries.as_chunks();
@@ -59,7 +59,7 @@ impl<'a> Ifds<'a> {
         self.order
     }
 
-    /// Bytes from an offset on.
+    /// Some bytes at an offset.
     pub fn slice(self, offset: u64, len: u64) -> Option<&'a [u8]> {
         let start = usize::try_from(offset).ok()?;
         self.bytes.get(start..start.checked_add(usize::try_from(len).ok()?)?)
@@ -78,26 +78,26 @@ impl<'a> Directory<'a> {
         self.ifds
     }
 
-    /// The values of a tag. Those said to lie outside the file count, but cannot be read.
+    /// The values of a tag. Values outside the file are counted, but cannot be read.
     pub fn field(&self, tag: u16) -> Option<Field<'a>> {
         let order = self.ifds.order;
         let entry = self.entries.iter().find(|e| order.u16([e[0], e[1]]) == tag)?;
         let [_, _, k0, k1, c0, c1, c2, c3, ref inline @ ..] = *entry;
         let kind = Kind::new(order.u16([k0, k1]))?;
         let count = order.u32([c0, c1, c2, c3]);
-        // Four bytes or less stand in the entry itself.
+        // Values of four bytes or less are stored in the entry itself.
         let len = u64::from(count) * kind.size() as u64;
         let values =
             if len <= 4 { inline.get(..len as usize) } else { self.ifds.slice(order.u32(*inline).into(), len) };
         Some(Field { kind, count: count as usize, values: values.unwrap_or_default(), order })
     }
 
-    /// The first value of a tag, as a whole number.
+    /// The first value of a tag, if it is a whole number.
     pub fn integer(&self, tag: u16) -> Option<u64> {
         self.field(tag)?.integer(0)
     }
 
-    /// The bytes of a tag, as far as they lie within the file.
+    /// The bytes of a tag that lie within the file.
     pub fn bytes(&self, tag: u16) -> Option<&'a [u8]> {
         self.field(tag).map(|field| field.values).filter(|values| !values.is_empty())
     }
@@ -108,7 +108,7 @@ impl<'a> Directory<'a> {
     }
 }
 
-/// How the values of a tag are stored.
+/// The type of a tag's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     U8,
@@ -126,10 +126,10 @@ enum Kind {
 impl Kind {
     fn new(code: u16) -> Option<Self> {
         Some(match code {
-            // Texts and bytes without a meaning, too.
+            // Also for texts and undefined bytes.
             1 | 2 | 7 => Self::U8,
             3 => Self::U16,
-            // Offsets of directories, too.
+            // Also for offsets of directories.
             4 | 13 => Self::U32,
             5 => Self::URational,
             6 => Self::I8,
@@ -170,7 +170,7 @@ impl Field<'_> {
         self.values.as_chunks::<N>().0.get(index).copied()
     }
 
-    /// A value that is a whole number and not negative.
+    /// A value, if it is a whole number and not negative.
     pub fn integer(&self, index: usize) -> Option<u64> {
         match self.kind {
             Kind::U8 => self.bytes(index).map(|[v]| v.into()),
@@ -180,7 +180,7 @@ impl Field<'_> {
         }
     }
 
-    /// A value that is a finite number.
+    /// A value, if it is a finite number.
     pub fn number(&self, index: usize) -> Option<f64> {
         let u32 = |index| self.bytes(index).map(|v| self.order.u32(v));
         let value = match self.kind {
@@ -204,7 +204,7 @@ pub mod tests {
     /// One entry of a directory: tag, kind, values as bytes in the file's order.
     pub type Entry = (u16, u16, Vec<u8>);
 
-    /// A structure with one directory, in either order of bytes; what is too long for an entry follows it.
+    /// A structure with one directory, in either byte order; values that are too long for an entry follow it.
     pub fn structure(order: Order, entries: &[Entry]) -> Vec<u8> {
         let (head, u16, u32) = writers(order);
         let mut out = [head.to_vec(), u32(8), u16(entries.len() as u16)].concat();
@@ -229,7 +229,7 @@ pub mod tests {
 
     type Writers = (&'static [u8], fn(u16) -> Vec<u8>, fn(u32) -> Vec<u8>);
 
-    /// The first four bytes, and how numbers are written.
+    /// The first four bytes, and the functions that write numbers.
     pub fn writers(order: Order) -> Writers {
         match order {
             Order::Little => (b"II*\0", |v| v.to_le_bytes().to_vec(), |v| v.to_le_bytes().to_vec()),

@@ -1,10 +1,10 @@
-//! How the pixels of a TIFF file are stored, by the tags of its first directory, all of them checked.
+//! The layout of the pixels of a TIFF file, from the checked tags of its first directory.
 
 use super::ifd::{Directory, Field};
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::io::{DENSEST, check_size};
+use crate::image::limits::{MAX_COMPRESSION, check_size};
 
-/// The tags that say how pixels are stored (TIFF 6.0).
+/// The tags that describe the layout of pixels (TIFF 6.0).
 mod tag {
     pub const NEW_SUBFILE_TYPE: u16 = 254;
     pub const WIDTH: u16 = 256;
@@ -29,16 +29,16 @@ mod tag {
     pub const DNG_VERSION: u16 = 50_706;
 }
 
-/// Samples of a pixel as stored, colours and others. [convention]: no photo has more.
+/// Maximum number of stored samples per pixel, including those that are not colours. [convention]: no photo has more.
 const MAX_SAMPLES: u64 = 16;
 
-/// Width of a tile that any picture may have; wider ones must not be wider than the picture. [convention]
+/// Maximum width of a tile in any picture; wider tiles must not be wider than the picture. [convention]
 const MAX_TILE: usize = 4096;
 
-/// How a sample is stored.
+/// The format of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// Less than a byte: 1, 2 or 4 bits, the highest of a byte first.
+    /// 1, 2 or 4 bits; the first sample is in the highest bits of a byte.
     Bits(u8),
     U8,
     U16,
@@ -71,7 +71,7 @@ pub enum Colour<'a> {
     },
     Rgb,
     Cmyk,
-    /// All reds, then all greens, then all blues, of 16 bits.
+    /// All reds, then all greens, then all blues, 16 bits each.
     Palette(Field<'a>),
 }
 
@@ -97,17 +97,17 @@ pub enum Predictor {
     Float,
 }
 
-/// A rectangle of pixels that is stored by itself.
+/// A rectangle of pixels that is stored separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chunk {
-    /// Its place in the list of chunks.
+    /// Its index in the list of chunks.
     pub index: usize,
-    /// The sample that it holds, where each has chunks of its own.
+    /// The index of its sample, if each sample has its own chunks.
     pub plane: usize,
     /// Its upper left pixel.
     pub x: usize,
     pub y: usize,
-    /// Pixels of it that lie within the picture.
+    /// Size of its part within the picture.
     pub width: usize,
     pub height: usize,
 }
@@ -121,7 +121,7 @@ pub struct Layout<'a> {
     pub alpha: Option<Alpha>,
     pub compression: Compression,
     pub predictor: Predictor,
-    /// Samples of a pixel in one chunk: all, or one where each has chunks of its own.
+    /// Number of samples per pixel in a chunk: all, or one if each sample has its own chunks.
     pub samples: usize,
     planes: usize,
     /// Width and height of a chunk as stored.
@@ -132,7 +132,7 @@ pub struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    /// Reads and checks the tags of a directory in a file of so many bytes.
+    /// Reads and checks the tags of a directory in a file of `file_bytes` bytes.
     pub fn new(directory: Directory<'a>, file_bytes: usize) -> Result<Self> {
         check_is_picture(&directory)?;
         let required = |tag, name| integer(&directory, tag, name)?.ok_or_else(|| missing(name));
@@ -195,7 +195,7 @@ impl<'a> Layout<'a> {
         Ok(layout)
     }
 
-    /// Channels of the image that the picture becomes: grey with alpha becomes RGBA, palettes and CMYK RGB.
+    /// Number of channels of the resulting image: grey with alpha becomes RGBA, palettes and CMYK become RGB.
     pub fn channels(&self) -> usize {
         match (self.colour, self.alpha) {
             (Colour::Grey { .. }, None) => 1,
@@ -204,7 +204,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Samples that make a colour.
+    /// Number of samples of a colour.
     pub fn colours(&self) -> usize {
         match self.colour {
             Colour::Grey { .. } | Colour::Palette(_) => 1,
@@ -213,12 +213,12 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Bytes of a row of a chunk, once it is unpacked.
+    /// Bytes of an unpacked row of a chunk.
     pub fn row_bytes(&self) -> usize {
         (self.chunk[0] * self.samples * self.depth.bits()).div_ceil(8)
     }
 
-    /// Bytes that unpacked chunks need at most: the rows of them that lie within the picture.
+    /// Maximum number of bytes of an unpacked chunk: its rows that lie within the picture.
     pub fn chunk_bytes(&self) -> usize {
         self.row_bytes() * self.chunk[1]
     }
@@ -227,7 +227,7 @@ impl<'a> Layout<'a> {
         [self.width.div_ceil(self.chunk[0]), self.height.div_ceil(self.chunk[1])]
     }
 
-    /// The chunks of all planes whose samples are of use.
+    /// The chunks of all planes whose samples are used.
     pub fn chunks(&self) -> impl Iterator<Item = Chunk> + use<> {
         let ([across, down], [width, height]) = (self.grid(), self.chunk);
         let (picture_width, picture_height) = (self.width, self.height);
@@ -245,7 +245,7 @@ impl<'a> Layout<'a> {
         })
     }
 
-    /// The bytes that a chunk is stored in.
+    /// The stored bytes of a chunk.
     pub fn stored(&self, chunk: &Chunk) -> Result<&'a [u8]> {
         let (offset, size) = (self.offsets.integer(chunk.index), self.sizes.integer(chunk.index));
         offset
@@ -254,7 +254,7 @@ impl<'a> Layout<'a> {
             .ok_or_else(|| Error::format(format!("piece {} of the TIFF's pixels lies outside the file", chunk.index)))
     }
 
-    /// Refuses what so short a file cannot hold, before memory is taken for it.
+    /// Refuses dimensions that a file of this size cannot contain, before memory is allocated.
     fn check_room(&self, file_bytes: usize) -> Result<()> {
         let [across, down] = self.grid();
         let chunks = across * down * self.planes;
@@ -265,7 +265,7 @@ impl<'a> Layout<'a> {
                 self.sizes.len()
             )));
         }
-        let densest = if self.compression == Compression::None { 1 } else { DENSEST };
+        let densest = if self.compression == Compression::None { 1 } else { MAX_COMPRESSION };
         let pixel_bits = self.samples * self.planes * self.depth.bits();
         if self.width * self.height * pixel_bits / 8 > file_bytes.saturating_mul(densest) {
             return Err(Error::format("the TIFF header promises more than so short a file can hold"));
@@ -287,13 +287,13 @@ pub fn unsupported(what: impl std::fmt::Display) -> Error {
     )
 }
 
-/// The first value of a tag, which must be readable if the tag is there.
+/// The first value of a tag; an error if the tag is present but unreadable.
 fn integer(directory: &Directory, tag: u16, name: &str) -> Result<Option<u64>> {
     let unreadable = || Error::format(format!("the TIFF's {name} is not a whole number within the file"));
     directory.field(tag).map(|f| f.integer(0).ok_or_else(unreadable)).transpose()
 }
 
-/// Files of a camera's raw data are TIFF files too, whose first picture is a thumbnail.
+/// Raw files of cameras are TIFF files too; their first picture is a thumbnail.
 fn check_is_picture(directory: &Directory) -> Result<()> {
     let is_thumbnail = directory.integer(tag::NEW_SUBFILE_TYPE).unwrap_or(0) & 1 != 0;
     if is_thumbnail || directory.field(tag::DNG_VERSION).is_some() {
@@ -306,14 +306,14 @@ fn check_is_picture(directory: &Directory) -> Result<()> {
 }
 
 fn depth(directory: &Directory, samples: usize) -> Result<Depth> {
-    // One value may stand for all samples.
+    // A single value may apply to all samples.
     let all = |tag, name, default| -> Result<u64> {
         let Some(field) = directory.field(tag) else { return Ok(default) };
         let first = field.integer(0).ok_or_else(|| missing(name))?;
         let is_same = (0..field.len().min(samples)).all(|i| field.integer(i) == Some(first));
         if is_same { Ok(first) } else { Err(unsupported(format_args!("samples of unequal {name}"))) }
     };
-    // 1 = unsigned, 2 = signed, 3 = floating point, 4 = of no known kind.
+    // 1 = unsigned, 2 = signed, 3 = floating point, 4 = undefined.
     let (bits, format) = (all(tag::BITS, "BitsPerSample", 1)?, all(tag::SAMPLE_FORMAT, "SampleFormat", 1)?);
     match (format, bits) {
         (1 | 4, 1 | 2 | 4) if samples == 1 => Ok(Depth::Bits(bits as u8)),
@@ -352,7 +352,7 @@ fn colour<'a>(directory: &Directory<'a>, photometric: u64, depth: Depth) -> Resu
     }
 }
 
-/// Whether a sample after the colours is alpha. The tag says so; without it, the fourth of four is.
+/// The meaning of a sample after the colours. The tag states it; without the tag, the fourth of four samples is alpha.
 fn alpha(directory: &Directory, colour: Colour, samples: usize) -> Result<Option<Alpha>> {
     let colours = match colour {
         Colour::Grey { .. } | Colour::Palette(_) => 1,

@@ -1,9 +1,10 @@
 //! TIFF files: grey, RGB, palette and CMYK, integers of 1 to 32 bits and floating point of 16 to 64, with or without
-//! alpha, in strips or tiles, as they are or packed with LZW, deflate or PackBits, under any predictor. The first
-//! picture is read.
+//! alpha, in strips or tiles, uncompressed or with LZW, deflate or PackBits, with any predictor. The first picture is
+//! read.
 //!
-//! The crate `tiff` takes memory by the word of the file and prints, so the tags are read here, and checked before
-//! memory is taken. Not read, and said by name: JPEG and fax compression, YCbCr, CIELAB, and the raw data of cameras.
+//! The crate `tiff` trusts the file when it allocates memory, and prints; therefore this module reads the tags and
+//! checks them before it allocates. Not read, with an error that names it: JPEG and fax compression, YCbCr, CIELAB,
+//! and the raw data of cameras.
 //!
 //! TIFF revision 6.0 (Adobe, 1992); floating-point predictor: Adobe Photoshop TIFF technical note 3 (2005).
 
@@ -14,9 +15,9 @@ mod layout;
 mod tests;
 
 use super::colour::{srgb_to_linear, srgb8_table};
-use super::io::Encoding;
+use super::limits::Encoding;
 use super::photo::{Orientation, Upright};
-use super::{Image, room, try_vec};
+use super::{Image, memory, try_vec};
 use crate::error::{Error, Result};
 use chunk::{sample, undo_predictor, unpack};
 use ifd::{Ifds, Order};
@@ -34,10 +35,10 @@ pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     Ok((layout.width, layout.height, layout.channels()))
 }
 
-/// Bytes that reading the first picture takes beside it.
+/// Bytes of memory for reading the first picture, in addition to it.
 pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
     let (layout, _) = layout(bytes)?;
-    Ok(room::UNPACKING + layout.chunk_bytes() + layout.row_bytes())
+    Ok(memory::UNPACKING + layout.chunk_bytes() + layout.row_bytes())
 }
 
 /// Whether the samples of the first picture are floating-point numbers.
@@ -54,7 +55,7 @@ pub(super) fn profile(bytes: &[u8]) -> Option<&[u8]> {
 /// The first picture, as linear values.
 pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
     let (layout, order) = layout(bytes)?;
-    room::check_unpacking()?;
+    memory::check_unpacking()?;
     let mut out = Upright::new(layout.width, layout.height, layout.channels(), orientation)?;
     let mut unpacked = try_vec(layout.chunk_bytes(), 0u8)?;
     let mut spare = try_vec(layout.row_bytes(), 0u8)?;
@@ -71,7 +72,7 @@ pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation)
     Ok(image)
 }
 
-/// Puts the samples of a row of a chunk where they belong: colours first, alpha last, all as they are encoded.
+/// Writes the samples of a row of a chunk to their positions: colours first, alpha last, still encoded.
 fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Chunk) {
     let stored = layout.samples;
     let value = |i: usize| sample(row, i, layout.depth, order);
@@ -80,7 +81,7 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
         let pixel = out.pixel(at.x + x, at.y);
         let last = pixel.len() - 1;
         match layout.colour {
-            // Each sample has chunks of its own.
+            // Each sample has its own chunks.
             _ if stored == 1 && at.plane > 0 => pixel[if at.plane == colours { last } else { at.plane }] = value(x),
             Colour::Palette(map) => {
                 let size = 1 << layout.depth.bits();
@@ -112,11 +113,11 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
     }
 }
 
-/// Decodes colours that have been put in place, once they have been divided by alpha where they were multiplied by it.
+/// Decodes the colours after all are in place; divides them by alpha first if they were multiplied by it.
 fn finish(image: &mut Image, layout: &Layout, encoding: Encoding) {
     let is_curved = encoding == Encoding::Srgb && !layout.depth.is_float();
     let is_associated = layout.alpha == Some(Alpha::Associated);
-    // A colour of 8 bits is one of 256.
+    // An 8-bit colour has 256 values: use a table.
     let table =
         (layout.depth == Depth::U8 && !is_associated && !matches!(layout.colour, Colour::Cmyk | Colour::Palette(_)))
             .then(srgb8_table);

@@ -7,7 +7,7 @@ use crate::image::io::Encoding;
 use crate::image::photo::Orientation;
 use half::f16;
 
-/// A picture as it is to be stored.
+/// The picture to be stored.
 #[derive(Clone)]
 struct Picture {
     order: Order,
@@ -19,7 +19,7 @@ struct Picture {
     compression: u16,
     predictor: u16,
     is_planar: bool,
-    /// Rows of a strip, or the size of a tile.
+    /// Rows per strip, or the size of a tile.
     strip: usize,
     tile: Option<[usize; 2]>,
     more: Vec<Entry>,
@@ -47,7 +47,7 @@ impl Picture {
         ((x * 37 + y * 11 + s * 71) % 101) as f64 / 100.0
     }
 
-    /// A sample in the order of the file.
+    /// The bytes of a sample in the file.
     fn stored(&self, value: f64) -> Vec<u8> {
         let (_, u16, u32) = writers(self.order);
         match self.depth {
@@ -62,7 +62,7 @@ impl Picture {
         }
     }
 
-    /// What comes back of a value.
+    /// The value that is read back.
     fn kept(&self, value: f64) -> f32 {
         let steps = match self.depth {
             (_, 3) => return if self.depth.0 == 16 { f16::from_f64(value).to_f32() } else { value as f32 },
@@ -72,7 +72,7 @@ impl Picture {
         ((value * steps).round() / steps) as f32
     }
 
-    /// A chunk before it is packed: rows of as many samples, those outside of the picture 0.
+    /// A chunk before compression: rows of samples, with 0 outside of the picture.
     fn rows(&self, [x0, y0]: [usize; 2], [width, height]: [usize; 2], samples: std::ops::Range<usize>) -> Vec<Vec<u8>> {
         let row = |y: usize| {
             let mut out: Vec<Vec<u8>> = vec![];
@@ -83,7 +83,7 @@ impl Picture {
             if self.depth.0 >= 8 {
                 return self.predict(&out, samples.len());
             }
-            // Several samples to a byte, the first highest.
+            // Several samples per byte, the first in the highest bits.
             let bits = usize::from(self.depth.0);
             let per = 8 / bits;
             out.chunks(per).map(|c| (0..c.len()).fold(0, |b, k| b | c[k][0] << (8 - bits * (k + 1)))).collect()
@@ -189,7 +189,7 @@ impl Picture {
         [structure(self.order, &entries(&offsets)), chunks.concat()].concat()
     }
 
-    /// Checks that the file gives its samples back, each channel as `expected` has it.
+    /// Checks that reading returns the samples of each channel as `expected` computes them.
     fn check(&self, channels: usize, expected: impl Fn(&Self, usize, usize, usize) -> f32) {
         let file = self.file();
         assert_eq!(probe(&file).unwrap(), (self.size[0], self.size[1], channels));
@@ -278,7 +278,7 @@ fn integers_are_decoded_as_srgb_and_floating_point_is_linear() {
             assert!((v - wanted).abs() < 1e-6);
         }
     }
-    // Turned while it is read: the last row is the first column.
+    // Rotated while it is read: the last row becomes the first column.
     let picture = Picture::new(3, 8, 1, 2);
     let image = decode(&picture.file(), Encoding::Linear, Orientation::new(6).unwrap()).unwrap();
     assert_eq!((image.width, image.height), (5, 7));
@@ -291,10 +291,10 @@ fn truncated_and_lying_files_are_errors() {
         let file = Picture { compression, ..Picture::new(3, 16, 1, 2) }.file();
         for cut in 0..file.len() {
             let error = decode(&file[..cut], Encoding::Srgb, Orientation::UPRIGHT);
-            // The last bytes of a packed strip may say no more than that it ends.
+            // The last bytes of a compressed strip may contain only the end mark.
             assert!(error.is_err() || cut + 6 > file.len() && compression != 1, "{compression} cut at {cut}");
         }
-        // Every byte of the head with other values: an error or a picture of no more than the file can hold.
+        // Change every byte of the header: the result is an error, or a picture that the file can contain.
         let plain = Picture { compression, size: [7, 5], ..Picture::new(3, 16, 1, 2) }.file();
         for at in 0..plain.len() {
             for value in [0, 1, 2, 5, 8, 32, 127, 255] {
@@ -306,7 +306,7 @@ fn truncated_and_lying_files_are_errors() {
             }
         }
     }
-    // Sides, pieces and samples of absurd size, none of which may take memory.
+    // Absurd sizes, counts and samples, none of which may cause an allocation.
     for (tag, value) in [(256, 60_000), (257, 1 << 20), (257, 60_000), (277, 60_000), (322, 1 << 20), (323, 0)] {
         let tiled = Picture { tile: Some([16, 16]), compression: 8, ..Picture::new(3, 8, 1, 2) };
         let mut file = tiled.file();
@@ -336,7 +336,7 @@ fn what_is_not_read_is_named() {
         let error = probe(&picture.file()).unwrap_err();
         assert!(error.kind == ErrorKind::Unsupported && error.message.contains(name), "{error}");
     }
-    // The tag of the compression, which the writer knows no other of.
+    // The tag of the compression; the writer supports no other.
     let mut file = plain.file();
     assert_eq!(file[46..48], bytes(259));
     for (code, name) in [(7, "JPEG"), (4, "fax"), (50_000, "Zstandard")] {

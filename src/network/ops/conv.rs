@@ -3,8 +3,8 @@
 
 use super::super::read::unsupported;
 use super::super::tensor::{MemoryBudget, Tensor};
+use super::call::{Call, Settings};
 use super::pool::{Padding, Window};
-use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::simd::widest;

@@ -1,7 +1,7 @@
 //! Element-wise operators, with numpy's broadcasting.
 
 use super::super::tensor::{Data, MemoryBudget, Tensor, count};
-use super::{Call, Settings};
+use super::call::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_collect;

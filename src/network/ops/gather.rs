@@ -2,7 +2,7 @@
 
 use super::super::read::unsupported;
 use super::super::tensor::{Data, Tensor, count};
-use super::Call;
+use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 

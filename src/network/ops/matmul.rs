@@ -1,8 +1,8 @@
 //! Matrix products: four rows by sixteen columns are accumulated in registers, in order along the shared axis.
 
 use super::super::tensor::{Tensor, count};
+use super::call::{Call, Settings};
 use super::elementwise::Spread;
-use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_collect;
@@ -89,19 +89,10 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
         return Err(wrong());
     }
 
-    // Pair the matrices of both stacks by broadcasting.
-    let numbered = |shape: &[usize]| -> Result<Tensor> {
-        Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))
-    };
-    let (numbers_a, numbers_b) = (numbered(&a.shape[..stack_a])?, numbered(&b.shape[..stack_b])?);
-    let spread = Spread::of(&[&numbers_a, &numbers_b])?;
-    let of_a = spread.all(0, numbers_a.as_integers()?, 0, call)?;
-    let of_b = spread.all(1, numbers_b.as_integers()?, 0, call)?;
-    let (of_a, of_b) = if spread.shape.is_empty() { (vec![0], vec![0]) } else { (of_a, of_b) };
+    let (mut shape, [of_a, of_b]) = pairs(&a.shape[..stack_a], &b.shape[..stack_b], call)?;
     let stack = of_a.len();
 
     let (values_a, values_b) = (a.as_floats()?, b.as_floats()?);
-    let mut shape = spread.shape.clone();
     shape.extend([rows, columns]);
     count(&shape)?;
     // Process rows in fours; pad the last four, and cut the padding off afterwards.
@@ -132,6 +123,19 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
         shape.remove(axis);
     }
     Ok(Tensor::floats(shape, out))
+}
+
+/// Pairs the matrices of two stacks by broadcasting: the shape of the result, and the index of each matrix in its stack.
+fn pairs(a: &[usize], b: &[usize], call: &Call) -> Result<(Vec<usize>, [Vec<i64>; 2])> {
+    let numbered = |shape: &[usize]| -> Result<Tensor> {
+        Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))
+    };
+    let (numbers_a, numbers_b) = (numbered(a)?, numbered(b)?);
+    let spread = Spread::of(&[&numbers_a, &numbers_b])?;
+    let of_a = spread.all(0, numbers_a.as_integers()?, 0, call)?;
+    let of_b = spread.all(1, numbers_b.as_integers()?, 0, call)?;
+    let indices = if spread.shape.is_empty() { [vec![0], vec![0]] } else { [of_a, of_b] };
+    Ok((spread.shape, indices))
 }
 
 /// Some rows of the left matrix, and the right matrix.

@@ -1,6 +1,7 @@
 //! The operators: parsing from a node, and dispatch. Their semantics are those of the ONNX operator specification,
 //! <https://onnx.ai/onnx/operators/>.
 
+mod call;
 mod conv;
 mod elementwise;
 mod gather;
@@ -11,13 +12,14 @@ mod reduce;
 mod resize;
 mod shapes;
 
-use super::read::{Attribute, NodeMessage, unsupported};
-use super::tensor::{MemoryBudget, Tensor};
+pub use call::Call;
+
+use super::read::{NodeMessage, unsupported};
+use super::tensor::Tensor;
 use crate::error::{Error, Result};
-use crate::job::Job;
+use call::Settings;
 use elementwise::{Binary, Unary};
 pub use resize::cubic_planes as resize_cubic;
-use std::collections::HashMap;
 
 /// An operator with its attributes. Attributes that newer files give as inputs are `Option`s.
 pub enum Op {
@@ -57,77 +59,6 @@ pub enum Op {
     DepthToSpace { block: usize, columns_first: bool },
 }
 
-/// The arguments of a node's execution.
-pub struct Call<'a> {
-    pub inputs: Vec<Option<&'a Tensor>>,
-    pub budget: MemoryBudget,
-    /// Number of the node's outputs.
-    pub outputs: usize,
-    pub job: Job<'a>,
-}
-
-impl<'a> Call<'a> {
-    /// A required input.
-    pub fn input(&self, k: usize) -> Result<&'a Tensor> {
-        self.optional(k).ok_or_else(|| Error::format(format!("input {k} is missing")))
-    }
-
-    pub fn optional(&self, k: usize) -> Option<&'a Tensor> {
-        self.inputs.get(k).copied().flatten()
-    }
-
-    /// Integers from an attribute, or else from an optional input.
-    pub fn integers(&self, setting: &Option<Vec<i64>>, k: usize) -> Result<Option<Vec<i64>>> {
-        match (setting, self.optional(k)) {
-            (Some(values), _) => Ok(Some(values.clone())),
-            (None, Some(tensor)) => tensor.as_integers().map(|values| Some(values.to_vec())),
-            (None, None) => Ok(None),
-        }
-    }
-}
-
-/// The attributes of a node.
-pub struct Settings<'a, 'b>(&'b HashMap<&'a str, Attribute<'a>>);
-
-impl<'a> Settings<'a, '_> {
-    pub fn integer(&self, name: &str, default: i64) -> i64 {
-        self.0.get(name).and_then(|a| a.integer).unwrap_or(default)
-    }
-
-    pub fn float(&self, name: &str, default: f32) -> f32 {
-        self.0.get(name).and_then(|a| a.float).unwrap_or(default)
-    }
-
-    pub fn text(&self, name: &str, default: &'a str) -> &'a str {
-        self.0.get(name).and_then(|a| a.text).unwrap_or(default)
-    }
-
-    pub fn integers(&self, name: &str) -> Option<Vec<i64>> {
-        self.0.get(name).map(|a| a.integers.clone())
-    }
-
-    /// Exactly `N` integers from 0 to 65536.
-    pub fn sizes<const N: usize>(&self, name: &str, default: usize) -> Result<[usize; N]> {
-        let Some(values) = self.integers(name).filter(|values| !values.is_empty()) else { return Ok([default; N]) };
-        let wrong = || Error::format(format!("{name} is {values:?}; {N} numbers from 0 to 65536 are needed"));
-        let sizes: Vec<usize> =
-            values.iter().filter_map(|&v| usize::try_from(v).ok().filter(|v| *v <= 65536)).collect();
-        sizes.try_into().map_err(|_| wrong())
-    }
-
-    /// Checks that an attribute has the only supported value.
-    pub fn only(&self, name: &str, value: i64) -> Result<()> {
-        match self.integer(name, value) {
-            found if found == value => Ok(()),
-            found => Err(unsupported(format_args!("{name} = {found}"))),
-        }
-    }
-
-    pub fn tensor(&self, name: &str) -> Option<&Tensor> {
-        self.0.get(name).and_then(|a| a.tensor.as_ref())
-    }
-}
-
 impl Op {
     /// Parses the attributes of a node; `constants` are its inputs known in advance.
     pub fn read(node: &NodeMessage, opset: i64, constants: &[Option<&Tensor>]) -> Result<Self> {
@@ -138,7 +69,6 @@ impl Op {
         if let Some(op) = Unary::read(node.kind, &at).map(Self::Unary).or(Binary::read(node.kind).map(Self::Binary)) {
             return Ok(op);
         }
-        let axes = || at.integers("axes");
         Ok(match node.kind {
             "Constant" => Self::Constant(constant(&at)?),
             "Clip" => Self::Clip {
@@ -173,6 +103,14 @@ impl Op {
                 Self::Reduce(reduce::Reduce::read(node.kind, &at))
             }
             "Resize" | "Upsample" => Self::Resize(resize::Resize::read(node.kind, &at, opset, constants)?),
+            _ => Self::read_rearranging(node, &at)?,
+        })
+    }
+
+    /// Parses an operator that rearranges items or computes shapes.
+    fn read_rearranging(node: &NodeMessage, at: &Settings) -> Result<Self> {
+        let axes = || at.integers("axes");
+        Ok(match node.kind {
             "Pad" => Self::Pad {
                 mode: gather::Pad::read(at.text("mode", "constant"))?,
                 pads: at.integers("pads"),

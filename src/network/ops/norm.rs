@@ -1,7 +1,7 @@
 //! Normalisations and the softmax.
 
 use super::super::tensor::Tensor;
-use super::Call;
+use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 

@@ -2,7 +2,7 @@
 
 use super::super::read::unsupported;
 use super::super::tensor::Tensor;
-use super::{Call, Settings};
+use super::call::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 

@@ -1,7 +1,7 @@
 //! Sums, means and extrema along axes.
 
 use super::super::tensor::{Tensor, count};
-use super::{Call, Settings};
+use super::call::{Call, Settings};
 use crate::error::Result;
 
 pub struct Reduce {

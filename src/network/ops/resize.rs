@@ -3,7 +3,7 @@
 
 use super::super::read::unsupported;
 use super::super::tensor::{MemoryBudget, Tensor, count};
-use super::{Call, Settings};
+use super::call::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::job::Job;

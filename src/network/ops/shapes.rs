@@ -1,7 +1,7 @@
 //! Operators on shapes: reshape, query, join and split. Most of them move no data.
 
 use super::super::tensor::{Data, Tensor, count, normal_axis};
-use super::Call;
+use super::call::Call;
 use super::gather::shape_from;
 use crate::error::{Error, Result};
 

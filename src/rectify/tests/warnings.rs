@@ -119,7 +119,7 @@ fn a_footprint_has_the_magnification_and_the_angle_to_the_plane() {
 
 #[test]
 fn a_ceiling_seen_nearly_edge_on_raises_a_warning() {
-    // The part of the ceiling that begins so many pixels above the horizon, and is as high.
+    // The part of the ceiling that begins `above` pixels above the horizon and is equally high.
     let seen = |above: f64| {
         let camera = camera(0.5, 0.0);
         let view = view(&camera, 0.1);

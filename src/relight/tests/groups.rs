@@ -149,7 +149,7 @@ fn other_light_that_is_too_bright_is_named() {
     assert!(solution.unreachable.unwrap().contains("other lights alone"));
     // Errors name the parameter.
     for bad in [
-        GroupParams { evenness: 0.0, ..GroupParams::default() },
+        GroupParams { regularisation: 0.0, ..GroupParams::default() },
         GroupParams { max_scale: vec![1.0], ..GroupParams::default() },
         GroupParams { max_scale: vec![1.0, f64::NAN], ..GroupParams::default() },
     ] {

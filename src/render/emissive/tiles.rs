@@ -13,8 +13,7 @@ use glam::{DMat2, DVec2, Vec2};
 /// Side of a tile in texels.
 pub const SIDE: usize = 8;
 
-/// Largest number of texels (or four times that of the texture, if more) of a triangle that is divided. [judged, not
-/// recorded]
+/// Largest number of texels (or four times that of the texture, if more) of a triangle that is divided. [convention]: bounds memory.
 const MAX_TEXELS: f64 = (1 << 26) as f64;
 /// Texture coordinates beyond this many texels cannot separate neighbouring texels in single precision. [rounding]
 const MAX_TEXEL_COORDINATE: f64 = 8e6;
@@ -91,21 +90,22 @@ impl Tiling {
     pub fn may_emit(&self, texture: &Texture, [column, row]: [usize; 2]) -> bool {
         let first = self.first_texel(column, row);
         rectangle(first, SIDE as f64).overlap(&self.triangle) != Overlap::None
-            && !self.within(first).is_some_and(|texel| texture.is_black(texel, SIDE))
+            && !self.texel_inside(first).is_some_and(|texel| texture.is_black(texel, SIDE))
     }
 
     /// The texel of the texture at the tile's first texel, if the whole tile lies within the texture.
-    fn within(&self, first: DVec2) -> Option<[usize; 2]> {
+    fn texel_inside(&self, first: DVec2) -> Option<[usize; 2]> {
         let last = first + (SIDE - 1) as f64;
-        let within = first.min_element() >= 0.0 && last.x < f64::from(self.size.x) && last.y < f64::from(self.size.y);
-        within.then_some([first.x as usize, first.y as usize])
+        let is_inside =
+            first.min_element() >= 0.0 && last.x < f64::from(self.size.x) && last.y < f64::from(self.size.y);
+        is_inside.then_some([first.x as usize, first.y as usize])
     }
 
     /// A tile of emitter number `index` with the bounds of its light; of zero intensity if it is dark.
     pub fn tile(&self, index: u32, emitter: &Emitter, texture: &Texture, [column, row]: [usize; 2]) -> (Tile, Bounds) {
         let first = self.first_texel(column, row);
         let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
-        let within = self.within(first);
+        let first_texel = self.texel_inside(first);
         // Area of a texel in m².
         let doubled = (self.triangle[1] - self.triangle[0]).perp_dot(self.triangle[2] - self.triangle[0]).abs();
         let scale = 2.0 * f64::from(emitter.area) / doubled;
@@ -114,7 +114,7 @@ impl Tiling {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (i, running) in sums.iter_mut().enumerate() {
             let texel = first + DVec2::new((i % SIDE) as f64, (i / SIDE) as f64);
-            let colour = match within {
+            let colour = match first_texel {
                 Some([x, y]) => texture.texel(x + i % SIDE, y + i / SIDE),
                 None => texture.continued(texel.as_vec2()),
             };
@@ -157,15 +157,15 @@ impl Tiling {
         let texel = self.first_texel(tile.column as usize, tile.row as usize)
             + DVec2::new((index % SIDE) as f64, (index / SIDE) as f64);
         let low = if index == 0 { 0.0 } else { f64::from(shares[index - 1]) };
-        let within = ((u - low) / (f64::from(shares[index]) - low)).clamp(0.0, 1.0);
-        let inside = texel + DVec2::new(within, f64::from(v));
+        let remainder = ((u - low) / (f64::from(shares[index]) - low)).clamp(0.0, 1.0);
+        let inside = texel + DVec2::new(remainder, f64::from(v));
         let point = if tile.whole {
             inside
         } else {
             let texel = rectangle(texel, 1.0);
             match texel.overlap(&self.triangle) {
                 Overlap::Whole => inside,
-                _ => Polygon::clipped(&self.triangle, &texel).sample((within, v))?,
+                _ => Polygon::clipped(&self.triangle, &texel).sample((remainder, v))?,
             }
         };
         Some(self.barycentric(point))

@@ -22,15 +22,14 @@ use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::params::Params;
 
-/// Paths per pixel of the first complete pass. [judged, not recorded]
+/// Paths per pixel of the first complete pass. [origin not recorded]
 const FIRST_PASS_PATHS: u32 = 4;
-/// Paths per pixel before the first adaptive decision. [judged, not recorded]
-const MIN_UNIFORM_PATHS: u32 = 16;
+/// Paths per pixel before the first adaptive decision. [origin not recorded]
+pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Largest number of paths per pixel in a tile, relative to `samples`. Without a limit, light that few paths find (a
-/// caustic, the glossy reflection of a small lamp) would take all paths. [judged, not recorded]
+/// caustic, the glossy reflection of a small lamp) would take all paths. [origin not recorded]
 const MAX_TILE_RATIO: u32 = 64;
-/// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [judged, not
-/// recorded]
+/// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [convention: the target error is defined with it]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
 
 /// Chooses the passes of a render.

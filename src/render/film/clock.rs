@@ -3,7 +3,7 @@
 use crate::error::Result;
 use std::time::{Duration, Instant};
 
-/// Smallest time between two published images, relative to the time that publishing takes. [judged, not recorded]
+/// Smallest time between two published images, relative to the time that publishing takes. [origin not recorded]
 const PUBLISH_RATIO: u32 = 10;
 
 /// The time that a render has taken, and its budget.

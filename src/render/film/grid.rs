@@ -8,7 +8,7 @@ pub const TILE: usize = 8;
 /// Number of pixels in a tile.
 pub const AREA: usize = TILE * TILE;
 
-/// Largest number of pixels in the coarsest image. [judged, not recorded]
+/// Largest number of pixels in the coarsest image. [origin not recorded]
 const COARSE_PIXELS: usize = 1024;
 
 /// An image divided into tiles, row by row; the last tiles may extend beyond its right and lower borders.

@@ -13,6 +13,7 @@
 //! therefore measured at three numbers of paths; at the largest of them only for some of the tiles, selected in
 //! proportion to their part of the variance at the second.
 
+pub use super::adaptive::MIN_UNIFORM_PATHS;
 use super::eye::Eye;
 use super::grid::{AREA, Grid};
 use super::pass::Pass;
@@ -32,13 +33,13 @@ use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-/// Largest number of tiles to render. [judged, not recorded]
+/// Largest number of tiles to render. [origin not recorded]
 const MAX_TILES: usize = 128;
 /// Paths per pixel in three passes: each replication has a power of four, at which points are stratified best.
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
-/// Largest number of tiles with the last number of paths. [judged, not recorded]
+/// Largest number of tiles with the last number of paths. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Selection weight of a tile without variance, relative to the mean. [judged, not recorded]
+/// Selection weight of a tile without variance, relative to the mean. [origin not recorded]
 const MIN_CHANCE: f64 = 0.5;
 /// Separates the random numbers of the pilot from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
@@ -220,7 +221,7 @@ struct SystematicSampler {
 }
 
 impl SystematicSampler {
-    /// `count` marks along chances of this sum.
+    /// Sets `count` marks along a cumulative sum that ends at `sum`.
     fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
         let step = sum / count as f64;
         Self { step, next: rng.next_f64() * step, end: 0.0 }
@@ -230,11 +231,11 @@ impl SystematicSampler {
     /// An item with a chance longer than a step is selected more than once.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
-        let mut met = 0.0;
+        let mut marks = 0.0;
         while self.next < self.end {
-            (self.next, met) = (self.next + self.step, met + 1.0);
+            (self.next, marks) = (self.next + self.step, marks + 1.0);
         }
-        if met > 0.0 { met * self.step / chance } else { 0.0 }
+        if marks > 0.0 { marks * self.step / chance } else { 0.0 }
     }
 }
 

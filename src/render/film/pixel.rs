@@ -8,7 +8,7 @@
 
 use glam::{DVec3, Vec3};
 
-/// Number of independent scramblings per pixel. [judged, not recorded]
+/// Number of independent scramblings per pixel. [origin not recorded]
 pub const REPLICATIONS: u32 = 4;
 
 /// Sums of the paths so far.

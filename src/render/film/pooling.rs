@@ -30,7 +30,7 @@ pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
     Ok(pooled)
 }
 
-/// Weighted mean of the finite values around a position on a line of `n`, per channel; infinite if there are none.
+/// Weighted mean of the finite values around a position on a line of `n`, per channel; infinite if no value is finite.
 fn mean_around<'a>(at: usize, n: usize, out: &mut [f32], value: impl Fn(usize) -> &'a [f32]) {
     let radius = WEIGHTS.len() - 1;
     for (channel, out) in out.iter_mut().enumerate() {

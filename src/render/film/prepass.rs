@@ -19,9 +19,9 @@ use crate::render::world::World;
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
 
-/// Paths of each sampled pixel for the median radiance of the image. [judged, not recorded]
+/// Paths of each sampled pixel for the median radiance of the image. [origin not recorded]
 const PATHS: u32 = 4;
-/// Distance between the sampled pixels of a tile, with one path each. [judged, not recorded]
+/// Distance between the sampled pixels of a tile, with one path each. [origin not recorded]
 const STEP: usize = 2;
 /// Separates the random numbers of the prepass from those of the image.
 const SALT: u64 = 0x7375_7276_6579_6564;

@@ -12,9 +12,9 @@ use crate::image::try_collect;
 use crate::job::Job;
 use glam::{DVec3, Vec3};
 
-/// Number of paths that the prior, the mean of the tile, is worth. [judged, not recorded]
+/// Number of paths that the prior, the mean of the tile, is worth. [origin not recorded]
 const PRIOR_PATHS: f64 = 8.0;
-/// Largest ratio of the median radiance to a pixel's radiance, and reciprocal of the smallest. [judged, not recorded]
+/// Largest ratio of the median radiance to a pixel's radiance, and reciprocal of the smallest. [origin not recorded]
 const MAX_WEIGHT: f64 = 50.0;
 
 /// Median over the tiles of their mean radiance, per channel; `None` without any paths.
@@ -55,7 +55,7 @@ pub struct RouletteWeights {
 }
 
 impl RouletteWeights {
-    /// From the pixels of a tile, in an image of this [`median_radiance`].
+    /// The weights of a tile from its pixels, with the [`median_radiance`] of the image.
     pub fn of(tile: &[Pixel], median_radiance: DVec3) -> Self {
         Self {
             median_radiance,

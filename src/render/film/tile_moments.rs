@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// Largest number of paths of all tiles together, for tiles of more than the minimum. [judged, not recorded]
+/// Largest number of paths of all tiles together, for tiles of more than the minimum. [origin not recorded]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
 /// Largest and smallest number of paths along each side of a tile: powers of two, as its side is.
 const MAX_ALONG: usize = TILE;

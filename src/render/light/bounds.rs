@@ -188,14 +188,14 @@ impl BoundsLanes {
             let widened = m.x * self.half[0][i] + m.y * self.half[1][i] + m.z * self.half[2][i];
             let received = (reached + widened) * inverse;
             let over_square = smaller(inverse * inverse, self.inverse_square[i]);
-            importance[i] = self.intensity[i] * within(emitted) * within(received) * over_square;
+            importance[i] = self.intensity[i] * clamp_cosine(emitted) * clamp_cosine(received) * over_square;
         }
         importance
     }
 }
 
 /// Clamps the bound of a cosine to [`MARGIN`, 1]; 0 only where it is clearly negative.
-fn within(cosine: f32) -> f32 {
+fn clamp_cosine(cosine: f32) -> f32 {
     let positive = smaller(larger(cosine, MARGIN), 1.0);
     if cosine < -MARGIN { 0.0 } else { positive }
 }

@@ -25,12 +25,12 @@ use tree::LightTree;
 pub struct Lights {
     pub emitters: Emitters,
     punctual: Vec<Punctual>,
-    /// Over the pieces of emitters, followed by the near punctual lights.
+    /// Selects among the pieces of emitters, followed by the near punctual lights.
     tree: LightTree,
     pieces: usize,
     /// The punctual lights at the leaves after the pieces.
     near: Vec<u32>,
-    /// Over all punctual lights; near ones have zero weight.
+    /// Selects among all punctual lights; the near ones have zero weight, because `tree` selects them.
     directional: Distribution,
     environment: Option<EnvironmentSampler>,
     /// Selection probabilities of the groups: near lights, directional lights, environment.
@@ -106,20 +106,20 @@ impl Lights {
     #[inline]
     pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {
         let [near, directional, environment] = self.groups;
-        let within = |start: f64, share: f64| ((u - start) / share).clamp(0.0, 1.0 - f64::EPSILON);
+        let rescaled = |start: f64, share: f64| ((u - start) / share).clamp(0.0, 1.0 - f64::EPSILON);
         if u < near {
-            let (light, pmf, rest) = self.tree.sample(receiver, within(0.0, near))?;
+            let (light, pmf, rest) = self.tree.sample(receiver, rescaled(0.0, near))?;
             let pmf = pmf * near as f32;
             match light.checked_sub(self.pieces) {
                 None => self.sample_surface(scene, receiver, light, pmf, (rest, v)),
                 Some(i) => self.sample_punctual(receiver, self.near[i], pmf),
             }
         } else if u < near + directional {
-            let index = self.directional.sample(within(near, directional)).0;
+            let index = self.directional.sample(rescaled(near, directional)).0;
             let pmf = directional * self.directional.pmf(index);
             self.sample_punctual(receiver, index as u32, pmf as f32)
         } else if environment > 0.0 {
-            let (direction, pdf) = self.environment.as_ref()?.sample(within(near + directional, environment), v);
+            let (direction, pdf) = self.environment.as_ref()?.sample(rescaled(near + directional, environment), v);
             let pdf = pdf * environment as f32;
             let emission = environment::radiance(scene.environment.as_ref()?, direction);
             Some(LightSample {

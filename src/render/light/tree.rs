@@ -14,7 +14,7 @@ use glam::{Vec3, Vec3A};
 const BINS: usize = 12;
 /// Below this depth, splits halve the number of lights, regardless of the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Smallest cluster that is split in parallel. [judged, not recorded]
+/// Smallest cluster that is split in parallel. [origin not recorded]
 const PARALLEL_FROM: usize = 1024;
 /// Marks a missing parent or child.
 const NONE: u32 = u32::MAX;

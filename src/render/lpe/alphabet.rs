@@ -3,7 +3,7 @@
 use super::parse::{Event, kind, mode};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::patches::Patches;
+use crate::image::regions::Regions;
 use crate::render::contribution::LightSource;
 use crate::scene::{Mesh, Scene, Texture, Wrap, texel_at};
 use glam::Vec2;
@@ -42,7 +42,7 @@ struct Lamps {
 struct LampTexture {
     size: [usize; 2],
     wrap: [Wrap; 2],
-    patches: Patches,
+    regions: Regions,
 }
 
 impl Alphabet {
@@ -96,7 +96,7 @@ impl Alphabet {
                     *class
                 }
             };
-            let lights = [*class].into_iter().chain((0..texture.patches.count).map(of_lamp)).collect();
+            let lights = [*class].into_iter().chain((0..texture.regions.count).map(of_lamp)).collect();
             Some(Lamps { texture, lights })
         });
         let lamps = lamps.collect();
@@ -129,8 +129,8 @@ impl Alphabet {
 
 impl Lamps {
     fn light(&self, uv: Vec2) -> u32 {
-        let LampTexture { size, wrap, patches } = &*self.texture;
-        self.lights[patches.labels[texel_at(uv, *size, *wrap)] as usize]
+        let LampTexture { size, wrap, regions } = &*self.texture;
+        self.lights[regions.labels[texel_at(uv, *size, *wrap)] as usize]
     }
 }
 
@@ -146,7 +146,7 @@ fn existing_labels(scene: &Scene, lamp_textures: &BTreeMap<usize, Arc<LampTextur
     existing.extend((0..scene.lights.len()).map(punctual_label));
     existing.insert(ENVIRONMENT.to_string());
     for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lamp_textures.get(&m.material)?))) {
-        existing.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
+        existing.extend((0..texture.regions.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
     }
     existing
 }
@@ -168,8 +168,8 @@ fn lamp_textures(
         let Some(map) = scene.materials.get(mesh.material).and_then(|m| m.emission_texture) else { continue };
         if !lamp_textures.contains_key(&mesh.material) {
             let Texture { image, wrap, .. } = &scene.textures[map.texture];
-            let (size, patches) = ([image.width, image.height], Patches::of(image)?);
-            lamp_textures.insert(mesh.material, Arc::new(LampTexture { size, wrap: *wrap, patches }));
+            let (size, regions) = ([image.width, image.height], Regions::of(image)?);
+            lamp_textures.insert(mesh.material, Arc::new(LampTexture { size, wrap: *wrap, regions }));
         }
     }
     Ok(lamp_textures)

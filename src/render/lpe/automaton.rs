@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub const DEAD: u16 = 0;
 
 /// Limits of the construction: states of the nondeterministic automaton, states before minimisation, transitions
-/// visited. [judged, not recorded]
+/// visited. [convention]: bounds time and memory.
 const MAX_NFA_STATES: usize = 20_000;
 const MAX_STATES: usize = 4096;
 const MAX_TRANSITIONS: usize = 20_000_000;

@@ -55,7 +55,7 @@ mod tests {
         sums.drain(|number, light| taken.push((number, light.x)));
         assert_eq!(taken, [(3, 10.0), (64, 4.0), (130, 1.0), (199, 16.0)]);
         sums.drain(|number, _| panic!("{number} was taken before"));
-        // Sums that were not taken do not show after `begin`.
+        // `begin` discards the sums that were not drained.
         sums.add(5, Vec3A::ONE);
         sums.begin(10);
         sums.drain(|number, _| panic!("{number} was forgotten"));

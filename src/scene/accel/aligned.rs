@@ -1,6 +1,6 @@
 //! Per-ray values shared by the box test and the triangle test.
 
-use super::Ray;
+use super::ray::Ray;
 use glam::{BVec4A, Vec4};
 
 /// A ray in registers of four lanes, the last lane being 0, with its dominant axis.

@@ -5,8 +5,9 @@ use super::leaves::{self, Leaves};
 use super::lines::Lines;
 use super::node::Child;
 use super::reinsert::Reinsertion;
+use super::traverse::{Accel, SHORT_STACK};
 use super::tree::Tree;
-use super::{Accel, SHORT_STACK, cluster, collapse};
+use super::{cluster, collapse};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::simd::Level;
@@ -16,33 +17,40 @@ use glam::{Vec3, Vec4};
 /// shares gain little [bench rays].
 const ROUNDS: [f32; 3] = [0.1, 0.1, 0.03];
 
-pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
-    if triangles.len() >= 1 << 31 {
-        return Err(Error::argument(format!("scene has {} triangles; at most 2^31 - 1 are allowed", triangles.len())));
+impl Accel {
+    /// Builds the structure. Degenerate triangles (without area or with non-finite corners) cannot be hit; they are
+    /// left out and counted. Call it on the library's own pool: the builder uses the current pool.
+    pub fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Self> {
+        if triangles.len() >= 1 << 31 {
+            return Err(Error::argument(format!(
+                "scene has {} triangles; at most 2^31 - 1 are allowed",
+                triangles.len()
+            )));
+        }
+        let leaves = leaves::gather(triangles, job)?;
+        let mut accel = Self {
+            lines: Lines::default(),
+            root: Child::EMPTY,
+            low: Vec3::ZERO,
+            high: Vec3::ZERO,
+            largest: Vec4::ZERO,
+            stack_need: SHORT_STACK,
+            dropped: leaves.dropped,
+            level: Level::widest(),
+        };
+        if leaves.list.is_empty() {
+            return Ok(accel);
+        }
+        (accel.low, accel.high) = (leaves.low, leaves.high);
+        accel.largest = leaves.low.abs().max(leaves.high.abs()).extend(0.0);
+        job.report(0.1);
+        let scale = leaves.scale;
+        let tree = binary_tree(leaves, accel.level, job.part(0.1, 0.8))?;
+        collapse::run(&Source { triangles, tree: &tree, scale }, &mut accel, job)?;
+        job.check()?;
+        job.report(1.0);
+        Ok(accel)
     }
-    let leaves = leaves::gather(triangles, job)?;
-    let mut accel = Accel {
-        lines: Lines::default(),
-        root: Child::EMPTY,
-        low: Vec3::ZERO,
-        high: Vec3::ZERO,
-        largest: Vec4::ZERO,
-        stack_need: SHORT_STACK,
-        dropped: leaves.dropped,
-        level: Level::widest(),
-    };
-    if leaves.list.is_empty() {
-        return Ok(accel);
-    }
-    (accel.low, accel.high) = (leaves.low, leaves.high);
-    accel.largest = leaves.low.abs().max(leaves.high.abs()).extend(0.0);
-    job.report(0.1);
-    let scale = leaves.scale;
-    let tree = binary_tree(leaves, accel.level, job.part(0.1, 0.8))?;
-    collapse::run(&Source { triangles, tree: &tree, scale }, &mut accel, job)?;
-    job.check()?;
-    job.report(1.0);
-    Ok(accel)
 }
 
 fn binary_tree(leaves: Leaves, level: Level, job: Job) -> Result<Tree> {

@@ -11,7 +11,7 @@ use super::lines::{Draft, Lines};
 use super::node::{Child, Node};
 use super::packet::{Packet, WIDTH};
 use super::tree::{Tree, half_area};
-use super::{Accel, pages};
+use super::{pages, traverse::Accel};
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 use glam::Vec3;

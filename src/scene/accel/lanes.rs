@@ -327,3 +327,19 @@ mod avx2 {
         }
     }
 }
+
+/// Removes and returns the lowest lane of a non-empty mask.
+#[inline(always)]
+pub(super) fn take_lowest(mask: &mut u32) -> usize {
+    let lane = mask.trailing_zeros() as usize & 7;
+    *mask &= *mask - 1;
+    lane
+}
+
+/// Removes and returns the highest lane of a non-empty mask.
+#[inline(always)]
+pub(super) fn take_highest(mask: &mut u32) -> usize {
+    let lane = mask.ilog2() as usize & 7;
+    *mask ^= 1 << lane;
+    lane
+}

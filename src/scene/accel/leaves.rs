@@ -4,11 +4,12 @@
 //! Meshes store the two halves of a quadrilateral consecutively. Their boxes nearly coincide, so separating them saves
 //! no ray; a shared leaf halves the work of building.
 
+use super::pages;
 use super::tree::half_area;
-use super::{Job, pages};
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_with_capacity;
+use crate::job::Job;
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;

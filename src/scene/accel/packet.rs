@@ -1,8 +1,8 @@
 //! Packets of eight triangles, and the watertight ray test against them (Woop, Benthin and Wald 2013).
 
-use super::Hit;
 use super::aligned::Aligned;
 use super::lanes::{Lanes, Row};
+use super::ray::Hit;
 use glam::Vec3;
 
 /// Hits nearer than this share of a triangle's depth along the ray are rounding errors: sixteen errors of 2^-24

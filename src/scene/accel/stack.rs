@@ -2,7 +2,7 @@
 //!
 //! Its maximum depth is known once a structure is built, so no bounds are checked per ray.
 
-use super::lanes::{Lanes, Row};
+use super::lanes::{Lanes, Row, take_lowest};
 use super::node::Child;
 use std::mem::MaybeUninit;
 
@@ -55,7 +55,7 @@ impl<'a> Stack<'a> {
         let bottom = self.len;
         let mut nearest = entry(first);
         while mask != 0 {
-            let other = entry(super::take_lowest(&mut mask));
+            let other = entry(take_lowest(&mut mask));
             let farther = nearest.max(other);
             nearest = nearest.min(other);
             // Insertion sort: sink below the nearer ones.

@@ -1,8 +1,14 @@
+use super::aligned::Aligned;
+use super::lanes::Baseline;
+use super::node::Node;
+use super::packet::{Packet, TriangleRay};
+use super::traverse::is_better;
 use super::*;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use crate::rng::Rng;
 use crate::simd::forced;
+use glam::Vec3;
 use std::sync::{Arc, Mutex};
 
 fn build(triangles: &[[Vec3; 3]]) -> Accel {
@@ -288,7 +294,8 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
     assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
 }
 
-/// Three million triangles in a room, and the same with one more far away, relative to which they all lie in one cell.
+/// Three million triangles in a room; then with an additional triangle so far away that the room lies in a single cell
+/// of the grid.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_cancel_is_heard_within_50_ms_while_three_million_triangles_are_built() {

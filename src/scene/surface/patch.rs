@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const COS_ANGLE: f64 = 0.999_390_827;
 /// Maximum distance of its corners from the plane, relative to the diagonal of the object [origin not recorded].
 const OFFSET: f64 = 5e-4;
-/// Side of a cell in the grid of directions: about 2° [origin not recorded].
+/// Side of a cell in the grid of directions: the angle of [`COS_ANGLE`] [convention].
 const DIRECTION_CELL: f64 = 0.035;
 /// Maximum number of directions examined, largest area first.
 const DIRECTIONS: usize = 32;
@@ -18,8 +18,8 @@ const DIRECTIONS: usize = 32;
 const PLANES: usize = 16;
 const MIN_AREA: f64 = 0.05;
 
-/// Cosines of 75 and 5 degrees: triangles between them belong neither to the plane nor to the edges of a slab [origin
-/// not recorded].
+/// Cosines of 75 and 5 degrees: triangles between them belong neither to the plane nor to the edges of a slab
+/// [convention: luxfer_surface].
 const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
 /// Coplanar triangles.

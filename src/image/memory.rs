@@ -1,11 +1,10 @@
-//! Memory that codecs of others take, and without which they would end the process: asked for before they run, and
-//! counted against the budget of whoever reads a file ([`super::working`]).
+//! Memory that third-party codecs allocate without a way to fail: checked before they run, and charged to the memory
+//! budget of the caller ([`super::working`]).
 //!
-//! The bounds are of what the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr` allocate beside what
-//! they are given.
+//! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr`, without
+//! the buffers that they are given.
 
 use super::containers::riff_chunks;
-use super::file_colour::icc::MAX_BYTES;
 use super::{MAX_SIDE, no_memory};
 use crate::error::Result;
 use crate::reserve;
@@ -14,12 +13,16 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use image::ImageFormat;
 
-/// An error if the system has no room for so many bytes.
+/// Maximum size of a profile in bytes; larger ones are ignored. [convention]: profiles of displays and cameras have a
+/// few thousand, of scanners up to a million.
+pub const MAX_PROFILE_BYTES: usize = 3 << 20;
+
+/// Returns an error if the system does not have this many bytes.
 fn check(bytes: usize) -> Result<()> {
     if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 
-/// For the pixels of a file of the crate `image`, which have memory themselves.
+/// Checks the memory for the pixels of a file of the crate `image`, beside the picture itself.
 pub(super) fn check_pixels(
     file: &[u8],
     format: ImageFormat,
@@ -30,20 +33,20 @@ pub(super) fn check_pixels(
     check(pixels(file, format, width, height, pixel_bytes))
 }
 
-/// Bytes for the pixels of a file of the crate `image` on their way.
+/// Bytes that the crate `image` needs for the pixels of a file.
 pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> usize {
     match format {
-        // Of progressive ones the coefficients of four components, two bytes each, in blocks of up to 32 pixels; a row
-        // of blocks.
+        // For progressive files the coefficients of four components, two bytes each, in blocks of up to 32 pixels; and
+        // a row of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
-        // The frame, where it is not as wide as the screen; LZW.
+        // The frame, if it is narrower than the screen, and LZW.
         ImageFormat::Gif => 5 * width * height + (1 << 20),
         _ => 16 * width * pixel_bytes + (1 << 20),
     }
 }
 
-/// For the scan lines of a Radiance file on their way.
+/// Checks the memory for decoding the scan lines of a Radiance file.
 pub(super) fn check_scanlines(columns: usize) -> Result<()> {
     check(scanlines(columns))
 }
@@ -52,29 +55,29 @@ pub(super) fn scanlines(columns: usize) -> usize {
     16 * columns + (1 << 20)
 }
 
-/// For a WebP's pixels beside the picture itself.
+/// Bytes for the pixels of a WebP file in addition to the picture.
 fn webp(file: &[u8], width: usize, height: usize) -> usize {
     let has = |wanted: &[u8; 4]| riff_chunks(file).any(|(name, _)| name == wanted);
-    // Of lossy ones Y, U and V in blocks of 16, and the file's partitions, of which one may lie about its 2^24 bytes.
+    // Lossy files: Y, U and V in blocks of 16, and the partitions of the file, one of which may claim 2^24 bytes.
     let lossy = 2 * (width + 16) * (height + 16) + 3 * file.len() + (17 << 20);
     if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {
         return lossy;
     }
-    // RGBA, of moving pictures twice; transforms and the choice of codes for blocks of 4 x 4 pixels; codes, of which
-    // the shortest that have a table of 4 KiB take 12 bytes of the file.
+    // RGBA, twice for animations; transforms, and the choice of codes for blocks of 4 x 4 pixels; code tables: the
+    // shortest codes take 12 bytes of the file and have a table of 4 KiB.
     11 * width * height + 400 * file.len() + lossy
 }
 
-/// For the decompressors of a TIFF's pixels.
+/// Checks the memory for the decompressors of a TIFF's pixels.
 pub(super) fn check_unpacking() -> Result<()> {
     check(UNPACKING)
 }
 
-/// Bytes of the decompressors.
+/// Bytes for the decompressors.
 pub(super) const UNPACKING: usize = 1 << 20;
 
-/// For a chunk of a PNG file beside its pixels. The pixels' are read bit by bit, a colour profile is unpacked, up to a
-/// limit; nothing that deflate has packed is more than 1032 times as long.
+/// Checks the memory for a chunk of a PNG file other than pixels. The chunks of pixels are read piece by piece; a
+/// colour profile is unpacked up to a limit, and deflate expands data at most 1032 times.
 pub(super) fn check_chunk(name: &[u8], length: usize, file_bytes: usize) -> Result<()> {
     check(chunk(name, length, file_bytes))
 }
@@ -87,23 +90,24 @@ pub(super) fn chunk(name: &[u8], length: usize, file_bytes: usize) -> usize {
     }
 }
 
-/// Bytes that the decoder of PNG may take beside the pixels of a file of so many: chunks, which grow by doubling, a
-/// row of the widest picture, and a colour profile.
+/// Bytes that the PNG decoder may need in addition to the pixels of a file of `file_bytes` bytes: chunks, which grow
+/// by doubling, a row of maximum width, and a colour profile.
 pub(super) fn png_limit(file_bytes: usize) -> usize {
-    file_bytes.saturating_mul(3).saturating_add(8 * MAX_SIDE).saturating_add(MAX_BYTES)
+    file_bytes.saturating_mul(3).saturating_add(8 * MAX_SIDE).saturating_add(MAX_PROFILE_BYTES)
 }
 
 pub(super) fn check_profile(bytes: usize, has_tables: bool) -> Result<()> {
     check(profile(bytes, has_tables))
 }
 
-/// Bytes for a colour profile: its tables as floating-point numbers, the curves, and, of profiles with tables of
-/// colours, the tables of a transform (33³ colours, curves of 2^16 values).
+/// Bytes for a colour profile: its tables as floating-point numbers, the curves, and, for profiles with colour tables,
+/// the tables of a transform (33³ colours, curves of 2^16 values).
 pub(super) fn profile(bytes: usize, has_tables: bool) -> usize {
     bytes.saturating_mul(32).saturating_add(if has_tables { 8 << 20 } else { 2 << 20 })
 }
 
-/// For a PNG file of so many bytes of pixels: what becomes of them, packed and as they are, which grow by doubling.
+/// Checks the memory for writing a PNG file with this many bytes of pixels: the compressed and the uncompressed file,
+/// which grow by doubling.
 pub(super) fn check_packing(bytes: usize) -> Result<()> {
     check(bytes.saturating_mul(5))
 }
@@ -122,8 +126,8 @@ pub(super) fn block_bytes(header: &Header) -> usize {
     width.saturating_mul(height).saturating_mul(header.channels.bytes_per_pixel)
 }
 
-/// For the first layer of an OpenEXR file: all of its samples, a block on its way through a decompressor, and lists of
-/// blocks.
+/// Checks the memory for the first layer of an OpenEXR file: all of its samples, a block in a decompressor, and lists
+/// of blocks.
 pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
     check(layer(headers))
 }
@@ -145,20 +149,21 @@ pub(super) fn layer(headers: &[Header]) -> usize {
     samples.saturating_add(block).saturating_add(block_bytes(header)).saturating_add(176 * chunks)
 }
 
-/// The blocks of an OpenEXR file as it is written here: tiles of so many pixels a side.
+/// Side in pixels of the tiles in which OpenEXR files are written.
 const TILE: usize = 64;
 
 fn tiles(width: usize, height: usize) -> usize {
     width.div_ceil(TILE) * height.div_ceil(TILE)
 }
 
-/// For an OpenEXR file that is written, beside the bytes of [`longest_file`]: blocks on their way, and their list.
+/// Checks the memory for writing an OpenEXR file, in addition to the bytes of [`max_file_bytes`]: blocks in compression,
+/// and their list.
 pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
 }
 
-/// Bytes of an OpenEXR file of such numbers that no compression makes shorter, with so many of names and notes:
-/// samples, and for each block its place and head.
-pub(super) fn longest_file(width: usize, height: usize, channels: usize, texts: usize) -> usize {
+/// Size in bytes of an OpenEXR file of incompressible samples with this many bytes of names and notes: samples, and
+/// for each block its offset and head.
+pub(super) fn max_file_bytes(width: usize, height: usize, channels: usize, texts: usize) -> usize {
     4 * channels * width * height + 32 * tiles(width, height) + 64 * channels + texts + 4096
 }

@@ -1,26 +1,25 @@
-//! Patches of an image: pixels with light that hang together.
+//! Connected regions of lit pixels in an image.
 
 use super::{Image, try_vec};
 use crate::error::Result;
 
-/// The 8-connected patches of pixels of which a colour is above 0.
+/// The 8-connected regions of pixels with a colour above 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Patches {
-    /// Of each pixel one more than the number of its patch, or 0; patches are numbered by their first pixel, row by
-    /// row.
+pub struct Regions {
+    /// For each pixel the number of its region plus one, or 0; regions are numbered by their first pixel, row by row.
     pub labels: Vec<u32>,
     pub count: usize,
 }
 
-/// Pixels looked at together.
+/// Number of pixels that are tested together.
 const BLOCK: usize = 64;
 
-impl Patches {
+impl Regions {
     pub fn of(image: &Image) -> Result<Self> {
         let (width, height) = (image.width, image.height);
         let colours = image.channels.min(3);
         let lit = |i: usize| image.data[i * image.channels..][..colours].iter().any(|&v| v > 0.0);
-        // Lamps are few: what is dark is passed over many pixels at a time.
+        // Lamps are few, so skip dark pixels in blocks.
         let blocks = image.data.chunks(BLOCK * image.channels.max(1)).enumerate();
         let lit_blocks = blocks.filter(|(_, pixels)| any_light(pixels, image.channels)).map(|(block, _)| block * BLOCK);
         let mut labels = try_vec(width * height, 0u32)?;
@@ -30,7 +29,7 @@ impl Patches {
             if labels[start] != 0 || !lit(start) {
                 continue;
             }
-            // Flood the patch from its first pixel.
+            // Flood the region from its first pixel.
             count += 1;
             labels[start] = count;
             open.push(start);
@@ -51,7 +50,7 @@ impl Patches {
     }
 }
 
-/// Whether a colour of any of these pixels is above 0; of four or more channels the first three are colours.
+/// Whether a colour channel of any of these pixels is above 0; with four or more channels the first three are colours.
 pub fn any_light(pixels: &[f32], channels: usize) -> bool {
     match channels {
         0..=3 => pixels.iter().fold(0.0, |high, v| f32::max(high, *v)) > 0.0,
@@ -67,11 +66,11 @@ mod tests {
     fn patches_hang_together_by_sides_and_corners() {
         let rows = ["#...#", ".#..#", ".....", "#.#.."];
         let image = Image::from_fn(5, 4, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
-        let patches = Patches::of(&image).unwrap();
+        let patches = Regions::of(&image).unwrap();
         assert_eq!(patches.count, 4);
         let found: Vec<String> = patches.labels.chunks(5).map(|r| r.iter().map(u32::to_string).collect()).collect();
         assert_eq!(found, ["10002", "01002", "00000", "30400"]);
-        assert_eq!(Patches::of(&Image::new(3, 2, 3).unwrap()).unwrap().count, 0);
+        assert_eq!(Regions::of(&Image::new(3, 2, 3).unwrap()).unwrap().count, 0);
     }
 
     #[test]
@@ -81,7 +80,7 @@ mod tests {
             for at in (0..29 * 11).step_by(7) {
                 for channel in 0..channels {
                     image.data[at * channels + channel] = 1e-30;
-                    let patches = Patches::of(&image).unwrap();
+                    let patches = Regions::of(&image).unwrap();
                     let found = usize::from(channel < colours);
                     assert_eq!(patches.count, found, "channel {channel} of {channels}");
                     assert_eq!(patches.labels.iter().position(|l| *l == 1), (found == 1).then_some(at));

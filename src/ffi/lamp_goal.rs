@@ -1,0 +1,47 @@
+//! A goal of lamps as the host has set it.
+
+use crate::error::Result;
+use crate::image::try_collect;
+use crate::relight::{Aspect, Goal, Place, Quantity, Sense};
+use crate::scene::Scene;
+use glam::Vec3;
+
+/// A goal as the host has set it.
+#[derive(Clone)]
+pub(super) struct StoredGoal {
+    pub place: Where,
+    pub quantity: Quantity,
+    pub target: Vec3,
+    pub aspect: Aspect,
+    pub sense: [Sense; 3],
+    pub weight: f64,
+}
+
+#[derive(Clone)]
+pub(super) enum Where {
+    Mesh(u32),
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
+}
+
+impl StoredGoal {
+    /// Mesh and triangle of each triangle of the surface; empty for a grid.
+    pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
+        match self.place {
+            Where::Mesh(mesh) => {
+                let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
+                try_collect((0..count).map(|t| (mesh as usize, t)))
+            }
+            Where::Grid { .. } => Ok(Vec::new()),
+        }
+    }
+
+    /// The goal for the solver; `triangles` come from [`Self::triangles`].
+    pub(super) fn goal<'a>(&self, triangles: &'a [(usize, usize)]) -> Goal<'a> {
+        let place = match self.place {
+            Where::Mesh(_) => Place::Surface(triangles),
+            Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
+        };
+        let Self { quantity, target, aspect, sense, weight, .. } = *self;
+        Goal { place, quantity, target, aspect, sense, weight }
+    }
+}

@@ -1,0 +1,112 @@
+//! The object behind the handle of a context: threads, error messages and memory budget.
+
+use super::guard::lock;
+use crate::error::{Error, ErrorKind, Result};
+use crate::exec::{Pool, QuickPools};
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::{self, ThreadId};
+
+/// Number of threads whose messages are kept: the threads that failed last.
+const MAX_MESSAGES: usize = 256;
+
+/// The object behind a `luxfer_context` handle, shared by all objects that are created in it.
+pub(super) struct Context {
+    /// Threads that run the jobs.
+    pub(super) pool: Pool,
+    /// Threads of the calls that finish their work before they return, so that these never wait for a job.
+    pub(super) quick: QuickPools,
+    budget: u64,
+    used: AtomicU64,
+    messages: Mutex<Messages>,
+    /// The process that created the context; a forked child has another id.
+    process: u32,
+}
+
+/// The error message in a forked child.
+pub(super) const INHERITED: &str = "this object was created before the process was forked, and its threads did not come along; \
+                         create a context and its objects in the child process";
+
+/// The last error message of each thread. A map rather than thread-local storage, which would outlive the context and
+/// the library.
+#[derive(Default)]
+struct Messages {
+    count: u64,
+    by_thread: HashMap<ThreadId, (u64, String)>,
+}
+
+impl Context {
+    /// Starts the threads of the jobs. A budget of 0 bytes has no limit.
+    pub(super) fn new(num_threads: usize, budget: u64) -> Result<Self> {
+        Ok(Self {
+            pool: Pool::new(num_threads)?,
+            quick: QuickPools::new(num_threads),
+            budget,
+            used: AtomicU64::new(0),
+            messages: Mutex::default(),
+            process: std::process::id(),
+        })
+    }
+
+    /// Returns an error in a forked child of the process that created the context. Takes no lock: a thread that held it
+    /// during the fork does not exist in the child and would never release it.
+    pub(super) fn check_process(&self) -> Result<()> {
+        if self.process == std::process::id() {
+            Ok(())
+        } else {
+            Err(Error::new(ErrorKind::InvalidOperation, INHERITED))
+        }
+    }
+
+    /// Stores the message of an error for the calling thread.
+    pub(super) fn remember(&self, error: &Error) {
+        let messages = &mut *lock(&self.messages);
+        messages.count += 1;
+        messages.by_thread.insert(thread::current().id(), (messages.count, error.message.clone()));
+        if messages.by_thread.len() > MAX_MESSAGES
+            && let Some(oldest) = messages.by_thread.iter().min_by_key(|(_, (count, _))| *count).map(|(id, _)| *id)
+        {
+            messages.by_thread.remove(&oldest);
+        }
+    }
+
+    /// Calls `read` with the last message of the calling thread, or with an empty text.
+    pub(super) fn last_message<T>(&self, read: impl FnOnce(&str) -> T) -> T {
+        let messages = lock(&self.messages);
+        read(messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str()))
+    }
+
+    /// Charges `bytes` to the memory budget for the lifetime of the returned charge.
+    pub(super) fn charge(self: &Arc<Self>, bytes: u64) -> Result<Charge> {
+        let take = |used: u64| used.checked_add(bytes).filter(|&sum| self.budget == 0 || sum <= self.budget);
+        match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take) {
+            Ok(_) => Ok(Charge { context: self.clone(), bytes }),
+            Err(used) => {
+                let mib = |bytes: u64| bytes as f64 / (1 << 20) as f64;
+                Err(Error::new(
+                    ErrorKind::OutOfMemory,
+                    format!(
+                        "{:.1} MiB are needed and {:.1} of the context's budget of {:.1} MiB are in use; release \
+                         objects or raise luxfer_context_params.memory_budget_mib",
+                        mib(bytes),
+                        mib(used),
+                        mib(self.budget)
+                    ),
+                ))
+            }
+        }
+    }
+}
+
+/// A share of the memory budget.
+pub(super) struct Charge {
+    context: Arc<Context>,
+    bytes: u64,
+}
+
+impl Drop for Charge {
+    fn drop(&mut self) {
+        self.context.used.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}

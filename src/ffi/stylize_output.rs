@@ -1,0 +1,90 @@
+//! The output of a stylisation that runs or has finished.
+
+use super::scene::missing;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::Image;
+use crate::patch::Field;
+use crate::stylize::{Glimpse, LevelReport, Output, Study, Usage};
+use std::sync::{Arc, Mutex};
+
+/// The result of a run, finished or not.
+#[derive(Clone)]
+pub(super) struct Stylised {
+    pub picture: Arc<Image>,
+    pub halvings: usize,
+    pub levels: Arc<Vec<LevelReport>>,
+    pub finished: Option<Finished>,
+}
+
+/// The result of a finished run only.
+#[derive(Clone)]
+pub(super) struct Finished {
+    pub guide_error: Arc<Image>,
+    pub sources: Arc<Image>,
+    /// Root mean square of the guide error.
+    pub guide_rms: f64,
+    pub usage: Usage,
+    pub patch: usize,
+    /// Number of non-finite pixels in the exemplar and in the target.
+    pub broken: [usize; 2],
+    field: Arc<Field>,
+    study: Option<Arc<Mutex<Study>>>,
+}
+
+impl Stylised {
+    pub(super) fn unfinished(glimpse: Glimpse) -> Self {
+        Self {
+            picture: Arc::new(glimpse.picture),
+            halvings: glimpse.halvings,
+            levels: Arc::new(glimpse.levels.to_vec()),
+            finished: None,
+        }
+    }
+
+    pub(super) fn finished(output: Output, study: Option<Study>) -> Self {
+        let report = output.report;
+        let squares = report.guide_error.data.iter().map(|&v| f64::from(v).powi(2));
+        let guide_rms = (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt();
+        Self {
+            picture: Arc::new(output.image),
+            halvings: report.halvings,
+            levels: Arc::new(report.levels),
+            finished: Some(Finished {
+                guide_error: Arc::new(report.guide_error),
+                sources: Arc::new(report.sources),
+                guide_rms,
+                usage: report.usage,
+                patch: report.patch,
+                broken: [report.broken_source, report.broken_target],
+                field: Arc::new(output.field),
+                study: study.map(|s| Arc::new(Mutex::new(s))),
+            }),
+        }
+    }
+
+    /// This run with the picture of an update.
+    pub(super) fn updated(&self, picture: Image, sources: Image) -> Self {
+        let finished = self.finished.clone().map(|f| Finished { sources: Arc::new(sources), ..f });
+        Self { picture: Arc::new(picture), finished, ..self.clone() }
+    }
+
+    /// The matches of a finished run.
+    pub(super) fn field(&self) -> Result<Arc<Field>> {
+        Ok(self.need_finished()?.field.clone())
+    }
+
+    pub(super) fn study(&self) -> Option<Arc<Mutex<Study>>> {
+        self.finished.as_ref().and_then(|f| f.study.clone())
+    }
+
+    /// The result, or an error if the run is not finished.
+    pub(super) fn need_finished(&self) -> Result<&Finished> {
+        self.finished.as_ref().ok_or_else(|| {
+            Error::new(ErrorKind::NotReady, "only the picture is there before the last level is done; wait for the job")
+        })
+    }
+
+    pub(super) fn level(&self, index: u32) -> Result<&LevelReport> {
+        self.levels.get(index as usize).ok_or_else(|| missing("level", index, self.levels.len()))
+    }
+}

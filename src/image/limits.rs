@@ -1,0 +1,35 @@
+//! The interpretation of a file's samples, and the limits of its header.
+
+use super::MAX_SIDE;
+use crate::error::{Error, ErrorKind, Result};
+
+/// Maximum number of pixels of a file: 2^28, a 16 k square.
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// Upper bound of the compression ratio of OpenEXR and TIFF files (deflate: 1032, and PXR24 drops a quarter before;
+/// LZW: 1330).
+pub(super) const MAX_COMPRESSION: usize = 1400;
+
+/// Interpretation of the samples of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// Colours: integers are sRGB, floating-point numbers linear, unless the file of a photo states another space.
+    Srgb,
+    /// Data other than colour, returned as stored: normal maps, roughness, masks.
+    Linear,
+}
+
+/// Refuses sizes beyond the limits of the library, and pictures without pixels.
+pub(super) fn check_size(width: u64, height: u64) -> Result<()> {
+    let is_empty = width == 0 || height == 0;
+    if is_empty || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {
+        return Err(Error::new(
+            if is_empty { ErrorKind::Format } else { ErrorKind::Unsupported },
+            format!(
+                "the header says {width} x {height} pixels; sides must lie in [1, {MAX_SIDE}] and the area in [1, \
+                 {MAX_PIXELS}]"
+            ),
+        ));
+    }
+    Ok(())
+}

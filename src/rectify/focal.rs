@@ -1,0 +1,32 @@
+//! The prior of the focal length.
+
+use super::params::Params;
+use crate::geometry::FocalSource;
+
+/// Prior of the focal length over photos of rooms: its typical value as a share of the image width, and the standard
+/// deviation of its logarithm [origin not recorded].
+const USUAL_FOCAL: f64 = 0.85;
+pub const USUAL_SPREAD: f64 = 0.35;
+
+/// The prior of a focal length, in pixels, and the standard deviation of its logarithm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    pub focal: f64,
+    pub spread: f64,
+    pub(super) source: FocalSource,
+}
+
+impl Expected {
+    /// From the photo's metadata, or else the prior of photos of that width.
+    pub(super) fn new(params: &Params, width: usize) -> Self {
+        match params.expected_focal {
+            Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },
+            None => Self { focal: USUAL_FOCAL * width as f64, spread: USUAL_SPREAD, source: FocalSource::Assumed },
+        }
+    }
+
+    /// Longer by the given number of standard deviations.
+    pub fn moved(self, deviations: f64) -> Self {
+        Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
+    }
+}

@@ -1,0 +1,120 @@
+//! The settings of rectification.
+
+use crate::error::{Result, check_range};
+use glam::DVec2;
+
+/// How lines are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineDetector {
+    /// Regions of similar gradient direction, with sub-pixel end points.
+    Regions,
+    /// The paper's gradient-restricted Hough transform of Canny edges; its lines are trimmed to the edges they cover.
+    Hough,
+}
+
+/// How vanishing points are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Three orthogonal directions and the focal length jointly; then each direction is refined freely.
+    Manhattan,
+    /// The paper's search: one group of lines after the other.
+    Successive,
+}
+
+/// Distance between a vanishing point and a line in [`Search::Successive`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Metric {
+    /// The paper's measure on the detected segment, in homogeneous form: finite at infinity.
+    Segment,
+    /// As printed: `min(d_naive, d_vanishing)` on the whole visible line (Eq. 2).
+    VisibleLine,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    pub detector: LineDetector,
+    pub search: Search,
+    pub metric: Metric,
+    /// Half-width in radians of the band around the gradient direction that votes in the Hough transform, in `(0, pi /
+    /// 2]`; default 2.5° [paper §5.1].
+    pub hough_band: f64,
+    /// Focal length in pixels, if known; > 0.
+    pub focal: Option<f64>,
+    /// Focal length in pixels that the photo's metadata gives, and its standard deviation; > 0. It counts as one more
+    /// observation beside the lines, if `focal` is absent. Without it the prior is 0.85 of the width, with a wide spread.
+    pub expected_focal: Option<[f64; 2]>,
+    /// Principal point in pixels: the point where the optical axis meets the image plane; the image centre if absent.
+    /// In cropped photos and photos by shifted lenses it lies elsewhere, possibly outside the image.
+    pub principal: Option<DVec2>,
+    pub seed: u64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            detector: LineDetector::Regions,
+            search: Search::Manhattan,
+            metric: Metric::Segment,
+            hough_band: 2.5f64.to_radians(),
+            focal: None,
+            expected_focal: None,
+            principal: None,
+            seed: 1,
+        }
+    }
+}
+
+impl Params {
+    /// The paper's method as printed.
+    pub fn printed() -> Self {
+        Self {
+            detector: LineDetector::Hough,
+            search: Search::Successive,
+            metric: Metric::VisibleLine,
+            ..Self::default()
+        }
+    }
+
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("hough_band", self.hough_band, 1e-4, std::f64::consts::FRAC_PI_2)?;
+        if let Some(focal) = self.focal {
+            check_range("focal", focal, 1e-3, 1e9)?;
+        }
+        if let Some([focal, error]) = self.expected_focal {
+            check_range("expected_focal", focal, 1e-3, 1e9)?;
+            check_range("error of expected_focal", error, 1e-6 * focal, 10.0 * focal)?;
+        }
+        if let Some(principal) = self.principal {
+            check_range("principal.x", principal.x, -1e9, 1e9)?;
+            check_range("principal.y", principal.y, -1e9, 1e9)?;
+        }
+        Ok(())
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnwarpParams {
+    /// The two room axes that span the plane; chosen by the lines inside the mask if absent.
+    pub axes: Option<[usize; 2]>,
+    /// Maximum length of the longer side of the unwarped image in pixels, in `[16, 16384]`; smaller if the resolution
+    /// of the photo is lower.
+    pub max_side: usize,
+    /// Maximum magnification of the photo, > 0; parts of the plane farther away are cut off.
+    pub max_magnification: f64,
+}
+
+impl Default for UnwarpParams {
+    fn default() -> Self {
+        Self { axes: None, max_side: 2048, max_magnification: 16.0 }
+    }
+}
+
+impl UnwarpParams {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("max_side", self.max_side, 16, 16_384)?;
+        check_range("max_magnification", self.max_magnification, f64::MIN_POSITIVE, 1e6)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,27 @@
+//! The results of a stylisation.
+
+use super::report::{LevelReport, Report};
+use crate::image::Image;
+use crate::patch::Field;
+
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// The stylised target, linear colour.
+    pub image: Image,
+    /// The exemplar patch of each target patch.
+    pub field: Field,
+    pub report: Report,
+}
+
+/// An intermediate result, published after each level except the last, coarsest first.
+pub struct Glimpse<'a> {
+    /// The current picture in linear colour, at the size of the level.
+    pub picture: Image,
+    /// Number of halvings (rounding down) from the target's size to the picture's.
+    pub halvings: usize,
+    /// Reports of the finished levels.
+    pub levels: &'a [LevelReport],
+}
+
+/// Callback for intermediate results.
+pub type Publish<'a> = &'a (dyn Fn(Glimpse) + Sync);

@@ -1,0 +1,77 @@
+//! The picture of a level: painting it from the matches, and decoding it to linear colour.
+
+use super::level::Problem;
+use crate::error::Result;
+use crate::exec;
+use crate::image::Image;
+use crate::image::colour::srgb_to_linear;
+use crate::job::Job;
+use crate::patch::{Field, Vote, origin, vote};
+
+/// Votes for the pixels for which `wanted` holds, and restores known pixels.
+pub(super) fn paint(
+    picture: &mut Image,
+    field: &Field,
+    problem: &Problem,
+    how: Vote,
+    job: Job,
+    wanted: impl Fn(usize) -> bool + Sync,
+) -> Result<()> {
+    vote(picture, field, &problem.style, problem.patch, how, job, wanted)?;
+    restore_known(picture, problem);
+    Ok(())
+}
+
+/// Restores the known pixels outside the target mask.
+pub(super) fn restore_known(picture: &mut Image, problem: &Problem) {
+    if let (Some(mask), Some(known)) = (&problem.target_mask, &problem.known) {
+        let channels = picture.channels;
+        let pixels = picture.data.chunks_exact_mut(channels).zip(known.data.chunks_exact(channels));
+        pixels.zip(mask).filter(|(_, made)| !**made).for_each(|((p, k), _)| p.copy_from_slice(k));
+    }
+}
+
+/// The picture in linear colour.
+pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
+    let mut out = picture.try_clone()?;
+    let row_len = out.row_len();
+    exec::for_rows(&mut out.data, row_len, job.part(1.0, 1.0), |_, row| {
+        row.iter_mut().for_each(|v| *v = srgb_to_linear(*v));
+    })?;
+    Ok(out)
+}
+
+/// The inputs that produced an encoded picture.
+pub(super) struct Provenance<'a> {
+    pub field: &'a Field,
+    pub problem: &'a Problem,
+    /// The artwork and the known part of the target, linear.
+    pub artwork: &'a Image,
+    pub known: Option<&'a Image>,
+}
+
+/// Decodes the pixels of a picture for which `wanted` holds into `image`, in linear colour. Pixels on which all
+/// patches agree, and known pixels, are copied from the linear originals, so that they equal them to the bit.
+pub(super) fn decode_into(
+    image: &mut Image,
+    picture: &Image,
+    provenance: Provenance,
+    job: Job,
+    wanted: impl Fn(usize) -> bool + Sync,
+) -> Result<()> {
+    let Provenance { field, problem, artwork, known } = provenance;
+    let (width, channels, whole) = (image.width, image.channels, problem.is_of(artwork));
+    let left_out = |i: usize| whole && problem.target_mask.as_ref().is_some_and(|mask| !mask[i]);
+    exec::for_rows(&mut image.data, width * channels, job, |y, row| {
+        for (x, pixel) in row.chunks_exact_mut(channels).enumerate().filter(|(x, _)| wanted(y * width + x)) {
+            match (left_out(y * width + x), known) {
+                (true, Some(known)) => pixel.copy_from_slice(known.pixel(x, y)),
+                (true, None) => pixel.fill(0.0),
+                _ => match whole.then(|| origin(field, problem.patch, x, y)).flatten() {
+                    Some((px, py)) => pixel.copy_from_slice(artwork.pixel(px, py)),
+                    None => pixel.iter_mut().zip(picture.pixel(x, y)).for_each(|(p, v)| *p = srgb_to_linear(*v)),
+                },
+            }
+        }
+    })
+}
