@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use std::cell::Cell;
 use std::sync::Arc;
 
+mod compressed;
 mod features;
 
 fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
@@ -296,7 +297,7 @@ fn lying_files_are_errors_that_say_why() {
         }),
         ("components", |f| f["accessors"][0]["type"] = "VEC2".into()),
         ("unknown", |f| f["accessors"][0]["type"] = "VEC9".into()),
-        ("KHR_draco", |f| f["extensionsRequired"] = json!(["KHR_draco_mesh_compression"])),
+        ("KHR_texture_basisu", |f| f["extensionsRequired"] = json!(["KHR_texture_basisu"])),
         ("at most", |f| f["accessors"][0] = json!({ "componentType": 5126, "count": 60_000_000, "type": "VEC3" })),
         ("beside it", |f| f["buffers"][0]["uri"] = "mesh.bin".into()),
         ("outside the folder", |f| f["buffers"][0]["uri"] = "../mesh.bin".into()),
