@@ -22,7 +22,7 @@ use glam::Vec3;
 #[derive(Clone)]
 pub(super) struct Aim {
     place: Where,
-    quantity: Quantity,
+    pub quantity: Quantity,
     pub target: Vec3,
     aspect: Aspect,
     sense: [Sense; 3],

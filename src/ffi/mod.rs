@@ -22,6 +22,7 @@ mod params;
 mod pointer;
 mod stage;
 
+mod candidates;
 mod context;
 mod demo;
 mod demo_photo;
@@ -77,6 +78,7 @@ mod transfer_results;
 mod version;
 mod warning;
 
+pub use candidates::*;
 pub use context::*;
 pub use demo::*;
 pub use demo_photo::*;

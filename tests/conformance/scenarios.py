@@ -89,6 +89,12 @@ def scenes() -> Scenario:
     scaled = s.make("scene_load_with", s.context, "a.glb", struct("scene_load_params", unit=100.0))
     warnings = s.make("scene_get_warnings", scaled)  # 200 m are too high for a room
     s.call("warnings_get", warnings, 0, struct("warning", "size"))
+    candidates = s.make("scene_get_candidates", scaled)
+    s.references("candidates", candidates)
+    s.call("candidates_count", candidates, ROOM)
+    s.call("candidates_get", candidates, 0, struct("candidate", "size"))
+    s.call("candidates_get_name", candidates, 0, ROOM, 300, ROOM)
+    s.call("candidates_get_reason", candidates, 0, ROOM, 300, ROOM)
     s.make("scene_load_memory_with", s.context, b'{"asset":{"version":"2.0"}}', 27, None, struct("scene_load_params", outside=1))
     s.call("scene_export_memory", scene, ["callback", "write"], None)
     s.call("scene_get_counts", scene, struct("scene_counts", "size"))

@@ -364,6 +364,13 @@ void scenes_come_back() {
     in_hundreds.unit = 100;
     const Scene large = ok(Scene::load_memory(context, file, nullptr, in_hundreds));
     CHECK(ok(ok(large.warnings()).warning(0)).code == LUXFER_WARNING_IMPLAUSIBLE_SIZE);
+    const luxfer::Candidates candidates = ok(copy.candidates());
+    CHECK(ok(candidates.count()) > 2);
+    const luxfer_candidate likeliest = ok(candidates.candidate(0));
+    CHECK(ok(candidates.name(0)) == "Lamp" && likeliest.kind == LUXFER_CANDIDATE_OBJECT && likeliest.index == 1);
+    CHECK(likeliest.level_area == likeliest.area && likeliest.score > 0);
+    CHECK(ok(candidates.reason(0)).find("level") != std::string::npos);
+    CHECK_ERROR(candidates.candidate(99), LUXFER_NOT_FOUND);
     const luxfer_scene_counts counts = ok(copy.counts());
     CHECK(counts.meshes == 2 && counts.cameras == 1 && counts.triangles == 4);
     CHECK(ok(copy.mesh_name(0)) == "Floor" && ok(copy.mesh_name(1)) == "Lamp");

@@ -335,6 +335,10 @@ class Rendering(Case):
         for i, lux in enumerate((300, 200)):
             found = np.dot(lamps.goal(i).achieved, (0.2126, 0.7152, 0.0722)) * np.pi
             self.assertAlmostEqual(found, lux, delta=0.02 * lux)
+            goal = lamps.goal(i)
+            self.assertAlmostEqual(goal.target_lux, lux, delta=1e-3 * lux)
+            self.assertAlmostEqual(goal.achieved_lux, found, delta=1e-3 * lux)
+            self.assertTrue(0 < goal.half_width_lux < 0.1 * lux and goal.background_lux >= 0)
         scaled = lamps.texture.numpy()
         np.testing.assert_allclose(scaled[3, 2], lamps.lamp(0).scale, rtol=1e-5)
         # Drivers with steps: every lamp at one of them, and the desks near enough.

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _abi, _arrays, _params
 from ._handle import Handle, call
+from .candidate import SurfaceCandidate, candidates_of
 from .image import Image, image_of
 from .types import (
     CameraParams,
@@ -80,6 +81,11 @@ class Scene(Handle):
     def warnings(self) -> list[StageWarning]:
         """An implausible size, and each feature of the file that is not rendered."""
         return warnings_of(self)
+
+    @property
+    def candidates(self) -> list[SurfaceCandidate]:
+        """Objects and materials with their area, height and direction, the likeliest ceilings first."""
+        return candidates_of(self)
 
     @classmethod
     def _made(cls, context: Context, name: str, *arguments: Any) -> Scene:
