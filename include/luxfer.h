@@ -922,6 +922,13 @@ typedef struct luxfer_mesh_params {
     const void *indices;
     /** Bytes from one triangle to the next; at least 12, or 0, the default: packed. */
     size_t index_stride;
+    /**
+     * Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1]. They
+     * multiply the material's base colour and alpha. NULL, the default: none.
+     */
+    const void *colours;
+    /** Bytes from one colour to the next; at least 16, or 0, the default: packed. */
+    size_t colour_stride;
 } luxfer_mesh_params;
 
 /** A pinhole camera. Fill it with luxfer_camera_params_init. */
@@ -1331,6 +1338,10 @@ typedef struct luxfer_mesh_info {
     uint32_t has_normals;
     /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second. */
     uint32_t uv_sets;
+    /** 1 if each vertex has a colour, else 0. */
+    uint32_t has_colours;
+    /** 0. */
+    uint32_t reserved;
 } luxfer_mesh_info;
 
 /**
@@ -1375,6 +1386,16 @@ luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
                                          uint32_t uv_set,
                                          size_t capacity,
                                          float *uvs);
+
+/**
+ * Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
+ * number of vertices. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+ */
+luxfer_status luxfer_scene_read_mesh_colours(luxfer_scene *scene,
+                                             uint32_t index,
+                                             size_t capacity,
+                                             float *colours);
 
 /* ====================================================================================================================
  * Candidates for the ceiling

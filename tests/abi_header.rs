@@ -349,11 +349,12 @@ layouts! {
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
-        uv_stride triangle_count indices index_stride;
+        uv_stride triangle_count indices index_stride colours
+        colour_stride;
     luxfer_camera_params: struct_size fov_y position target up reserved;
     luxfer_ray: origin direction t_max;
     luxfer_hit: t mesh triangle u v;
-    luxfer_mesh_info: struct_size material vertex_count triangle_count has_normals uv_sets;
+    luxfer_mesh_info: struct_size material vertex_count triangle_count has_normals uv_sets has_colours reserved;
     luxfer_texture_use: struct_size texture uv_set wrap_u wrap_v transform;
     luxfer_demo_photo_params: struct_size width height samples seed;
     luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved;

@@ -119,6 +119,12 @@ def scenes() -> Scenario:
     s.call("scene_get_mesh_name", scene, 0, ROOM, 20, ROOM)
     s.call("scene_read_mesh", scene, 0, 4, ROOM, None, 2, ROOM)
     s.call("scene_read_mesh_uvs", scene, 0, 0, 4, ROOM)
+    coloured = struct(
+        "mesh_params", name="Coloured", vertex_count=3, positions=array("float", 0, 0, 0, 1, 0, 0, 0, 1, 0), triangle_count=1,
+        indices=array("uint32_t", 0, 1, 2), colours=array("float", *[0.5] * 12),
+    )  # fmt: skip
+    s.call("scene_add_mesh", scene, coloured, None)
+    s.call("scene_read_mesh_colours", scene, 2, 3, ROOM)
     s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
     s.make("demo_scene", s.context, 2)
     return s

@@ -381,6 +381,8 @@ void scenes_come_back() {
     CHECK(positions[1] == -1.0f && indices[5] == 3);
     CHECK_ERROR(copy.read_mesh(0, positions, positions, indices), LUXFER_NOT_FOUND);
     CHECK_ERROR(copy.read_mesh_uvs(0, 0, positions), LUXFER_NOT_FOUND);
+    CHECK_ERROR(copy.read_mesh_colours(0, positions), LUXFER_NOT_FOUND);
+    CHECK(ok(copy.mesh(0)).has_colours == 0);
     CHECK(ok(copy.material_texture(0, LUXFER_TEXTURE_NORMAL)).texture == LUXFER_NONE);
     CHECK_ERROR(copy.texture(0), LUXFER_NOT_FOUND);
 

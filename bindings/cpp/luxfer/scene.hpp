@@ -230,6 +230,11 @@ public:
         return call(luxfer_scene_read_mesh_uvs, index, uv_set, uvs.size() / 2, uvs.data());
     }
 
+    /// Copies the colours of the vertices, four numbers per vertex.
+    Result<> read_mesh_colours(std::uint32_t index, Span<float> colours) const {
+        return call(luxfer_scene_read_mesh_colours, index, colours.size() / 4, colours.data());
+    }
+
     Result<luxfer_material_params> material(std::uint32_t index) const {
         return value<luxfer_material_params>(luxfer_scene_get_material, index);
     }

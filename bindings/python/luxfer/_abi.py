@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from ctypes import CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import CFUNCTYPE, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
 from typing import Any
 
 from . import types
+from ._pointers import POINTER
 
 LUXFER_VERSION_MAJOR = 0
 LUXFER_VERSION_MINOR = 1
@@ -486,6 +487,8 @@ class luxfer_mesh_params(Structure):
         ("triangle_count", c_size_t),
         ("indices", c_void_p),
         ("index_stride", c_size_t),
+        ("colours", c_void_p),
+        ("colour_stride", c_size_t),
     ]
 
 
@@ -599,6 +602,8 @@ class luxfer_mesh_info(Structure):
         ("triangle_count", c_size_t),
         ("has_normals", c_uint32),
         ("uv_sets", c_uint32),
+        ("has_colours", c_uint32),
+        ("reserved", c_uint32),
     ]
     result = types.MeshInfo
 
@@ -1458,6 +1463,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_read_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("vertex_capacity", c_size_t), ("positions", POINTER(c_float)), ("normals", POINTER(c_float)), ("triangle_capacity", c_size_t), ("indices", POINTER(c_uint32))]),
     "luxfer_scene_read_mesh_uvs": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("uv_set", c_uint32), ("capacity", c_size_t), ("uvs", POINTER(c_float))]),
+    "luxfer_scene_read_mesh_colours": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("capacity", c_size_t), ("colours", POINTER(c_float))]),
     "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
     "luxfer_candidates_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
     "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate))]),

@@ -1015,6 +1015,11 @@ class MeshParams(TypedDict, total=False):
     set."""
     index_stride: int
     """Bytes from one triangle to the next; at least 12, or 0, the default: packed."""
+    colours: int
+    """Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1].
+    They multiply the material's base colour and alpha. None, the default: none."""
+    colour_stride: int
+    """Bytes from one colour to the next; at least 16, or 0, the default: packed."""
 
 
 class CameraParams(TypedDict, total=False):
@@ -1149,6 +1154,8 @@ class MeshInfo:
     """1 if each vertex has a normal, 0 if the faces are flat."""
     uv_sets: int
     """Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second."""
+    has_colours: int
+    """1 if each vertex has a colour, else 0."""
 
 
 @dataclass(frozen=True)

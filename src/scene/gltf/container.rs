@@ -29,7 +29,8 @@ pub struct File<'a> {
     pub root: Root,
     /// The parts that are not rendered, as far as the JSON shows them.
     pub unrendered: Vec<Unrendered>,
-    buffers: Vec<Cow<'a, [u8]>>,
+    /// `None` for one without data: it may stand for decoded data, or for nothing that is used.
+    buffers: Vec<Option<Cow<'a, [u8]>>>,
     /// The decoded data of compressed buffer views.
     unpacked: Vec<(usize, Vec<u8>)>,
     folder: Folder<'a>,
@@ -47,18 +48,17 @@ impl<'a> File<'a> {
         Ok(file)
     }
 
-    fn buffer(&self, index: usize, buffer: &buffer::Buffer, blob: Option<&'a [u8]>) -> Result<Cow<'a, [u8]>> {
+    fn buffer(&self, index: usize, buffer: &buffer::Buffer, blob: Option<&'a [u8]>) -> Result<Option<Cow<'a, [u8]>>> {
         let bytes = match (&buffer.uri, blob) {
             (Some(uri), _) => Cow::Owned(self.resolve(uri)?),
-            (None, _) if meshopt::is_fallback(buffer) => return Ok(Cow::Borrowed(&[])),
-            (None, Some(blob)) if index == 0 => Cow::Borrowed(blob),
-            _ => return Err(Error::format("it has no URI, and the file has no binary chunk for it")),
+            (None, Some(blob)) if index == 0 && !meshopt::is_fallback(buffer) => Cow::Borrowed(blob),
+            _ => return Ok(None),
         };
         if (bytes.len() as u64) < buffer.byte_length.0 {
             let (has, says) = (bytes.len(), buffer.byte_length.0);
             return Err(Error::format(format!("its byteLength is {says}, but only {has} bytes are there")));
         }
-        Ok(bytes)
+        Ok(Some(bytes))
     }
 
     /// The bytes of a buffer view, decoded if they are compressed.
@@ -76,6 +76,10 @@ impl<'a> File<'a> {
     /// A part of a buffer.
     fn part(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8]> {
         let whole = self.buffers.get(buffer).ok_or_else(|| missing("buffer", buffer, self.buffers.len()))?;
+        let Some(whole) = whole else {
+            let message = format!("buffer {buffer} has no URI, and the file has no binary chunk for it");
+            return Err(Error::format(message));
+        };
         let end = start.checked_add(length).filter(|&end| end <= whole.len() as u64);
         match end {
             Some(end) => Ok(&whole[start as usize..end as usize]),

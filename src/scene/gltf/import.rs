@@ -11,9 +11,8 @@ use super::{Budget, Options, accessor};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{try_collect, try_vec};
 use crate::photometry::{Luminaire, ies};
-use crate::scene::unrendered::note;
 use crate::scene::{Camera, Material, Mesh, PunctualLight, Scene};
-use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::skin::Skin;
@@ -270,12 +269,12 @@ impl Importer<'_> {
             Some(index) => return Err(missing("material", index.value(), self.file.root.materials.len())),
             None => self.default_material(),
         };
-        let material = match vertices.colours(count)? {
-            Some(colours) => self.tint(name, material, &colours)?,
-            None => material,
+        let (material, colours) = match vertices.colours(count)? {
+            Some(colours) => self.tint(material, colours)?,
+            None => (material, Vec::new()),
         };
         positions.shrink_to_fit();
-        self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, triangles });
+        self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, colours, triangles });
         Ok(())
     }
 
@@ -318,28 +317,31 @@ impl Importer<'_> {
         })
     }
 
-    /// The material for vertices with such colours: multiplied by the colour if all are equal.
-    fn tint(&mut self, name: &str, material: usize, colours: &[[f32; 4]]) -> Result<usize> {
-        let Some((&first, rest)) = colours.split_first() else { return Ok(material) };
+    /// The material and the colours of vertices with such colours: one colour of all is part of the material.
+    fn tint(&mut self, material: usize, colours: Vec<[f32; 4]>) -> Result<(usize, Vec<Vec4>)> {
+        let clamped = |colour: [f32; 4]| Vec4::from(colour).clamp(Vec4::ZERO, Vec4::ONE);
+        let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
         if rest.iter().any(|colour| *colour != first) {
-            let effect = "the vertices have one colour, that of the material";
-            note(&mut self.scene.unrendered, "COLOR_0", effect, || format!("mesh {name:?}"));
-            return Ok(material);
+            self.budget.keep(size_of_val(&colours[..]) as u64)?;
+            return Ok((material, bring_in(colours, |_, colour| clamped(colour))?));
         }
         if first == [1.0; 4] {
-            return Ok(material);
+            return Ok((material, Vec::new()));
         }
         if let Some((.., known)) = self.tinted.iter().find(|(of, colour, _)| (*of, *colour) == (material, first)) {
-            return Ok(*known);
+            return Ok((*known, Vec::new()));
         }
-        let [r, g, b, alpha] = first.map(|v| v.clamp(0.0, 1.0));
+        let colour = clamped(first);
         let plain = &self.scene.materials[material];
-        let product =
-            Material { base_color: plain.base_color * Vec3::new(r, g, b), alpha: plain.alpha * alpha, ..plain.clone() };
+        let product = Material {
+            base_color: plain.base_color * colour.truncate(),
+            alpha: plain.alpha * colour.w,
+            ..plain.clone()
+        };
         self.scene.materials.push(product);
         let index = self.scene.materials.len() - 1;
         self.tinted.push((material, first, index));
-        Ok(index)
+        Ok((index, Vec::new()))
     }
 
     fn camera(&mut self, name: String, camera: &json::Camera, transform: DMat4) -> Result<()> {

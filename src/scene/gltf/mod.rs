@@ -7,8 +7,8 @@
 //!
 //! Import: every node × instance × primitive becomes one mesh in world space, named after its node, with its morph
 //! targets mixed by their weights and its skin bent by the joints at rest. A vertex colour that all vertices share
-//! becomes part of the material. Not imported: animation, other vertex colours, morph targets of texture coordinates,
-//! tangents (the renderer derives them), occlusion textures, points and lines, orthographic cameras, more than two sets
+//! becomes part of the material. Not imported: animation, morph targets of colours and texture coordinates, tangents
+//! (the renderer derives them), occlusion textures, points and lines, orthographic cameras, more than two sets
 //! of texture coordinates, and material properties of other extensions such as `KHR_materials_specular`, `_clearcoat`,
 //! `_sheen` and `_volume`. A required extension not listed above is an error; an optional one is ignored. All that is
 //! left out and would be seen is listed in [`Scene::unrendered`].

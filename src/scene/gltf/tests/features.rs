@@ -34,7 +34,7 @@ fn only_gltf_2_is_read() {
 fn valid_files_in_unusual_forms_are_read() {
     let plain = import(&triangle_file(|_| ()), None).unwrap();
     type Edit = fn(&mut Value);
-    let edits: [(&str, Edit); 9] = [
+    let edits: [(&str, Edit); 10] = [
         ("extras of any type", |f| {
             f["extras"] = json!(7);
             f["nodes"][0]["extras"] = json!("a text");
@@ -81,6 +81,10 @@ fn valid_files_in_unusual_forms_are_read() {
             f["materials"] =
                 json!([{ "name": "Default", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
             f["meshes"][0]["primitives"][0]["material"] = json!(0);
+        }),
+        ("a buffer without data that nothing uses", |f| {
+            f["buffers"].as_array_mut().unwrap().push(json!({ "byteLength": 1 }));
+            f["bufferViews"].as_array_mut().unwrap().push(json!({ "buffer": 1, "byteLength": 1 }));
         }),
         ("metadata", |f| f["extensionsUsed"] = json!(["KHR_xmp_json_ld"])),
     ];
@@ -320,9 +324,13 @@ fn one_colour_of_all_vertices_becomes_part_of_the_material() {
     assert_eq!((scene.materials[1].base_color, scene.materials[1].alpha), (Vec3::new(0.25, 0.25, 1.0), 0.5));
     assert_eq!(scene.materials[0].base_color, Vec3::new(0.5, 1.0, 1.0));
     assert!(scene.unrendered.is_empty());
-    let scene = with(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], "VEC3");
-    assert_eq!((scene.materials.len(), scene.meshes[0].material), (1, 0));
-    assert!(scene.unrendered[0].to_string().starts_with("COLOR_0") && scene.unrendered[0].count == 2);
+    assert!(scene.meshes[0].colours.is_empty());
+    // Other colours stay with the vertices, and come back from a file that is written.
+    let scene = with(&[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0], "VEC3");
+    assert_eq!((scene.materials.len(), scene.meshes[0].material, scene.unrendered.len()), (1, 0, 0));
+    let colours = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]].map(glam::Vec4::from);
+    assert_eq!(scene.meshes[1].colours, colours);
+    assert_eq!(import(&export(&scene).unwrap(), None).unwrap().meshes[1].colours, colours);
 }
 
 #[test]
