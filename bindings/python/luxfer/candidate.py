@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 from . import _abi
 from ._handle import Handle
+from ._pointers import POINTER
 from .types import Candidate, CandidateKind
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ class Candidates(Handle):
 
 def candidates_of(scene: Scene) -> list[SurfaceCandidate]:
     """The candidates of a scene."""
-    pointer = ctypes.POINTER(_abi.luxfer_candidates)()
+    pointer = POINTER(_abi.luxfer_candidates)()
     scene._call("get_candidates", pointer)
     with Candidates._adopt(scene.context, pointer) as candidates:
         return candidates.read()
