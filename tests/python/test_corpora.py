@@ -9,6 +9,7 @@ npm, in a folder that `LUXFER_GLTF_VALIDATOR` names) for the validity of glTF, a
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import subprocess
@@ -80,11 +81,16 @@ class Pictures(Case):
                         wide = picture.mode.startswith("I;16") or picture.mode == "I"
                         theirs = np.asarray(picture if wide else picture.convert("RGBA"), np.float32)
                         theirs = theirs[:, :, None] / 65535 if wide else theirs / 255
+                        # Pillow misses a transparent grey of 4 or 16 bits: the suite has its pixels as text.
+                        text = path.parents[1] / "json" / f"{path.stem}.json"
+                        if picture.mode in ("1", "L", "I;16") and "transparency" in picture.info and text.exists():
+                            stored = np.array(json.loads(text.read_text()), np.float32)
+                            theirs = stored.reshape(*theirs.shape[:2], 4) / (65535 if wide else 255)
                 except (OSError, SyntaxError, ValueError, UnidentifiedImageError):
                     theirs = None
                 try:
                     ours = load(path)
-                except (luxfer.errors.Format, luxfer.errors.Unsupported) as error:
+                except (luxfer.errors.FormatError, luxfer.errors.Unsupported) as error:
                     refused = type(error).__name__
                     counts[f"refused ({refused})"] += 1
                     # Where the other reader makes a picture of it, the reason must not be damage, unless it is stated.
@@ -121,7 +127,7 @@ class Pictures(Case):
                     theirs = None
                 try:
                     ours = load(path)
-                except (luxfer.errors.Format, luxfer.errors.Unsupported) as error:
+                except (luxfer.errors.FormatError, luxfer.errors.Unsupported) as error:
                     refused = type(error).__name__
                     counts[f"refused ({refused})"] += 1
                     if theirs is not None:
@@ -180,7 +186,7 @@ class Gltf(Case):
                     if not codes:
                         self.assertEqual(refused, "Unsupported", f"{path}: {error}")
                     else:
-                        self.assertIn(refused, ("Format", "Unsupported", "Io"), f"{path}: {codes}: {error}")
+                        self.assertIn(refused, ("FormatError", "Unsupported", "FileError"), f"{path}: {codes}: {error}")
         report(collection, counts)
         self.assertGreater(counts["valid, read"], 0, "the collection is not there")
 
@@ -202,8 +208,8 @@ class Gltf(Case):
                 except Exception:  # trimesh does not read all that is valid
                     counts["not read by trimesh"] += 1
                     continue
-                if posed:
-                    counts["posed, which trimesh does not do"] += 1
+                if posed or b'"sparse"' in path.read_bytes():
+                    counts["posed or sparse, which trimesh does not do"] += 1
                     continue
                 if len(ours) != len(theirs):
                     counts["of another number of triangles: strips, lines or several scenes"] += 1
@@ -226,6 +232,66 @@ class Gltf(Case):
         for collection in ("gltf-samples-2017", "gltf-rs", "gltf-blender-io"):
             with self.subTest(collection):
                 self.geometry(collection)
+
+
+class Draco(Case):
+    """Streams of Google's own encoder."""
+
+    def test_streams_of_the_c_library(self) -> None:
+        try:
+            import DracoPy
+        except ImportError:
+            self.skipTest("DracoPy is not installed")
+        rng = np.random.default_rng(1)
+        grid = np.stack(np.meshgrid(np.arange(40), np.arange(30), indexing="ij"), axis=2).reshape(-1, 2)
+        points = np.column_stack([grid / 10, rng.random(len(grid))]).astype(np.float32)[:, [0, 2, 1]]
+        corner = np.arange(40 * 30).reshape(40, 30)[:-1, :-1].ravel()
+        faces = np.concatenate([[[c, c + 1, c + 30], [c + 1, c + 31, c + 30]] for c in corner]).astype(np.uint32)
+        uvs = grid / 40
+        for level in range(11):
+            with self.subTest(level):
+                stream = DracoPy.encode(
+                    points, faces, quantization_bits=12, compression_level=level, tex_coord=uvs, preserve_order=level == 0
+                )
+                theirs = DracoPy.decode(stream)
+                with luxfer.Scene.from_bytes(context(), gltf_of(stream, theirs)) as scene:
+                    ours = scene.mesh_arrays(0)
+                np.testing.assert_allclose(
+                    ordered(ours["positions"][ours["indices"]]), ordered(theirs.points[theirs.faces]), atol=1e-6
+                )
+                np.testing.assert_allclose(
+                    ordered(ours["uvs"][ours["indices"]]), ordered(theirs.tex_coord[theirs.faces]), atol=1e-6
+                )
+
+
+def ordered(corners: np.ndarray) -> np.ndarray:
+    """Triangles in an order that depends on nothing else."""
+    rows = corners.reshape(len(corners), -1)
+    return rows[np.lexsort(rows.T[::-1])]
+
+
+def gltf_of(stream: bytes, decoded) -> bytes:
+    """A glTF file with a Draco stream."""
+    ids = {a["attribute_type"]: a["unique_id"] for a in decoded.attributes}
+    vertices = {"count": len(decoded.points), "componentType": 5126}
+    attributes, primitive = {"POSITION": ids[0], "TEXCOORD_0": ids[3]}, {"POSITION": 0, "TEXCOORD_0": 2}
+    uri = "data:application/octet-stream;base64," + base64.b64encode(stream).decode()
+    settings = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": attributes}}
+    return json.dumps(
+        {
+            "asset": {"version": "2.0"},
+            "extensionsRequired": ["KHR_draco_mesh_compression"],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": primitive, "indices": 1, "extensions": settings}]}],
+            "accessors": [
+                {**vertices, "type": "VEC3"},
+                {"count": decoded.faces.size, "componentType": 5125, "type": "SCALAR"},
+                {**vertices, "type": "VEC2"},
+            ],
+            "bufferViews": [{"buffer": 0, "byteLength": len(stream)}],
+            "buffers": [{"uri": uri, "byteLength": len(stream)}],
+        }
+    ).encode()
 
 
 def triangles(scene: luxfer.Scene) -> np.ndarray:
