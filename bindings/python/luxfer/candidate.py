@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 class SurfaceCandidate:
     """An object or a material of a scene, and how much it resembles a ceiling.
 
-    >>> room = luxfer.Scene.demo(context, "target-room")
     >>> best = room.candidates[0]
     >>> best.name, best.kind.name, round(best.height, 1)
     ('Ceiling', 'OBJECT', 2.8)
