@@ -100,7 +100,7 @@ pub struct luxfer_lamps_goal {
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_lamps_goal {
     const NAME: &'static str = "luxfer_lamps_goal";
-    const SIZES: &'static [usize] = &[112, 144];
+    const SIZES: &'static [usize] = &[144];
     fn defaults() -> Self {
         let zero = [0.0; 3];
         Self {

@@ -52,13 +52,12 @@ pub struct luxfer_mesh_params {
     pub colour_stride: usize,
 }
 
-const OLD_MESH_SIZE: usize = 8 + 11 * size_of::<usize>();
-const MESH_SIZE: usize = OLD_MESH_SIZE + 2 * size_of::<usize>();
+const MESH_SIZE: usize = 8 + 13 * size_of::<usize>();
 
 // SAFETY: integers, and pointers that are checked before use.
 unsafe impl Versioned for luxfer_mesh_params {
     const NAME: &'static str = "luxfer_mesh_params";
-    const SIZES: &'static [usize] = &[OLD_MESH_SIZE, MESH_SIZE];
+    const SIZES: &'static [usize] = &[MESH_SIZE];
     fn defaults() -> Self {
         Self {
             struct_size: MESH_SIZE as u32,

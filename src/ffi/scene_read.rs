@@ -35,13 +35,12 @@ pub struct luxfer_mesh_info {
     pub reserved: u32,
 }
 
-const OLD_MESH_INFO_SIZE: usize = 16 + 2 * size_of::<usize>();
-const MESH_INFO_SIZE: usize = OLD_MESH_INFO_SIZE + 8;
+const MESH_INFO_SIZE: usize = 24 + 2 * size_of::<usize>();
 
 // SAFETY: plain integers.
 unsafe impl Versioned for luxfer_mesh_info {
     const NAME: &'static str = "luxfer_mesh_info";
-    const SIZES: &'static [usize] = &[OLD_MESH_INFO_SIZE, MESH_INFO_SIZE];
+    const SIZES: &'static [usize] = &[MESH_INFO_SIZE];
     fn defaults() -> Self {
         let struct_size = MESH_INFO_SIZE as u32;
         Self {

@@ -108,8 +108,7 @@ pub struct luxfer_transfer_report {
     pub proposed_white_high: f64,
 }
 
-const OLD_REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16;
-const REPORT_SIZE: usize = OLD_REPORT_SIZE + 24;
+const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16 + 24;
 
 /// Illuminances in lux of rooms: of corridors, of offices, and of work on fine things. [convention]: EN 12464-1
 const USUAL_ILLUMINANCE: [f64; 3] = [100.0, 500.0, 1000.0];
@@ -117,7 +116,7 @@ const USUAL_ILLUMINANCE: [f64; 3] = [100.0, 500.0, 1000.0];
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_transfer_report {
     const NAME: &'static str = "luxfer_transfer_report";
-    const SIZES: &'static [usize] = &[OLD_REPORT_SIZE, REPORT_SIZE];
+    const SIZES: &'static [usize] = &[REPORT_SIZE];
     fn defaults() -> Self {
         Self {
             struct_size: REPORT_SIZE as u32,

@@ -77,8 +77,9 @@ impl<'a> File<'a> {
     fn part(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8]> {
         let whole = self.buffers.get(buffer).ok_or_else(|| missing("buffer", buffer, self.buffers.len()))?;
         let Some(whole) = whole else {
+            // Such a file is valid: an extension of its maker's may give the data.
             let message = format!("buffer {buffer} has no URI, and the file has no binary chunk for it");
-            return Err(Error::format(message));
+            return Err(Error::new(ErrorKind::Unsupported, message));
         };
         let end = start.checked_add(length).filter(|&end| end <= whole.len() as u64);
         match end {

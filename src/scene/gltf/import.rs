@@ -227,21 +227,25 @@ impl Importer<'_> {
             Some(skin) => Bent::read(self.file, &vertices, skin, &self.nodes, count)?,
             None => None,
         };
-        let transform = |vertex| bent.as_ref().map_or(placement.transform, |bent| bent.transform(vertex));
-        let mut positions =
-            bring_in(positions, |i, p| transform(i).transform_point3(Vec3::from(p).as_dvec3()).as_vec3())?;
-
-        // A reflection turns the winding and the normals; a mesh with joints is reflected if most of its vertices are.
-        let flipped = match &bent {
-            Some(bent) => (0..count).map(|i| bent.transform(i).determinant().signum()).sum::<f64>() < 0.0,
-            None => placement.transform.determinant() < 0.0,
+        let whole = placement.transform;
+        let point = |transform: DMat4, p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
+        let mut positions = match &bent {
+            Some(bent) => bring_in(positions, |i, p| point(bent.transform(i), p))?,
+            None => bring_in(positions, |_, p| point(whole, p))?,
         };
+
+        // A reflection turns the winding and the normals.
+        let flipped = bent.as_ref().map_or_else(|| whole.determinant() < 0.0, |bent| bent.is_mirrored(count));
         let side = if flipped { -1.0 } else { 1.0 };
+        let normal = |turn: DMat3, n| (turn * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3();
         let mut normals = match vertices.checked(&Semantic::Normals, count)? {
             Some(mut normals) => {
                 pose::mix(self.file, targets, |target| target.normals, &mut normals)?;
-                let normal = |i, n| cofactor(transform(i)) * Vec3::from(n).as_dvec3() * side;
-                bring_in(normals, |i, n| normal(i, n).normalize_or_zero().as_vec3())?
+                let turn = cofactor(whole);
+                match &bent {
+                    Some(bent) => bring_in(normals, |i, n| normal(cofactor(bent.transform(i)), n))?,
+                    None => bring_in(normals, |_, n| normal(turn, n))?,
+                }
             }
             None => Vec::new(),
         };

@@ -82,6 +82,12 @@ impl Bent {
         }
     }
 
+    /// Whether joints reflect most of the vertices.
+    pub fn is_mirrored(&self, count: usize) -> bool {
+        let is_possible = self.joints.iter().any(|joint| joint.determinant() < 0.0);
+        is_possible && (0..count).map(|i| self.transform(i).determinant().signum()).sum::<f64>() < 0.0
+    }
+
     /// The transform of a vertex: the mean of its joints' transforms by their weights, or that of its first joint if
     /// all weights are 0.
     pub fn transform(&self, vertex: usize) -> DMat4 {

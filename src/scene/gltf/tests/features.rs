@@ -258,6 +258,12 @@ fn a_skin_is_bent_by_its_joints_at_rest() {
         assert!(near(found, wanted), "{found} instead of {wanted}");
     }
     assert!(near(mesh.normals[0], Vec3::Z) && near(mesh.normals[1], Vec3::X), "{:?}", mesh.normals);
+    // Joints that reflect keep the front where the normals are.
+    let mut mirrored: Value = serde_json::from_slice(&file(1.0, 2)).unwrap();
+    mirrored["nodes"][1]["scale"] = json!([-1, 1, 1]);
+    let mesh = &import(mirrored.to_string().as_bytes(), None).unwrap().meshes[0];
+    let [a, b, c] = mesh.corners(0);
+    assert!((b - a).cross(c - a).dot(mesh.normals[0]) > 0.0, "{:?} {:?}", mesh.triangles, mesh.normals);
     // In millimetres.
     let scaled = super::super::import(&file(1.0, 2), None, Options { unit: 0.001, ..Options::default() }).unwrap();
     assert!(near(scaled.meshes[0].corners(0)[1] * 1000.0, expected[1]));
