@@ -15,7 +15,7 @@ use exr::meta::header::Header;
 use image::ImageFormat;
 
 /// An error if the system has no room for so many bytes.
-fn check(bytes: usize) -> Result<()> {
+pub fn check(bytes: usize) -> Result<()> {
     if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 

@@ -2,9 +2,8 @@
 
 use super::container::{File, missing};
 use super::{Budget, accessor};
-use crate::error::{Error, ErrorKind, Result};
-use crate::image::{try_collect, try_vec};
-use crate::reserve;
+use crate::error::{Error, Result};
+use crate::image::{check_room, try_collect, try_vec};
 use draco_core::{DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -108,9 +107,7 @@ fn decode(file: &File, budget: &dyn Budget, primitive: &Primitive, settings: &Va
     let limits = limits.with_max_points(vertices).with_max_faces(triangles).with_max_decoded_bytes(values);
     let mut mesh = Mesh::new();
     budget.lend(needed, &mut || {
-        if !reserve::has_room(usize::try_from(needed).unwrap_or(usize::MAX)) {
-            return Err(Error::new(ErrorKind::OutOfMemory, format!("{needed} bytes for decoding are not free")));
-        }
+        check_room(usize::try_from(needed).unwrap_or(usize::MAX))?;
         let mut buffer = DecoderBuffer::new(stream).with_limits(limits);
         MeshDecoder::new().decode(&mut buffer, &mut mesh).map_err(|e| Error::format(e.to_string()))
     })?;
