@@ -189,6 +189,47 @@ def as_text(glb: bytes) -> bytes:
     return json.dumps(tree, separators=(",", ":")).encode()
 
 
+#: Two triangles in Draco's compression, once in sequence and once by the edge breaker.
+DRACO = [
+    "RFJBQ08CAgEBAAAABAIAAgAAAR//AREB/wAAAQAJAwAAAgABAQEBgAJVFQEQARD////vrQoFooQ0UqsAAAAA/wAAAAAAAAAAAAAAAAAAAAAAgD8I",
+    "RFJBQ08CAgEBAAAABAIAAgAAAR//AREB/wAAAQAJAwAAAgEBAQAJAwEgARATARADADCQSgAC/gEAAAAA/wAAAAAAAAAAAAAAAAAAAAAAgD8I",
+]
+
+
+def compressed(stream: str) -> bytes:
+    """A glTF file with a Draco stream."""
+    size, name = len(base64.b64decode(stream)), "KHR_draco_mesh_compression"
+    settings = {"bufferView": 0, "attributes": {"POSITION": 0}}
+    tree = {
+        "asset": {"version": "2.0"},
+        "extensionsRequired": [name],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "extensions": {name: settings}}]}],
+        "accessors": [{"count": 4, "componentType": 5126, "type": "VEC3"}, {"count": 6, "componentType": 5125, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": size}],
+        "buffers": [{"uri": f"data:;base64,{stream}", "byteLength": size}],
+    }
+    return json.dumps(tree, separators=(",", ":")).encode()
+
+
+def posed() -> bytes:
+    """A glTF file with a skin, a morph target and colours of vertices."""
+    numbers = np.float32([0, 0, 0, 1, 0, 0, 0, 1, 0, *np.eye(4).ravel(), *[0, 0, 0, 0] * 3, *[1, 0, 0, 0] * 3, *np.linspace(0, 1, 12)])
+    uri = "data:;base64," + base64.b64encode(numbers.tobytes()).decode()
+    places = (("VEC3", 3, 0), ("MAT4", 1, 36), ("VEC4", 3, 100), ("VEC4", 3, 148), ("VEC4", 3, 196))
+    attributes = {"POSITION": 0, "JOINTS_0": 2, "WEIGHTS_0": 3, "COLOR_0": 4}
+    tree = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0, "skin": 0, "weights": [0.5]}, {"translation": [0, 0, 1]}],
+        "skins": [{"joints": [1], "inverseBindMatrices": 1}],
+        "meshes": [{"primitives": [{"attributes": attributes, "targets": [{"POSITION": 0}]}], "weights": [1]}],
+        "accessors": [{"bufferView": 0, "byteOffset": at, "count": n, "componentType": 5126, "type": kind} for kind, n, at in places],
+        "bufferViews": [{"buffer": 0, "byteLength": numbers.nbytes}],
+        "buffers": [{"uri": uri, "byteLength": numbers.nbytes}],
+    }
+    return json.dumps(tree, separators=(",", ":")).encode()
+
+
 def words(tree) -> set[str]:
     """All keys of a JSON tree."""
     below = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ()
@@ -242,6 +283,7 @@ def networks() -> list[bytes]:
 #: What a glTF file may say and ours does not.
 MORE = {"sparse", "matrix", "children", "KHR_materials_unlit", "EXT_lights_ies", "byteStride", "normalized", "extras", "minVersion", "COLOR_0"}
 MORE |= {"EXT_mesh_gpu_instancing", "TRANSLATION", "ROTATION", "SCALE", "EXT_texture_webp", "KHR_materials_clearcoat", "weights", "skin"}
+MORE |= {"EXT_meshopt_compression", "fallback", "mode", "filter", "ATTRIBUTES", "TRIANGLES", "INDICES", "OCTAHEDRAL", "EXPONENTIAL"}
 #: 1, infinity and not a number, in 32 and 64 bits.
 NUMBERS = [rf"\x00\x00{end}" for end in (r"\x80\x3f", r"\x80\x7f", r"\xc0\x7f", r"\xf0\x3f", r"\xf0\x7f", r"\xf8\x7f")]
 
@@ -275,7 +317,7 @@ def seeds() -> dict[str, tuple[list[bytes], list[str]]]:
     return {
         "image": (rasters() + photos(), IMAGE_WORDS),
         "exr": (layered(context), ["channels", "compression", "dataWindow", "tiles", "chunkCount", "box2i", "scanlineimage", "tiledesc"]),
-        "gltf": ([glb, as_text(glb)], [f'\\"{word}\\"' for word in sorted(words(tree) | MORE)]),
+        "gltf": ([glb, as_text(glb), posed(), *map(compressed, DRACO)], [f'\\"{word}\\"' for word in sorted(words(tree) | MORE)]),
         "ies": ([text.encode() for text in IES], ["TILT=NONE", "TILT=INCLUDE", "IESNA:LM-63-1986", "[LUMCAT]"]),
         "ldt": ([saved(lamp, "ldt")], [" 90", "-1", "1e30"]),
         "onnx": (nets, ["align_corners", "pytorch_half_pixel", "asymmetric", "auto_pad", "SAME_UPPER", "ceil_mode", "CRD"]),

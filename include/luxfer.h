@@ -922,6 +922,13 @@ typedef struct luxfer_mesh_params {
     const void *indices;
     /** Bytes from one triangle to the next; at least 12, or 0, the default: packed. */
     size_t index_stride;
+    /**
+     * Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1]. They
+     * multiply the material's base colour and alpha. NULL, the default: none.
+     */
+    const void *colours;
+    /** Bytes from one colour to the next; at least 16, or 0, the default: packed. */
+    size_t colour_stride;
 } luxfer_mesh_params;
 
 /** A pinhole camera. Fill it with luxfer_camera_params_init. */
@@ -1331,6 +1338,10 @@ typedef struct luxfer_mesh_info {
     uint32_t has_normals;
     /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second. */
     uint32_t uv_sets;
+    /** 1 if each vertex has a colour, else 0. */
+    uint32_t has_colours;
+    /** 0. */
+    uint32_t reserved;
 } luxfer_mesh_info;
 
 /**
@@ -1375,6 +1386,113 @@ luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
                                          uint32_t uv_set,
                                          size_t capacity,
                                          float *uvs);
+
+/**
+ * Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
+ * number of vertices. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+ */
+luxfer_status luxfer_scene_read_mesh_colours(luxfer_scene *scene,
+                                             uint32_t index,
+                                             size_t capacity,
+                                             float *colours);
+
+/* ====================================================================================================================
+ * Candidates for the ceiling
+ *
+ * The objects and materials of a scene with their area, height and direction, the likeliest ceilings first: for hosts
+ * that let the user choose the surface with the lights. luxfer_scene_find_surface and luxfer_transfer_set_target take
+ * the names. A list is a copy, which stays as it is when the scene changes.
+ * ==================================================================================================================== */
+
+/** A list of candidates. See luxfer_scene_get_candidates. */
+typedef struct luxfer_candidates luxfer_candidates;
+
+/** What a candidate is: a LUXFER_CANDIDATE_ value. */
+typedef int32_t luxfer_candidate_kind;
+
+/** An object or a material of a scene. Set struct_size before the call. */
+typedef struct luxfer_candidate {
+    /** sizeof(luxfer_candidate), set by the caller. */
+    uint32_t struct_size;
+    /** LUXFER_CANDIDATE_ value. */
+    luxfer_candidate_kind kind;
+    /** Index of the object's first mesh, or of the material. */
+    uint32_t index;
+    /** Number of triangles with an area. */
+    uint32_t triangles;
+    /** Area in m². */
+    float area;
+    /** Area in m² of the triangles that are inclined by less than 15 degrees, on either side. */
+    float level_area;
+    /** Mean height of these triangles, or of all if there are none, in metres. */
+    float height;
+    /** Lowest point, in metres. */
+    float low;
+    /** Highest point, in metres. */
+    float high;
+    /** Mean direction of the front sides by area, a unit vector; 0 if they cancel, as for a box. */
+    float normal[3];
+    /**
+     * Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan that it
+     * covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts too.
+     */
+    float score;
+    /** 0. */
+    uint32_t reserved;
+} luxfer_candidate;
+
+/** All meshes of one name. */
+#define LUXFER_CANDIDATE_OBJECT 0
+
+/** All triangles of one material. */
+#define LUXFER_CANDIDATE_MATERIAL 1
+
+/**
+ * Lists the objects of a scene, and the materials in use, the likeliest ceilings first. It reads each triangle once.
+ * The caller releases *candidates. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid.
+ */
+luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,
+                                          luxfer_candidates **candidates);
+
+/** Counts the candidates of a list. Any thread. */
+luxfer_status luxfer_candidates_count(luxfer_candidates *candidates, uint32_t *count);
+
+/**
+ * Gets the figures of a candidate. Any thread.
+ * LUXFER_NOT_FOUND if there is no such candidate.
+ */
+luxfer_status luxfer_candidates_get(luxfer_candidates *candidates,
+                                    uint32_t index,
+                                    luxfer_candidate *candidate);
+
+/**
+ * Copies the name of a candidate into buffer, as luxfer_context_last_error copies a message. Any thread.
+ * LUXFER_NOT_FOUND if there is no such candidate.
+ */
+luxfer_status luxfer_candidates_get_name(luxfer_candidates *candidates,
+                                         uint32_t index,
+                                         char *buffer,
+                                         size_t capacity,
+                                         size_t *needed);
+
+/**
+ * Copies the reason for the score of a candidate, in English and with its figures, as luxfer_candidates_get_name
+ * copies the name. Any thread.
+ * LUXFER_NOT_FOUND if there is no such candidate.
+ */
+luxfer_status luxfer_candidates_get_reason(luxfer_candidates *candidates,
+                                           uint32_t index,
+                                           char *buffer,
+                                           size_t capacity,
+                                           size_t *needed);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_candidates_retain(luxfer_candidates *candidates);
+
+/** Gives a reference back. Any thread. */
+luxfer_status luxfer_candidates_release(luxfer_candidates *candidates);
 
 /* ====================================================================================================================
  * Plane geometry
@@ -3271,6 +3389,17 @@ typedef struct luxfer_lamps_goal {
     double half_width[3];
     /** Mean radiance from all other light, in cd/m². */
     double background[3];
+    /**
+     * For goals of illuminance, which are those of grids and of LUXFER_QUANTITY_INCIDENT: target in lux, pi times the
+     * luminance of target; 0 for other goals, and likewise for the fields below.
+     */
+    double target_lux;
+    /** Illuminance with the powers found, in lux. */
+    double achieved_lux;
+    /** Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side. */
+    double half_width_lux;
+    /** Illuminance from all other light, in lux. */
+    double background_lux;
 } luxfer_lamps_goal;
 
 /** The light that one goal receives from one lamp. Set struct_size before the call. */
@@ -3890,7 +4019,11 @@ typedef struct luxfer_transfer_params {
      * plane_distance and plane_distance_error of luxfer_transfer_report state it.
      */
     double plane_distance;
-    /** Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100. */
+    /**
+     * Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux. The
+     * strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
+     * luxfer_transfer_report.
+     */
     float white_luminance;
     /** LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE. */
     luxfer_target target;
@@ -4150,6 +4283,15 @@ typedef struct luxfer_transfer_report {
      * for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
      */
     double plane_distance_error;
+    /**
+     * Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file states,
+     * as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
+     */
+    double proposed_white;
+    /** Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor. */
+    double proposed_white_low;
+    /** Upper bound of proposed_white: by the exposure; else 318, for 1000 lux. */
+    double proposed_white_high;
 } luxfer_transfer_report;
 
 /** One lamp of the lit scene. Set struct_size before the call. */
@@ -4391,8 +4533,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_TARGET_CLIPPED 19
 
 /**
- * A scene is so high that its unit is hardly the metre; the severity is its height in metres. The message names the
- * likely unit.
+ * A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in metres,
+ * below the limit if the scene is too small. The message names the likely unit.
  */
 #define LUXFER_WARNING_IMPLAUSIBLE_SIZE 20
 

@@ -48,7 +48,7 @@ pub enum Code {
     Unreachable = 18,
     /// Relighting: the photo clips the target, which is a lower bound.
     TargetClipped = 19,
-    /// Scene: it is so high that its unit is probably not the metre.
+    /// Scene: it is so high, so wide or so small that its unit is probably not the metre.
     ImplausibleSize = 20,
     /// Scene: its file has a feature that is not rendered.
     NotRendered = 21,

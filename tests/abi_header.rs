@@ -30,6 +30,7 @@ const GROUPS: &[&str] = &[
     "query",
     "requirements",
     "scene_read",
+    "candidates",
     "geometry",
     "rectify",
     "features",
@@ -347,11 +348,12 @@ layouts! {
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
-        uv_stride triangle_count indices index_stride;
+        uv_stride triangle_count indices index_stride colours
+        colour_stride;
     luxfer_camera_params: struct_size fov_y position target up reserved;
     luxfer_ray: origin direction t_max;
     luxfer_hit: t mesh triangle u v;
-    luxfer_mesh_info: struct_size material vertex_count triangle_count has_normals uv_sets;
+    luxfer_mesh_info: struct_size material vertex_count triangle_count has_normals uv_sets has_colours reserved;
     luxfer_texture_use: struct_size texture uv_set wrap_u wrap_v transform;
     luxfer_demo_photo_params: struct_size width height samples seed;
     luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved;
@@ -385,7 +387,8 @@ layouts! {
         time_budget_ms reserved seed;
     luxfer_lamps_report: struct_size lamps groups goals paths met;
     luxfer_lamp: struct_size group centre scale half_width;
-    luxfer_lamps_goal: struct_size outcome target achieved half_width background;
+    luxfer_lamps_goal: struct_size outcome target achieved half_width background target_lux achieved_lux half_width_lux
+        background_lux;
     luxfer_lamps_response: struct_size reserved mean half_width;
     luxfer_importance_params: struct_size width height quantity paths target_error time_budget_ms reserved seed;
     luxfer_importance_report: struct_size paths response half_width band_error;
@@ -402,7 +405,9 @@ layouts! {
         emission relight render pattern;
     luxfer_pattern_params: struct_size scale length texel_size rotation offset margin;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
-        unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error;
+        unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error proposed_white
+        proposed_white_low proposed_white_high;
+    luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved;
     luxfer_warning: struct_size code stage has_place severity limit place;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;

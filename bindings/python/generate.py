@@ -232,8 +232,8 @@ class Writer:
 
     def abi(self) -> str:
         h, out = self.header, [BANNER.format(title="The C functions, structs and constants of luxfer.h, for ctypes.")]
-        imports = "CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p"
-        out.append(f"from ctypes import {imports}\nfrom typing import Any\n\nfrom . import types\n\n")
+        imports = "CFUNCTYPE, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p"
+        out.append(f"from ctypes import {imports}\nfrom typing import Any\n\nfrom . import types\nfrom ._pointers import POINTER\n\n")
         out += [f"{name} = {value}\n" for name, value in h.constants.items()]
         out.append("\n")
         for name in h.opaque:

@@ -47,7 +47,7 @@ pub use lamps::luminaire::Luminaire;
 pub use lattice::continuation::Continuation;
 pub use measure::{Measure, measure};
 pub use output::Emission;
-pub use params::{Input, Law, Params};
+pub use params::{Input, Law, Params, SCALES};
 pub use reading::Choice;
 
 use crate::error::{Error, Result};

@@ -4,6 +4,10 @@ use crate::error::{Error, Result, check_range};
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::DVec2;
+use std::ops::RangeInclusive;
+
+/// Pixels of the unwarped photo that a texel may stand for. [convention]
+pub const SCALES: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// The exemplar as it comes from unwarping.
 #[derive(Clone, Copy)]
@@ -115,7 +119,7 @@ impl Params {
     pub fn check(&self) -> Result<()> {
         check_range("emission.width", self.width, 1, 65_536)?;
         check_range("emission.height", self.height, 1, 65_536)?;
-        check_range("emission.scale", self.scale, 1e-3, 1e3)?;
+        check_range("emission.scale", self.scale, *SCALES.start(), *SCALES.end())?;
         check_range("emission.block", self.block, 0, 65_536)?;
         check_range("emission.candidates", self.candidates, 1, 65_536)?;
         check_range("emission.working_side", self.working_side, 16, 2048)?;

@@ -16,7 +16,9 @@ use super::scene::{SceneObject, luxfer_scene, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
-use crate::relight::{self, Colour, Goal, GroupParams, GroupSolution, Lamps, Responses, lamp_responses, solve_groups};
+use crate::relight::{
+    self, Colour, Goal, GroupParams, GroupSolution, Lamps, Quantity, Responses, lamp_responses, solve_groups,
+};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -117,6 +119,7 @@ pub(super) struct Output {
     pub group_of: Vec<u32>,
     pub responses: Responses,
     pub targets: Vec<Vec3>,
+    pub quantities: Vec<Quantity>,
     pub solution: GroupSolution,
 }
 
@@ -210,7 +213,8 @@ pub unsafe extern "C" fn luxfer_lamps_start(
                 job.part(0.95, 1.0),
             )?;
             let targets = inputs.goals.iter().map(|aim| aim.target).collect();
-            Ok(Output { scene, material, lamps, group_of, responses, targets, solution })
+            let quantities = inputs.goals.iter().map(|aim| aim.quantity).collect();
+            Ok(Output { scene, material, lamps, group_of, responses, targets, quantities, solution })
         })
     })
 }

@@ -12,7 +12,10 @@ use super::relight::{luxfer_outcome, reach_value};
 use super::scene::missing;
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind};
+use crate::image::colour::luminance;
+use crate::relight::Quantity;
 use glam::DVec3;
+use std::f64::consts::PI;
 use std::ffi::c_char;
 
 /// Summary of the result. Set struct_size before the call.
@@ -83,15 +86,35 @@ pub struct luxfer_lamps_goal {
     pub half_width: [f64; 3],
     /// Mean radiance from all other light, in cd/m².
     pub background: [f64; 3],
+    /// For goals of illuminance, which are those of grids and of LUXFER_QUANTITY_INCIDENT: target in lux, pi times the
+    /// luminance of target; 0 for other goals, and likewise for the fields below.
+    pub target_lux: f64,
+    /// Illuminance with the powers found, in lux.
+    pub achieved_lux: f64,
+    /// Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side.
+    pub half_width_lux: f64,
+    /// Illuminance from all other light, in lux.
+    pub background_lux: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_lamps_goal {
     const NAME: &'static str = "luxfer_lamps_goal";
-    const SIZES: &'static [usize] = &[112];
+    const SIZES: &'static [usize] = &[144];
     fn defaults() -> Self {
         let zero = [0.0; 3];
-        Self { struct_size: 112, outcome: [0; 3], target: zero, achieved: zero, half_width: zero, background: zero }
+        Self {
+            struct_size: 144,
+            outcome: [0; 3],
+            target: zero,
+            achieved: zero,
+            half_width: zero,
+            background: zero,
+            target_lux: 0.0,
+            achieved_lux: 0.0,
+            half_width_lux: 0.0,
+            background_lux: 0.0,
+        }
     }
 }
 
@@ -176,12 +199,19 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
         let o = stage.output()?;
         let i = index as usize;
         let outcome = o.solution.outcomes.get(i).ok_or_else(|| missing("goal", index, o.targets.len()))?;
+        let (target, background) = (o.targets[i].as_dvec3(), o.responses.background(i).mean);
+        let is_incident = o.quantities[i] == Quantity::Incident;
+        let lux = |radiance: DVec3| if is_incident { PI * f64::from(luminance(radiance.as_vec3())) } else { 0.0 };
         out.set(luxfer_lamps_goal {
             outcome: outcome.status.map(reach_value),
-            target: o.targets[i].as_dvec3().to_array(),
+            target: target.to_array(),
             achieved: outcome.achieved.to_array(),
             half_width: outcome.half_width.to_array(),
-            background: o.responses.background(i).mean.to_array(),
+            background: background.to_array(),
+            target_lux: lux(target),
+            achieved_lux: lux(outcome.achieved),
+            half_width_lux: lux(outcome.half_width),
+            background_lux: lux(background),
             ..luxfer_lamps_goal::defaults()
         });
         Ok(())

@@ -24,6 +24,7 @@ mod pointer;
 mod shared_context;
 mod stage;
 
+mod candidates;
 mod context;
 mod demo;
 mod demo_photo;
@@ -82,6 +83,7 @@ mod transfer_results;
 mod version;
 mod warning;
 
+pub use candidates::*;
 pub use context::*;
 pub use demo::*;
 pub use demo_photo::*;

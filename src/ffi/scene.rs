@@ -226,7 +226,7 @@ impl gltf::Budget for Charges<'_> {
 fn cost(scene: &Scene) -> u64 {
     let meshes = scene.meshes.iter().map(|m| {
         let uvs = m.uvs.iter().map(Vec::len).sum::<usize>();
-        12 * (m.positions.len() + m.normals.len() + m.triangles.len()) + 8 * uvs
+        12 * (m.positions.len() + m.normals.len() + m.triangles.len()) + 8 * uvs + 16 * m.colours.len()
     });
     let textures = scene.textures.iter().map(|t| t.image.data.len() * size_of::<f32>());
     meshes.chain(textures).map(|bytes| bytes as u64).sum()

@@ -45,9 +45,14 @@ pub struct luxfer_mesh_params {
     pub indices: *const c_void,
     /// Bytes from one triangle to the next; at least 12, or 0, the default: packed.
     pub index_stride: usize,
+    /// Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1]. They
+    /// multiply the material's base colour and alpha. NULL, the default: none.
+    pub colours: *const c_void,
+    /// Bytes from one colour to the next; at least 16, or 0, the default: packed.
+    pub colour_stride: usize,
 }
 
-const MESH_SIZE: usize = 8 + 11 * size_of::<usize>();
+const MESH_SIZE: usize = 8 + 13 * size_of::<usize>();
 
 // SAFETY: integers, and pointers that are checked before use.
 unsafe impl Versioned for luxfer_mesh_params {
@@ -68,6 +73,8 @@ unsafe impl Versioned for luxfer_mesh_params {
             triangle_count: 0,
             indices: std::ptr::null(),
             index_stride: 0,
+            colours: std::ptr::null(),
+            colour_stride: 0,
         }
     }
 }
@@ -151,7 +158,8 @@ pub unsafe extern "C" fn luxfer_scene_add_mesh(
         let params = params::read_required(params)?;
         let vertices = u64::try_from(params.vertex_count).unwrap_or(u64::MAX);
         check_range("mesh.vertex_count", vertices, 3, u64::from(u32::MAX))?;
-        let cost = vertices.saturating_mul(32).saturating_add((params.triangle_count as u64).saturating_mul(12));
+        let vertex = if params.colours.is_null() { 32 } else { 48 };
+        let cost = vertices.saturating_mul(vertex).saturating_add((params.triangle_count as u64).saturating_mul(12));
         let added = object.change(cost, |scene| {
             if params.material as usize >= scene.materials.len() {
                 return Err(missing("material", params.material, scene.materials.len()));
@@ -176,6 +184,15 @@ fn mesh(params: &luxfer_mesh_params) -> Result<Mesh> {
     } else {
         array(params.uvs, count, params.uv_stride, "mesh.uvs", f32::from_ne_bytes)?
     };
+    let colours = if params.colours.is_null() {
+        Vec::new()
+    } else {
+        array(params.colours, count, params.colour_stride, "mesh.colours", f32::from_ne_bytes)?
+    };
+    if let Some(i) = colours.iter().position(|c: &[f32; 4]| c.iter().any(|v| !(0.0..=1.0).contains(v))) {
+        let colour = colours[i];
+        return Err(Error::argument(format!("element {i} of mesh.colours is {colour:?}; it must lie in [0, 1]")));
+    }
     let triangles: Vec<[u32; 3]> =
         array(params.indices, params.triangle_count, params.index_stride, "mesh.indices", u32::from_ne_bytes)?;
     if let Some((i, bad)) = triangles.iter().enumerate().find(|(_, t)| t.iter().any(|&v| v as usize >= count)) {
@@ -191,6 +208,7 @@ fn mesh(params: &luxfer_mesh_params) -> Result<Mesh> {
         positions,
         normals: vectors(params.normals, params.normal_stride, "mesh.normals")?,
         uvs: [check_finite::<2, Vec2>(uvs, "mesh.uvs")?, Vec::new()],
+        colours: check_finite(colours, "mesh.colours")?,
         triangles,
     })
 }

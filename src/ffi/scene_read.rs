@@ -29,9 +29,13 @@ pub struct luxfer_mesh_info {
     pub has_normals: u32,
     /// Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second.
     pub uv_sets: u32,
+    /// 1 if each vertex has a colour, else 0.
+    pub has_colours: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
-const MESH_INFO_SIZE: usize = 16 + 2 * size_of::<usize>();
+const MESH_INFO_SIZE: usize = 24 + 2 * size_of::<usize>();
 
 // SAFETY: plain integers.
 unsafe impl Versioned for luxfer_mesh_info {
@@ -39,7 +43,16 @@ unsafe impl Versioned for luxfer_mesh_info {
     const SIZES: &'static [usize] = &[MESH_INFO_SIZE];
     fn defaults() -> Self {
         let struct_size = MESH_INFO_SIZE as u32;
-        Self { struct_size, material: 0, vertex_count: 0, triangle_count: 0, has_normals: 0, uv_sets: 0 }
+        Self {
+            struct_size,
+            material: 0,
+            vertex_count: 0,
+            triangle_count: 0,
+            has_normals: 0,
+            uv_sets: 0,
+            has_colours: 0,
+            reserved: 0,
+        }
     }
 }
 
@@ -61,6 +74,7 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh(
             triangle_count: mesh.triangles.len(),
             has_normals: u32::from(!mesh.normals.is_empty()),
             uv_sets: u32::from(!mesh.uvs[0].is_empty()) + 2 * u32::from(!mesh.uvs[1].is_empty()),
+            has_colours: u32::from(!mesh.colours.is_empty()),
             ..luxfer_mesh_info::defaults()
         });
         Ok(())
@@ -129,6 +143,30 @@ pub unsafe extern "C" fn luxfer_scene_read_mesh_uvs(
         let set = set.ok_or_else(|| lacks(index, format_args!("set {uv_set} of texture coordinates")))?;
         let Some((place, data)) = place(uvs.cast(), set, capacity, "uvs")? else {
             return Err(Error::argument("uvs is NULL; it must point to two floats for each vertex"));
+        };
+        place.copy_from_slice(data);
+        Ok(())
+    })
+}
+
+/// Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
+/// number of vertices. Any thread.
+/// LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_read_mesh_colours(
+    scene: *mut luxfer_scene,
+    index: u32,
+    capacity: usize,
+    colours: *mut f32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let scene = object.snapshot();
+        let mesh = mesh(&scene, index)?;
+        if mesh.colours.is_empty() {
+            return Err(lacks(index, "colours"));
+        }
+        let Some((place, data)) = place(colours.cast(), &mesh.colours, capacity, "colours")? else {
+            return Err(Error::argument("colours is NULL; it must point to four floats for each vertex"));
         };
         place.copy_from_slice(data);
         Ok(())

@@ -27,6 +27,7 @@ use super::stage::{Stage as Runner, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::features::DepthKind;
+use crate::image::photo::PhotoMetadata;
 use crate::scene::Camera;
 use crate::segment::{self, Segmentation, StrokeSet, strokes};
 use crate::transfer::{self, Results, STAGES, Stage, TargetColour, Transfer};
@@ -80,7 +81,9 @@ pub struct luxfer_transfer_params {
     /// the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit ceiling tiles;
     /// plane_distance and plane_distance_error of luxfer_transfer_report state it.
     pub plane_distance: f64,
-    /// Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100.
+    /// Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux. The
+    /// strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
+    /// luxfer_transfer_report.
     pub white_luminance: f32,
     /// LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE.
     pub target: luxfer_target,
@@ -173,6 +176,11 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
+    /// The metadata of the photo's file.
+    pub(super) fn photo_metadata(&self) -> Option<&PhotoMetadata> {
+        self.photo.as_ref().map(|photo| photo.metadata())
+    }
+
     fn photo_size(&self) -> Result<(usize, usize)> {
         let photo = need(&self.photo, "luxfer_transfer_set_photo")?.image();
         Ok((photo.width, photo.height))

@@ -16,7 +16,9 @@ use super::status::luxfer_status;
 use super::transfer::luxfer_transfer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io;
+use crate::image::photo::{Luminance, PhotoMetadata};
 use crate::transfer::{Results, to_csv, to_json};
+use std::f64::consts::PI;
 use std::ffi::c_char;
 use std::path::Path;
 use std::sync::Arc;
@@ -97,9 +99,19 @@ pub struct luxfer_transfer_report {
     /// Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.25
     /// for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
     pub plane_distance_error: f64,
+    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file states,
+    /// as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
+    pub proposed_white: f64,
+    /// Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor.
+    pub proposed_white_low: f64,
+    /// Upper bound of proposed_white: by the exposure; else 318, for 1000 lux.
+    pub proposed_white_high: f64,
 }
 
-const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16;
+const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16 + 24;
+
+/// Illuminances in lux of rooms: of corridors, of offices, and of work on fine things. [convention]: EN 12464-1
+const USUAL_ILLUMINANCE: [f64; 3] = [100.0, 500.0, 1000.0];
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_transfer_report {
@@ -123,12 +135,18 @@ unsafe impl Versioned for luxfer_transfer_report {
             reserved: 0,
             plane_distance: f64::NAN,
             plane_distance_error: f64::NAN,
+            proposed_white: f64::NAN,
+            proposed_white_low: f64::NAN,
+            proposed_white_high: f64::NAN,
         }
     }
 }
 
 impl luxfer_transfer_report {
-    fn new(results: &Results) -> Self {
+    fn new(results: &Results, photo: Option<&PhotoMetadata>) -> Self {
+        let [low, usual, high] = USUAL_ILLUMINANCE.map(|lux| lux / PI);
+        let white = photo.and_then(PhotoMetadata::white_luminance);
+        let white = white.unwrap_or(Luminance { low, expected: usual, high });
         let or_nan = |error: Option<f64>| error.unwrap_or(f64::NAN);
         let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
         let lit = results.lit.as_ref();
@@ -153,6 +171,9 @@ impl luxfer_transfer_report {
             target: results.target.map_or([f32::NAN; 3], |t| t.to_array()),
             plane_distance: or_nan(results.distance.map(|d| d.metres)),
             plane_distance_error: or_nan(results.distance.map(|d| d.error)),
+            proposed_white: white.expected,
+            proposed_white_low: white.low,
+            proposed_white_high: white.high,
             ..Self::defaults()
         }
     }
@@ -286,7 +307,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_report(
 ) -> luxfer_status {
     enter(transfer, |stage| {
         let out = Report::new(report)?;
-        out.set(luxfer_transfer_report::new(&*stage.output()?));
+        out.set(luxfer_transfer_report::new(&*stage.output()?, stage.inputs().photo_metadata()));
         Ok(())
     })
 }

@@ -68,6 +68,49 @@ pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     }
 }
 
+/// Sub-blocks of the first application extension of a GIF with this name, one after the other; None if it has none.
+pub fn gif_extension<'a>(bytes: &'a [u8], name: &[u8; 11]) -> Option<impl Iterator<Item = &'a [u8]> + use<'a>> {
+    let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
+    let mut rest = bytes.strip_prefix(b"GIF8")?.get(9 + table(*bytes.get(10)?)..)?;
+    while let [0x21, label, blocks @ ..] = rest {
+        let (_, first) = sub_blocks(blocks).next()?;
+        let is_wanted = *label == 0xff && first == name;
+        if is_wanted {
+            return Some(sub_blocks(blocks).skip(1).map(|(_, block)| block));
+        }
+        // An extension ends with an empty block.
+        let length: usize = sub_blocks(blocks).map(|(length, _)| length).sum();
+        rest = blocks.get(length + 1..)?;
+    }
+    None
+}
+
+/// Sub-blocks of a GIF up to the empty one: how many bytes each takes with its length, and its content.
+fn sub_blocks(mut rest: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
+    std::iter::from_fn(move || {
+        let (&length @ 1.., after) = rest.split_first()? else { return None };
+        let (block, next) = after.split_at_checked(usize::from(length))?;
+        rest = next;
+        Some((usize::from(length) + 1, block))
+    })
+}
+
+/// The kind of colour space in the header of a BMP, of version 4 or later, and the profile that is embedded in it.
+pub fn bmp_space(bytes: &[u8]) -> Option<([u8; 4], Option<&[u8]>)> {
+    const HEADER: usize = 14;
+    let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(HEADER + at..)?.first_chunk()?));
+    let length = word(0).filter(|_| bytes.starts_with(b"BM"))?;
+    if length < 108 {
+        return None;
+    }
+    let kind = word(56)?.to_be_bytes();
+    let embedded = || {
+        let (start, size) = (word(112)? as usize, word(116)? as usize);
+        bytes.get(HEADER.checked_add(start)?..)?.get(..size)
+    };
+    Some((kind, if length >= 124 && kind == *b"MBED" { embedded() } else { None }))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,6 +139,36 @@ mod tests {
         for cut in 0..=webp.len() {
             assert!(riff_chunks(&webp[..cut]).chain(riff_chunks(&png[..cut.min(png.len())])).count() <= 4);
         }
+    }
+
+    #[test]
+    fn extensions_of_a_gif_are_found_by_name() {
+        let file = b"GIF89a\x09\0\x08\0\x80\0\0RGBrgb\x21\xf9\x02ab\0\x21\xff\x0bNETSCAPE2.0\x01c\0\x21\xff\x0bICCRGBG1012\x02de\x01f\0\x2c";
+        let found = |name| gif_extension(file, name).map(|blocks| blocks.flatten().copied().collect::<Vec<_>>());
+        assert_eq!(found(b"ICCRGBG1012"), Some(b"def".to_vec()));
+        assert_eq!(found(b"NETSCAPE2.0"), Some(b"c".to_vec()));
+        assert_eq!(found(b"ABCDEFGHIJK"), None);
+        for cut in 0..file.len() - 6 {
+            assert!(gif_extension(&file[..cut], b"ICCRGBG1012").is_none_or(|blocks| blocks.count() <= 1), "{cut}");
+        }
+    }
+
+    #[test]
+    fn a_bmp_states_its_space_in_later_headers() {
+        let file = |length: u32, kind: &[u8; 4], start: u32, size: u32| {
+            let mut file = [&b"BM"[..], &[0; 12], &length.to_le_bytes(), &[0; 120], b"profile"].concat();
+            file[70..74].copy_from_slice(&u32::from_be_bytes(*kind).to_le_bytes());
+            file[126..130].copy_from_slice(&start.to_le_bytes());
+            file[130..134].copy_from_slice(&size.to_le_bytes());
+            file
+        };
+        assert_eq!(bmp_space(&file(124, b"MBED", 124, 7)), Some((*b"MBED", Some(&b"profile"[..]))));
+        assert_eq!(bmp_space(&file(124, b"MBED", 124, 8)), Some((*b"MBED", None)));
+        assert_eq!(bmp_space(&file(124, b"MBED", u32::MAX, 8)), Some((*b"MBED", None)));
+        assert_eq!(bmp_space(&file(108, b"sRGB", 124, 7)), Some((*b"sRGB", None)));
+        assert_eq!(bmp_space(&file(40, b"sRGB", 124, 7)), None);
+        let whole = file(124, b"MBED", 124, 7);
+        assert!((0..whole.len()).all(|cut| bmp_space(&whole[..cut]).is_none_or(|(_, profile)| profile.is_none())));
     }
 
     #[test]

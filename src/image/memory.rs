@@ -18,7 +18,7 @@ use image::ImageFormat;
 pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
 /// Returns an error if the system does not have this many bytes.
-fn check(bytes: usize) -> Result<()> {
+pub fn check(bytes: usize) -> Result<()> {
     if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 

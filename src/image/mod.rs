@@ -29,4 +29,5 @@ mod working;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
 pub(crate) use buffer::{make_room, no_memory};
+pub use memory::check as check_memory;
 pub use planes::{deinterleave, deinterleave_of, interleave};

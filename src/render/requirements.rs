@@ -121,6 +121,21 @@ impl Range {
     fn is_constant(&self) -> bool {
         self.low == self.high
     }
+
+    /// The products of values of both ranges, the other of which is not negative.
+    fn times(&self, other: &Self) -> Self {
+        let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        Self {
+            low: products.into_iter().fold(Vec4::INFINITY, Vec4::min),
+            high: products.into_iter().fold(Vec4::NEG_INFINITY, Vec4::max),
+        }
+    }
+
+    /// Adds a value to the range.
+    fn include(&mut self, value: Vec4) {
+        self.low = self.low.min(value);
+        self.high = self.high.max(value);
+    }
 }
 
 /// Analyses a validated scene; returns its requirements and its compiled materials.
@@ -129,15 +144,24 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
     // Materials that a ray can meet, and materials that can emit: on triangles with an area.
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
+    // Colours of the vertices that each material is multiplied by.
+    let none = Range { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
+    let mut tints = vec![none; scene.materials.len()];
     for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {
         used[mesh.material] = true;
         spread[mesh.material] |= has_area(mesh);
+        let tint = &mut tints[mesh.material];
+        mesh.colours.iter().for_each(|&colour| tint.include(colour));
+        if mesh.colours.is_empty() {
+            tint.include(Vec4::ONE);
+        }
     }
     let mut needed = Requirements { textures_given: scene.textures.len(), ..Requirements::default() };
     let mut varied = vec![false; scene.textures.len()];
     let mut compiled_materials = Vec::with_capacity(scene.materials.len());
     for (index, material) in scene.materials.iter().enumerate() {
-        let base = range(&material.base_color_texture);
+        let tint = if used[index] { tints[index] } else { Range::ONE };
+        let base = range(&material.base_color_texture).times(&tint);
         let layers = range(&material.metallic_roughness_texture);
         let compiled = compile_material(material, base, layers, range(&material.normal_texture));
         compiled_materials.push(compiled);

@@ -25,7 +25,7 @@ impl<'w> TextureContext<'w> {
     /// Opacity (coverage) of the surface at this point.
     pub fn opacity(&self) -> f32 {
         let texture = self.material.base_color_texture.as_ref();
-        self.material.alpha * texture.map_or(1.0, |t| self.look_up(t).w)
+        self.material.alpha * texture.map_or(1.0, |t| self.look_up(t).w) * self.vertex_colour().w
     }
 
     /// The material at this point.
@@ -34,7 +34,7 @@ impl<'w> TextureContext<'w> {
             return compiled.substance;
         }
         let material = self.material;
-        let mut base = material.base_color;
+        let mut base = material.base_color * self.vertex_colour().truncate();
         if let Some(texture) = &material.base_color_texture {
             base *= self.look_up(texture).truncate();
         }
@@ -44,6 +44,17 @@ impl<'w> TextureContext<'w> {
             (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
         }
         compiled_material::substance(material, base, metallic, roughness)
+    }
+
+    /// The colour between the vertices, 1 without colours.
+    fn vertex_colour(&self) -> Vec4 {
+        let colours = &self.mesh.colours;
+        if colours.is_empty() {
+            return Vec4::ONE;
+        }
+        let [p, q, r] = self.mesh.triangles[self.triangle as usize].map(|i| colours[i as usize]);
+        let v = self.barycentric;
+        p * (1.0 - v.x - v.y) + q * v.x + r * v.y
     }
 
     pub fn look_up(&self, texture: &TextureRef) -> Vec4 {

@@ -313,7 +313,10 @@ fn check_mesh(scene: &Scene, mesh: &Mesh) -> Result<()> {
     if let Some(p) = mesh.positions.iter().find(|p| !p.is_finite()) {
         return Err(Error::argument(format!("a position is {p}; it must be finite")));
     }
-    for (name, len) in [("normals", mesh.normals.len()), ("uvs[0]", mesh.uvs[0].len()), ("uvs[1]", mesh.uvs[1].len())] {
+    let [first, second] = [&mesh.uvs[0], &mesh.uvs[1]].map(Vec::len);
+    let lengths =
+        [("normals", mesh.normals.len()), ("uvs[0]", first), ("uvs[1]", second), ("colours", mesh.colours.len())];
+    for (name, len) in lengths {
         if len != 0 && len != count {
             return Err(Error::argument(format!("{name} has {len} entries; it must have none or {count}")));
         }

@@ -11,12 +11,13 @@ impl Scene {
     pub fn fingerprint(&self) -> u64 {
         let Self { meshes, materials, textures, lights, distributions, environment, cameras: _, unrendered: _ } = self;
         let mut digest = Digest(0);
-        for Mesh { name, material, positions, normals, uvs: [first, second], triangles } in meshes {
+        for Mesh { name, material, positions, normals, uvs: [first, second], colours, triangles } in meshes {
             digest.text(&(name, material));
             digest.array(positions);
             digest.array(normals);
             digest.array(first);
             digest.array(second);
+            digest.array(colours);
             digest.array(triangles);
         }
         for Texture { name, image, wrap } in textures {
@@ -97,12 +98,13 @@ mod tests {
         let original = changed(&|_| ());
         let look = |s: &mut Scene| s.cameras.push(Camera::look_at(Vec3::ZERO, Vec3::Z, 1.0));
         assert_eq!(original, changed(&look));
-        let changes: [&dyn Fn(&mut Scene); 12] = [
+        let changes: [&dyn Fn(&mut Scene); 13] = [
             &|s| s.meshes[0].name.push('x'),
             &|s| s.meshes[0].material = 1,
             &|s| s.meshes[0].positions[3].z = 1.0f32.next_up(),
             &|s| s.meshes[0].normals = vec![Vec3::Y; 4],
             &|s| s.meshes[0].uvs.swap(0, 1),
+            &|s| s.meshes[0].colours = vec![glam::Vec4::ONE; s.meshes[0].positions.len()],
             &|s| s.meshes[0].triangles.swap(0, 1),
             &|s| s.materials[0].roughness -= 1e-6,
             &|s| s.textures[0].image.data[17] = -0.0,

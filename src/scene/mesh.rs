@@ -1,7 +1,7 @@
 //! Triangle meshes.
 
 use crate::rng::hash;
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// Triangles in world space. Front faces are wound counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Mesh {
     /// Up to two sets of texture coordinates, each with one entry per position or empty; (0, 0) is the top-left of a
     /// texture.
     pub uvs: [Vec<Vec2>; 2],
+    /// Factors of the base colour and of alpha, each in `[0, 1]`: one per position; if empty, 1.
+    pub colours: Vec<Vec4>,
     pub triangles: Vec<[u32; 3]>,
 }
 

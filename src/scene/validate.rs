@@ -3,7 +3,7 @@
 use super::{AlphaMode, Camera, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::image::Image;
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fmt::Display;
 
@@ -142,7 +142,17 @@ impl Scene {
                 return bad("texture coordinate", i, &uvs[i]);
             }
         }
-        let lengths = [("normals", mesh.normals.len()), ("uvs[0]", mesh.uvs[0].len()), ("uvs[1]", mesh.uvs[1].len())];
+        let is_share = |colour: &Vec4| colour.cmpge(Vec4::ZERO).all() && colour.cmple(Vec4::ONE).all();
+        if let Some(i) = mesh.colours.iter().position(|colour| !is_share(colour)) {
+            let colour = mesh.colours[i];
+            return Err(Error::argument(format!("the colour of vertex {i} is {colour}; it must lie in [0, 1]")));
+        }
+        let lengths = [
+            ("normals", mesh.normals.len()),
+            ("uvs[0]", mesh.uvs[0].len()),
+            ("uvs[1]", mesh.uvs[1].len()),
+            ("colours", mesh.colours.len()),
+        ];
         for (what, len) in lengths {
             if len != 0 && len != count {
                 return Err(Error::argument(format!(
@@ -276,7 +286,7 @@ mod tests {
         for light in [hang(Vec3::NEG_Y, Vec3::X, 1), hang(Vec3::ONE, Vec3::X, 0), hang(Vec3::X, Vec3::X, 0)] {
             assert!(hang_in(light).validate().unwrap_err().message.contains("light 0"));
         }
-        let defects: [Defect; 24] = [
+        let defects: [Defect; 26] = [
             ("vertex 2", |s| s.meshes[0].positions[2].x = -1.1e15),
             ("Desk", |s| s.meshes[0].positions[1].y = f32::NAN),
             ("vertex 1", |s| s.meshes[0].positions[1].y = f32::INFINITY),
@@ -286,6 +296,8 @@ mod tests {
             ("Desk", |s| s.meshes[0].normals = vec![Vec3::NAN; 3]),
             ("Desk", |s| s.meshes[0].uvs[1] = vec![Vec2::ZERO; 4]),
             ("Desk", |s| s.meshes[0].uvs[0] = vec![Vec2::NAN; 3]),
+            ("Desk", |s| s.meshes[0].colours = vec![Vec4::ONE; 2]),
+            ("vertex 1", |s| s.meshes[0].colours = vec![Vec4::ONE, Vec4::new(0.0, 1.0, f32::NAN, 1.0), Vec4::ZERO]),
             ("Oak", |s| s.materials[0].base_color.x = 1.5),
             ("Oak", |s| s.materials[0].roughness = -0.1),
             ("Oak", |s| s.materials[0].ior = 0.5),

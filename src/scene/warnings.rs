@@ -8,11 +8,22 @@ use glam::Vec3;
 /// be 79 to 157 in inches, and more in smaller units.
 pub const MAX_HEIGHT: f64 = 50.0;
 
-/// Height of a usual room in metres, from which the likely unit is derived. [convention]
+/// Width in metres above which the unit of a scene is hardly the metre. [convention]: a plan or a ceiling alone has no
+/// height, and rooms of 3 m are 3000 wide in millimetres; few halls are longer than 1 km.
+pub const MAX_WIDTH: f64 = 2000.0;
+
+/// Extent in metres below which a scene is hardly a room in metres. [convention]: smaller than a table lamp.
+pub const MIN_EXTENT: f64 = 0.2;
+
+/// Height and width of a usual room in metres, from which the likely unit is derived. [convention]
 const USUAL_HEIGHT: f64 = 3.0;
+const USUAL_WIDTH: f64 = 6.0;
 
 /// Units of modelling programs, in metres. [convention]
-const UNITS: [(&str, f64); 3] = [("millimetre", 0.001), ("centimetre", 0.01), ("inch", 0.0254)];
+const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimetre", 0.01), ("the inch", 0.0254)];
+
+/// Units of scenes that were scaled down once too often, in metres. [convention]
+const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
 impl Scene {
     pub fn warnings(&self) -> Vec<Warning> {
@@ -24,18 +35,32 @@ impl Scene {
         self.implausible_size().into_iter().chain(unrendered).collect()
     }
 
-    /// A warning if the height suggests a unit other than the metre.
+    /// A warning if the extent suggests a unit other than the metre: the first of height, width and smallness.
     fn implausible_size(&self) -> Option<Warning> {
         let (low, high) = self.bounds()?;
-        let height = f64::from((high - low).y);
-        let distance = |unit: f64| (height * unit / USUAL_HEIGHT).ln().abs();
-        let (name, unit) = UNITS.into_iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))?;
-        let message = || {
-            let likely = height * unit;
-            format!("the scene is {height:.0} m high; its unit may be the {name}, with a height of {likely:.2} m")
+        let extent = (high - low).as_dvec3();
+        let (height, width) = (extent.y, extent.x.max(extent.z));
+        let warn = |word: &str, size: f64, limit: f64, usual: f64, units: &[(&str, f64)]| {
+            let distance = |unit: f64| (size * unit / usual).ln().abs();
+            let (name, unit) = units.iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))?;
+            let (size_text, likely) = (significant(size), significant(size * unit));
+            let message =
+                format!("the scene is {size_text} m {word}; its unit may be {name}, and it {likely} m {word}");
+            let advice =
+                format!("load it with unit = {unit} (luxfer_scene_load_params), or scale it where it was made");
+            Some(Warning::new(Code::ImplausibleSize, size, limit, message, &advice))
         };
-        let advice = format!("load it with unit = {unit} (luxfer_scene_load_params), or scale it where it was made");
-        Warning::above(Code::ImplausibleSize, height, MAX_HEIGHT, message, &advice)
+        if height > MAX_HEIGHT {
+            warn("high", height, MAX_HEIGHT, USUAL_HEIGHT, &SMALL_UNITS)
+        } else if width > MAX_WIDTH {
+            warn("wide", width, MAX_WIDTH, USUAL_WIDTH, &SMALL_UNITS)
+        } else if height.max(width) > 0.0 && height.max(width) < MIN_EXTENT {
+            let (word, size, usual) =
+                if height >= width { ("high", height, USUAL_HEIGHT) } else { ("wide", width, USUAL_WIDTH) };
+            warn(word, size, MIN_EXTENT, usual, &LARGE_UNITS)
+        } else {
+            None
+        }
     }
 
     /// The corners of the bounding box of all triangles.
@@ -50,6 +75,13 @@ impl Scene {
             Some((low.min(p), high.max(p)))
         })
     }
+}
+
+/// A length with three significant digits, in full: 2700, 4.5, 0.0123.
+fn significant(length: f64) -> String {
+    let digits = 2.0 - length.log10().floor();
+    let text = format!("{length:.*}", digits.clamp(0.0, 12.0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
 #[cfg(test)]
@@ -76,6 +108,39 @@ mod tests {
             assert_eq!((warning.code, warning.severity), (Code::ImplausibleSize, f64::from(height)));
             assert!(warning.advice.contains(&format!("unit = {unit} ")), "{height}: {warning}");
         }
+    }
+
+    #[test]
+    fn a_plan_without_height_is_noticed_by_its_width() {
+        let plan = |width: f32| {
+            let floor = Mesh::parallelogram(Vec3::ZERO, Vec3::X * width, Vec3::Z * width / 2.0, 0);
+            Scene { meshes: vec![floor], ..Scene::default() }
+        };
+        assert!(plan(1500.0).warnings().is_empty() && plan(0.3).warnings().is_empty());
+        let warnings = plan(8000.0).warnings();
+        assert_eq!((warnings[0].severity, warnings[0].limit), (8000.0, MAX_WIDTH));
+        assert!(warnings[0].message.contains("8000 m wide"), "{}", warnings[0]);
+        assert!(warnings[0].advice.contains("unit = 0.001 "), "{}", warnings[0]);
+    }
+
+    #[test]
+    fn a_room_that_is_too_small_is_noticed_with_the_unit() {
+        assert!(room(0.25).warnings().is_empty());
+        // A point has no size by which a unit could be guessed.
+        assert_eq!(room(0.0).warnings(), []);
+        for (height, unit) in [(0.0027, "1000"), (0.03, "100"), (0.07, "100")] {
+            let warnings = room(height).warnings();
+            assert_eq!(warnings.len(), 1, "{height}");
+            assert_eq!((warnings[0].code, warnings[0].limit), (Code::ImplausibleSize, MIN_EXTENT));
+            assert!(warnings[0].advice.contains(&format!("unit = {unit} ")), "{height}: {}", warnings[0]);
+        }
+        assert!(room(0.0027).warnings()[0].message.starts_with("the scene is 0.0027 m high"));
+    }
+
+    #[test]
+    fn lengths_have_three_digits() {
+        let texts = [2700.0, 60_000.4, 4.5, 0.012_345, 1e-9].map(significant);
+        assert_eq!(texts, ["2700", "60000", "4.5", "0.0123", "0.000000001"]);
     }
 
     #[test]

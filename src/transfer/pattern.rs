@@ -124,6 +124,15 @@ impl Pattern {
             )));
         }
         let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
+        // The synthesis has limits, whose message would not tell the user what is wrong.
+        if !emission::SCALES.contains(&(texel / pixel)) {
+            return Err(Error::argument(format!(
+                "the surface is {} m long and a pixel of the unwarped photo {pixel:.3e} m, so that a texel of {texel:.3e} m \
+                 does not fit: check the unit of the scene (luxfer_scene_load_params.unit), plane_distance and the settings of \
+                 the pattern",
+                size.max_element()
+            )));
+        }
         let count = |length: f64| ((length / texel).round() as usize).clamp(1, max_texels);
         let (width, height) = (count(size.x), count(size.y));
         let density = DVec2::new(width as f64, height as f64) / size;
@@ -148,6 +157,15 @@ mod tests {
             area: size.x * size.y,
             bent: 0.0,
         }
+    }
+
+    #[test]
+    fn a_scene_in_another_unit_is_named_as_the_cause() {
+        // 8 m in millimetres, with pixels of 2 mm.
+        let error =
+            Pattern::default().texel_grid(&surface(Vec2::new(8000.0, 6000.0)), 0.002, 2048).map(|_| ()).unwrap_err();
+        assert!(error.message.contains("8000 m long") && error.message.contains("unit of the scene"), "{error}");
+        assert!(Pattern::default().texel_grid(&surface(Vec2::new(8.0, 6.0)), 0.002, 2048).is_ok());
     }
 
     #[test]

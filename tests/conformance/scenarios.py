@@ -89,6 +89,12 @@ def scenes() -> Scenario:
     scaled = s.make("scene_load_with", s.context, "a.glb", struct("scene_load_params", unit=100.0))
     warnings = s.make("scene_get_warnings", scaled)  # 200 m are too high for a room
     s.call("warnings_get", warnings, 0, struct("warning", "size"))
+    candidates = s.make("scene_get_candidates", scaled)
+    s.references("candidates", candidates)
+    s.call("candidates_count", candidates, ROOM)
+    s.call("candidates_get", candidates, 0, struct("candidate", "size"))
+    s.call("candidates_get_name", candidates, 0, ROOM, 300, ROOM)
+    s.call("candidates_get_reason", candidates, 0, ROOM, 300, ROOM)
     s.make("scene_load_memory_with", s.context, b'{"asset":{"version":"2.0"}}', 27, None, struct("scene_load_params", outside=1))
     s.call("scene_export_memory", scene, ["callback", "write"], None)
     s.call("scene_get_counts", scene, struct("scene_counts", "size"))
@@ -113,6 +119,12 @@ def scenes() -> Scenario:
     s.call("scene_get_mesh_name", scene, 0, ROOM, 20, ROOM)
     s.call("scene_read_mesh", scene, 0, 4, ROOM, None, 2, ROOM)
     s.call("scene_read_mesh_uvs", scene, 0, 0, 4, ROOM)
+    coloured = struct(
+        "mesh_params", name="Coloured", vertex_count=3, positions=array("float", 0, 0, 0, 1, 0, 0, 0, 1, 0), triangle_count=1,
+        indices=array("uint32_t", 0, 1, 2), colours=array("float", *[0.5] * 12),
+    )  # fmt: skip
+    s.call("scene_add_mesh", scene, coloured, None)
+    s.call("scene_read_mesh_colours", scene, 2, 3, ROOM)
     s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
     s.make("demo_scene", s.context, 2)
     return s

@@ -3,6 +3,7 @@ status and a message, and goes on living. `play.py` plays more programs, as long
 
 import unittest
 
+import busy
 import faults
 import files
 import scenarios
@@ -33,6 +34,12 @@ class Conformance(unittest.TestCase):
 
     def test_calls_may_come_from_several_threads(self):
         self.check([faults.random_program(USUAL, seed) for seed in range(1000, 1040)], threads=3)
+
+    def test_calls_never_wait_for_a_job_that_runs(self):
+        for seed in (3032, 3038, 3055, 3057, 3073):  # programs that seldom wait
+            with self.subTest(seed):
+                slowest = max(busy.delays(faults.random_program(USUAL, seed), seed))
+                self.assertLess(slowest.seconds, busy.LIMIT, slowest)
 
     def test_damaged_files_are_errors(self):
         self.assertIsNone(files.run(1, 1500))

@@ -364,6 +364,13 @@ void scenes_come_back() {
     in_hundreds.unit = 100;
     const Scene large = ok(Scene::load_memory(context, file, nullptr, in_hundreds));
     CHECK(ok(ok(large.warnings()).warning(0)).code == LUXFER_WARNING_IMPLAUSIBLE_SIZE);
+    const luxfer::Candidates candidates = ok(copy.candidates());
+    CHECK(ok(candidates.count()) > 2);
+    const luxfer_candidate likeliest = ok(candidates.candidate(0));
+    CHECK(ok(candidates.name(0)) == "Lamp" && likeliest.kind == LUXFER_CANDIDATE_OBJECT && likeliest.index == 1);
+    CHECK(likeliest.level_area == likeliest.area && likeliest.score > 0);
+    CHECK(ok(candidates.reason(0)).find("level") != std::string::npos);
+    CHECK_ERROR(candidates.candidate(99), LUXFER_NOT_FOUND);
     const luxfer_scene_counts counts = ok(copy.counts());
     CHECK(counts.meshes == 2 && counts.cameras == 1 && counts.triangles == 4);
     CHECK(ok(copy.mesh_name(0)) == "Floor" && ok(copy.mesh_name(1)) == "Lamp");
@@ -374,6 +381,8 @@ void scenes_come_back() {
     CHECK(positions[1] == -1.0f && indices[5] == 3);
     CHECK_ERROR(copy.read_mesh(0, positions, positions, indices), LUXFER_NOT_FOUND);
     CHECK_ERROR(copy.read_mesh_uvs(0, 0, positions), LUXFER_NOT_FOUND);
+    CHECK_ERROR(copy.read_mesh_colours(0, positions), LUXFER_NOT_FOUND);
+    CHECK(ok(copy.mesh(0)).has_colours == 0);
     CHECK(ok(copy.material_texture(0, LUXFER_TEXTURE_NORMAL)).texture == LUXFER_NONE);
     CHECK_ERROR(copy.texture(0), LUXFER_NOT_FOUND);
 

@@ -14,6 +14,10 @@ class Errors(Case):
         self.assertEqual([w.code for w in big.warnings], [luxfer.types.WarningCode.IMPLAUSIBLE_SIZE])
         self.assertIn("unit = 0.01", str(big.warnings[0]))
         self.assertTrue(str(big.warnings[0]).startswith("scene: "))
+        ceiling = lit_room().candidates[0]
+        self.assertEqual((ceiling.name, ceiling.kind.name), ("Ceiling (lights)", "OBJECT"))
+        self.assertAlmostEqual(ceiling.level_area, ceiling.area)
+        self.assertIn("m² are level", ceiling.reason)
         file = self.folder / "room.gltf"
         file.write_text(
             '{"asset": {"version": "2.0"}, "buffers": [{"uri": "../room.bin", "byteLength": 1}],'

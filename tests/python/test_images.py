@@ -26,6 +26,10 @@ def tiff(picture, pixels, camera=()):
     return (head.ljust(184, b"\0") + b"".join(fractions)).ljust(200, b"\0") + pixels
 
 
+#: Exposure time, f-number and ISO speed of a white of 240 cd/m².
+EXPOSURE = [(0x829A, 5, (1, 50)), (0x829D, 5, (2, 1)), (0x8827, 3, 100)]
+
+
 class Images(Case):
     def test_float_arrays_come_back_to_the_bit(self):
         pixels = np.random.default_rng(1).normal(size=(7, 5, 3)).astype(np.float32)
@@ -124,7 +128,7 @@ class Images(Case):
 
     def test_metadata(self):
         picture = [(256, 3, 2), (257, 3, 1), (258, 3, 8), (262, 3, 1), (273, 4, 200), (274, 3, 8), (279, 4, 2), (0x8769, 4, 120)]
-        camera = [(0x829A, 5, (1, 50)), (0x829D, 5, (2, 1)), (0x8827, 3, 100), (0xA405, 3, 36)]
+        camera = [*EXPOSURE, (0xA405, 3, 36)]
         photo = luxfer.Image.from_bytes(context(), tiff(picture, b"\0\xff", camera))
         self.assertEqual(photo.numpy().tolist(), [[[1.0]], [[0.0]]])
         known = photo.metadata
@@ -144,12 +148,17 @@ class Images(Case):
         sides = (np.arctan2(y[:, None] * width, x[None] * height) * 12 / np.pi).astype(int) % 2
         pixels = (60 + 60 * boxes + 100 * sides).astype(np.uint8)
         picture = [(256, 3, width), (257, 3, height), (258, 3, 8), (262, 3, 1), (273, 4, 200), (279, 4, pixels.size), (0x8769, 4, 120)]
-        photo = luxfer.Image.from_bytes(context(), tiff(picture, pixels.tobytes(), [(0xA405, 3, 50)]))
+        photo = luxfer.Image.from_bytes(context(), tiff(picture, pixels.tobytes(), [*EXPOSURE, (0xA405, 3, 50)]))
         focal = photo.metadata.focal
         self.assertAlmostEqual(focal, 50 * np.hypot(width, height) / np.hypot(36, 24))
         scene = luxfer.Scene.demo(context(), "target-room")
-        whole = luxfer.Transfer(context(), photo, scene, "Ceiling").run(last="view").view
-        for view in (luxfer.Rectify(context(), photo).run().report, whole):
+        whole = luxfer.Transfer(context(), photo, scene, "Ceiling").run(last="view")
+        self.assertAlmostEqual(whole.report.proposed_white, 240)
+        self.assertTrue(whole.report.proposed_white_low < 240 < whole.report.proposed_white_high)
+        bare = luxfer.Transfer(context(), photo.numpy(), scene, "Ceiling").run(last="view").report
+        self.assertAlmostEqual(bare.proposed_white * np.pi, 500)
+        self.assertAlmostEqual(bare.proposed_white_low * np.pi, 100)
+        for view in (luxfer.Rectify(context(), photo).run().report, whole.view):
             self.assertEqual(view.focal_source, luxfer.types.FocalSource.FROM_METADATA)
             self.assertLess(abs(view.focal / focal - 1), 0.05)
         self.assertEqual(luxfer.Rectify(context(), photo.numpy()).run().report.focal_source, luxfer.types.FocalSource.ASSUMED)

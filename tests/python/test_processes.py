@@ -5,11 +5,12 @@ from __future__ import annotations
 import gc
 import multiprocessing
 import os
+import subprocess
 import sys
 import unittest
 from concurrent.futures import ProcessPoolExecutor
 
-from support import Case, context, demo
+from support import PACKAGE, Case, context, demo
 
 import luxfer
 
@@ -48,6 +49,83 @@ def below_the_package() -> list[int]:
     """What the C library itself says in a forked child, without the package's own check."""
     pointer = PARENT["room"]._pointer
     return [luxfer.library.luxfer_scene_retain(pointer), luxfer.library.luxfer_scene_release(pointer)]
+
+
+#: Work of one interpreter through the C library alone: numpy refuses to be imported into a second interpreter.
+SUBINTERPRETER = """
+import ctypes
+lib = ctypes.CDLL({library!r})
+def pointer(kind, *arguments):
+    made = ctypes.c_void_p()
+    status = kind(*arguments, ctypes.byref(made))
+    assert status == 0, (kind.__name__, status)
+    return made
+context = pointer(lib.luxfer_context_create, None)
+scene = pointer(lib.luxfer_demo_scene, context, 0)
+render = pointer(lib.luxfer_render_create, context)
+assert lib.luxfer_render_set_scene(render, scene) == 0
+calls = []
+Progress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_double)
+for round in range({rounds}):
+    job = pointer(lib.luxfer_render_start, render, None)
+    progress = Progress(lambda user, fraction: calls.append(fraction) or len(calls) % 3 == 0)
+    assert lib.luxfer_job_wait(job, ctypes.c_int32(-1), progress, None) in (0, 6)
+    assert lib.luxfer_job_cancel(job) == 0 and lib.luxfer_job_release(job) == 0
+for name, handle in (("render", render), ("scene", scene), ("context", context)):
+    assert getattr(lib, f"luxfer_{{name}}_release")(handle) == 0
+"""
+
+#: A program with three interpreters at once, each in a thread of its own.
+INTERPRETERS = """
+import sys, threading
+import _xxsubinterpreters as interpreters
+failed = []
+def work(code):
+    interpreter = interpreters.create()
+    try:
+        interpreters.run_string(interpreter, code)
+    except Exception as error:
+        failed.append(repr(error))
+    interpreters.destroy(interpreter)
+threads = [threading.Thread(target=work, args=(sys.argv[1],)) for _ in range(3)]
+[t.start() for t in threads], [t.join() for t in threads]
+exec(sys.argv[1])  # the first interpreter goes on
+print(failed or "ended")
+"""
+
+
+class Subinterpreters(Case):
+    def test_interpreters_of_one_process_use_the_library_at_once(self) -> None:
+        try:
+            __import__("_xxsubinterpreters")
+        except ImportError:
+            self.skipTest("this Python has no interpreters by that name")
+        code = SUBINTERPRETER.format(library=luxfer.library._name, rounds=2)
+        program = [sys.executable, "-c", INTERPRETERS, code]
+        ended = subprocess.run(program, capture_output=True, text=True, timeout=300)
+        self.assertEqual((ended.returncode, ended.stdout.strip(), ended.stderr), (0, "ended", ""))
+
+    def test_the_package_in_a_second_interpreter(self) -> None:
+        """It works, or its import fails with numpy's reason; the process goes on in both cases."""
+        code = f"import sys; sys.path.insert(0, {str(PACKAGE)!r})\nimport luxfer\nluxfer.Context(num_threads=1).close()"
+        program = f"""
+import _xxsubinterpreters as interpreters
+{code}
+second = interpreters.create()
+try:
+    interpreters.run_string(second, {code!r})
+    print("worked")
+except interpreters.RunFailedError as error:
+    print("ImportError" if "ImportError" in str(error) or "numpy" in str(error) else error)
+interpreters.destroy(second)
+luxfer.Context(num_threads=1).close()
+"""
+        environment = {**os.environ, "LUXFER_LIBRARY": luxfer.library._name}
+        ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=300, env=environment)
+        if "_xxsubinterpreters" in ended.stderr:
+            self.skipTest("this Python has no interpreters by that name")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertIn(ended.stdout.strip(), ("worked", "ImportError"))
 
 
 class Processes(Case):

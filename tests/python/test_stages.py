@@ -335,6 +335,10 @@ class Rendering(Case):
         for i, lux in enumerate((300, 200)):
             found = np.dot(lamps.goal(i).achieved, (0.2126, 0.7152, 0.0722)) * np.pi
             self.assertAlmostEqual(found, lux, delta=0.02 * lux)
+            goal = lamps.goal(i)
+            self.assertAlmostEqual(goal.target_lux, lux, delta=1e-3 * lux)
+            self.assertAlmostEqual(goal.achieved_lux, found, delta=1e-3 * lux)
+            self.assertTrue(0 < goal.half_width_lux < 0.1 * lux and goal.background_lux >= 0)
         scaled = lamps.texture.numpy()
         np.testing.assert_allclose(scaled[3, 2], lamps.lamp(0).scale, rtol=1e-5)
         # Drivers with steps: every lamp at one of them, and the desks near enough.
@@ -355,6 +359,23 @@ class Rendering(Case):
 
 
 class Scenes(Case):
+    def test_colours_of_vertices_come_back(self):
+        scene = luxfer.Scene(context())
+        scene.add_material(name="Paint")
+        colours = np.float32([[1, 0, 0, 1], [0, 1, 0, 0.5], [0, 0, 1, 0]])
+        wide = np.zeros((3, 6), np.float32)
+        wide[:, :4] = colours
+        corners, triangle = np.float32([[0, 0, 0], [1, 0, 0], [0, 0, 1]]), [[0, 1, 2]]
+        scene.add_mesh(corners, triangle, colours=wide[:, :4], name="Coloured")
+        scene.add_mesh(corners, triangle, name="Plain")
+        for copy in (scene, luxfer.Scene.from_bytes(context(), scene.to_bytes())):
+            np.testing.assert_array_equal(copy.mesh_arrays(0)["colours"], colours)
+            self.assertNotIn("colours", copy.mesh_arrays(1))
+        with self.assertRaisesRegex(errors.InvalidArgument, "element 1 of mesh.colours"):
+            scene.add_mesh(corners, triangle, colours=colours * [1, 2, 1, 1])
+        with self.assertRaisesRegex(errors.NotFound, "mesh 1 has no colours"):
+            scene._call("read_mesh_colours", 1, 3, None)
+
     def test_arrays_go_in_and_come_out(self):
         vertices = np.zeros(4, [("p", "f4", 3), ("n", "f4", 3), ("t", "f4", 2), ("pad", "u1", 4)])  # as hosts interleave them
         vertices["p"] = [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]]

@@ -36,6 +36,24 @@ struct PlacedEmission {
 /// exception.
 using Writer = std::function<bool(const void *data, std::size_t size)>;
 
+/// The objects and materials of a scene as candidates for the ceiling. See luxfer_candidates.
+class Candidates : public Handle<luxfer_candidates, luxfer_candidates_retain, luxfer_candidates_release> {
+public:
+    using Handle::Handle;
+
+    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_candidates_count); }
+
+    /// Kind, index, area, height, direction and score.
+    Result<luxfer_candidate> candidate(std::uint32_t index) const {
+        return value<luxfer_candidate>(luxfer_candidates_get, index);
+    }
+
+    Result<std::string> name(std::uint32_t index) const { return text(luxfer_candidates_get_name, index); }
+
+    /// Words for the score.
+    Result<std::string> reason(std::uint32_t index) const { return text(luxfer_candidates_get_reason, index); }
+};
+
 /// Meshes, materials, textures, lights and cameras. See luxfer_scene.
 class Scene : public Handle<luxfer_scene, luxfer_scene_retain, luxfer_scene_release> {
 public:
@@ -73,6 +91,9 @@ public:
 
     /// An implausible size, and features of the scene's file that are not rendered.
     Result<Warnings> warnings() const { return make<Warnings>(luxfer_scene_get_warnings); }
+
+    /// Objects and materials with area, height and direction, the likeliest ceilings first.
+    Result<Candidates> candidates() const { return make<Candidates>(luxfer_scene_get_candidates); }
 
     /// A scene that the library generates: a LUXFER_DEMO_ value.
     static Result<Scene> demo(const Context &context, luxfer_demo which) {
@@ -207,6 +228,11 @@ public:
     /// Copies a set of texture coordinates, two numbers per vertex.
     Result<> read_mesh_uvs(std::uint32_t index, std::uint32_t uv_set, Span<float> uvs) const {
         return call(luxfer_scene_read_mesh_uvs, index, uv_set, uvs.size() / 2, uvs.data());
+    }
+
+    /// Copies the colours of the vertices, four numbers per vertex.
+    Result<> read_mesh_colours(std::uint32_t index, Span<float> colours) const {
+        return call(luxfer_scene_read_mesh_colours, index, colours.size() / 4, colours.data());
     }
 
     Result<luxfer_material_params> material(std::uint32_t index) const {

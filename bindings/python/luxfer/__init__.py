@@ -10,6 +10,7 @@ exceptions of errors.Error with its message. `abi` has the whole C interface, ca
 from . import _abi as abi
 from . import errors, types
 from ._library import library
+from .candidate import SurfaceCandidate
 from .context import Context
 from .demo import DemoPhoto
 from .emission import Emission
@@ -66,6 +67,7 @@ __all__ = [
     "Segment",
     "StageWarning",
     "Stylize",
+    "SurfaceCandidate",
     "Transfer",
     "abi",
     "align_sheet",

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from ctypes import CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import CFUNCTYPE, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
 from typing import Any
 
 from . import types
+from ._pointers import POINTER
 
 LUXFER_VERSION_MAJOR = 0
 LUXFER_VERSION_MINOR = 1
@@ -65,6 +66,8 @@ LUXFER_LIGHTS_POINT = 4
 LUXFER_LIGHTS_SPOT = 8
 LUXFER_LIGHTS_DIRECTIONAL = 16
 LUXFER_LIGHTS_ENVIRONMENT = 32
+LUXFER_CANDIDATE_OBJECT = 0
+LUXFER_CANDIDATE_MATERIAL = 1
 LUXFER_LINES_REGIONS = 0
 LUXFER_LINES_HOUGH = 1
 LUXFER_SEARCH_MANHATTAN = 0
@@ -267,6 +270,10 @@ class luxfer_scene(Structure):
 
 class luxfer_distribution(Structure):
     """A luminous intensity distribution. See luxfer_distribution_load."""
+
+
+class luxfer_candidates(Structure):
+    """A list of candidates. See luxfer_scene_get_candidates."""
 
 
 class luxfer_rectify(Structure):
@@ -480,6 +487,8 @@ class luxfer_mesh_params(Structure):
         ("triangle_count", c_size_t),
         ("indices", c_void_p),
         ("index_stride", c_size_t),
+        ("colours", c_void_p),
+        ("colour_stride", c_size_t),
     ]
 
 
@@ -593,8 +602,31 @@ class luxfer_mesh_info(Structure):
         ("triangle_count", c_size_t),
         ("has_normals", c_uint32),
         ("uv_sets", c_uint32),
+        ("has_colours", c_uint32),
+        ("reserved", c_uint32),
     ]
     result = types.MeshInfo
+
+
+class luxfer_candidate(Structure):
+    """An object or a material of a scene."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("index", c_uint32),
+        ("triangles", c_uint32),
+        ("area", c_float),
+        ("level_area", c_float),
+        ("height", c_float),
+        ("low", c_float),
+        ("high", c_float),
+        ("normal", c_float * 3),
+        ("score", c_float),
+        ("reserved", c_uint32),
+    ]
+    enumerations: dict[str, type] = {"kind": types.CandidateKind}
+    result = types.Candidate
 
 
 class luxfer_rectify_params(Structure):
@@ -941,6 +973,10 @@ class luxfer_lamps_goal(Structure):
         ("achieved", c_double * 3),
         ("half_width", c_double * 3),
         ("background", c_double * 3),
+        ("target_lux", c_double),
+        ("achieved_lux", c_double),
+        ("half_width_lux", c_double),
+        ("background_lux", c_double),
     ]
     enumerations: dict[str, type] = {"outcome": types.Outcome}
     result = types.LampsGoal
@@ -1153,6 +1189,9 @@ class luxfer_transfer_report(Structure):
         ("reserved", c_uint32),
         ("plane_distance", c_double),
         ("plane_distance_error", c_double),
+        ("proposed_white", c_double),
+        ("proposed_white_low", c_double),
+        ("proposed_white_high", c_double),
     ]
     result = types.TransferReport
 
@@ -1424,6 +1463,14 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_read_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("vertex_capacity", c_size_t), ("positions", POINTER(c_float)), ("normals", POINTER(c_float)), ("triangle_capacity", c_size_t), ("indices", POINTER(c_uint32))]),
     "luxfer_scene_read_mesh_uvs": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("uv_set", c_uint32), ("capacity", c_size_t), ("uvs", POINTER(c_float))]),
+    "luxfer_scene_read_mesh_colours": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("capacity", c_size_t), ("colours", POINTER(c_float))]),
+    "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
+    "luxfer_candidates_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
+    "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate))]),
+    "luxfer_candidates_get_name": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_candidates_get_reason": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_candidates_retain": (c_int32, [("candidates", POINTER(luxfer_candidates))]),
+    "luxfer_candidates_release": (c_int32, [("candidates", POINTER(luxfer_candidates))]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _abi, _params
+from ._pointers import POINTER
 from .types import ColourSpace, Sample, View
 
 SAMPLES = {np.dtype("u1"): Sample.U8, np.dtype("=u2"): Sample.U16, np.dtype("=f2"): Sample.F16, np.dtype("=f4"): Sample.F32}
@@ -69,4 +70,4 @@ def view(array: np.ndarray[Any, Any], colour_space: ColourSpace | str | int) -> 
 
 def pointer(array: np.ndarray[Any, Any] | None, kind: Any) -> Any:
     """A ctypes pointer to an array's first element."""
-    return None if array is None else array.ctypes.data_as(ctypes.POINTER(kind))
+    return None if array is None else array.ctypes.data_as(POINTER(kind))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from . import _abi, _params
 from ._library import library
+from ._pointers import POINTER
 from .errors import InvalidArgument, InvalidOperation, error
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ class Handle:
     def _get_image(self, verb: str, *arguments: Any) -> Image:
         from .image import Image
 
-        pointer = ctypes.POINTER(_abi.luxfer_image)()
+        pointer = POINTER(_abi.luxfer_image)()
         self._call(verb, *arguments, pointer)
         return Image._adopt(self._context, pointer)
 
@@ -123,6 +124,6 @@ class Handle:
     def _create(self, context: Context) -> None:
         """luxfer_<kind>_create."""
         self._context = context
-        pointer = ctypes.POINTER(getattr(_abi, f"luxfer_{self.kind}"))()
+        pointer = POINTER(getattr(_abi, f"luxfer_{self.kind}"))()
         call(context, f"luxfer_{self.kind}_create", context, pointer)
         self._pointer = pointer

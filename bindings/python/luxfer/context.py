@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
 from typing import TYPE_CHECKING
 
 from . import _abi, _params
 from ._handle import Handle
 from ._library import library
+from ._pointers import POINTER
 from .errors import error
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class Context(Handle):
     _context = property(lambda self: self)
 
     def __init__(self, **params: Unpack[ContextParams]) -> None:
-        pointer = ctypes.POINTER(_abi.luxfer_context)()
+        pointer = POINTER(_abi.luxfer_context)()
         status = library.luxfer_context_create(_params.fill(_abi.luxfer_context_params, params, []), pointer)
         if status != _abi.LUXFER_OK:
             raise error(status, f"a context cannot be created with {params}")

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _abi, _arrays, _params
 from ._handle import Handle, call
+from ._pointers import POINTER
 from .types import ColourSpace, PhotoMetadata
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ class Image(Handle):
     def __init__(self, context: Context, pixels: ArrayLike, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> None:
         self._context = context
         view, _keep = _arrays.view(_floats(pixels), colour_space)
-        handle = ctypes.POINTER(_abi.luxfer_image)()
+        handle = POINTER(_abi.luxfer_image)()
         call(context, "luxfer_image_create", context, view, handle)
         self._pointer = handle
 
@@ -148,7 +149,7 @@ def homography(context: Context, source: ArrayLike, target: ArrayLike) -> NDArra
 
 def made(context: Context, name: str, *arguments: Any) -> Image:
     """The image that a function of the library makes."""
-    handle = ctypes.POINTER(_abi.luxfer_image)()
+    handle = POINTER(_abi.luxfer_image)()
     call(context, name, *arguments, handle)
     return Image._adopt(context, handle)
 

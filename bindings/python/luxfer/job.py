@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 from . import _abi
 from ._handle import Handle
 from ._library import library
+from ._pointers import POINTER
 from .errors import error
 from .types import Status
 
@@ -118,6 +119,6 @@ class StageBase(Handle):
 
     def _job(self: T, verb: str, *arguments: Any) -> Job[T]:
         handle = cast(Handle, self)
-        pointer = ctypes.POINTER(_abi.luxfer_job)()
+        pointer = POINTER(_abi.luxfer_job)()
         handle._call(verb, *arguments, pointer)
         return Job._of(self, handle._context, pointer)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
 from ._handle import Handle, call
+from ._pointers import POINTER
 from .image import Image, image_of, made
 from .types import DistributionFormat, DistributionReport, GlareReport, Mixture, Preset, TemperatureFit
 
@@ -34,14 +35,14 @@ class Distribution(Handle):
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str]) -> Distribution:
         """Loads an .ies or .ldt file."""
-        pointer = ctypes.POINTER(_abi.luxfer_distribution)()
+        pointer = POINTER(_abi.luxfer_distribution)()
         call(context, "luxfer_distribution_load", context, os.fspath(path).encode(), pointer)
         return cls._adopt(context, pointer)
 
     @classmethod
     def load_memory(cls, context: Context, data: bytes, format: DistributionFormat | str) -> Distribution:
         """Loads the bytes of a file, "ies" or "ldt"."""
-        pointer = ctypes.POINTER(_abi.luxfer_distribution)()
+        pointer = POINTER(_abi.luxfer_distribution)()
         kind = _params.member(DistributionFormat, format)
         call(context, "luxfer_distribution_load_memory", context, data, len(data), kind, pointer)
         return cls._adopt(context, pointer)

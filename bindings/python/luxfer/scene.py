@@ -11,6 +11,8 @@ import numpy as np
 
 from . import _abi, _arrays, _params
 from ._handle import Handle, call
+from ._pointers import POINTER
+from .candidate import SurfaceCandidate, candidates_of
 from .image import Image, image_of
 from .types import (
     CameraParams,
@@ -81,9 +83,14 @@ class Scene(Handle):
         """An implausible size, and each feature of the file that is not rendered."""
         return warnings_of(self)
 
+    @property
+    def candidates(self) -> list[SurfaceCandidate]:
+        """Objects and materials with their area, height and direction, the likeliest ceilings first."""
+        return candidates_of(self)
+
     @classmethod
     def _made(cls, context: Context, name: str, *arguments: Any) -> Scene:
-        handle = ctypes.POINTER(_abi.luxfer_scene)()
+        handle = POINTER(_abi.luxfer_scene)()
         call(context, name, context, *arguments, handle)
         return cls._adopt(context, handle)
 
@@ -115,24 +122,27 @@ class Scene(Handle):
         *,
         normals: ArrayLike | None = None,
         uvs: ArrayLike | None = None,
+        colours: ArrayLike | None = None,
         material: int = 0,
         name: str | None = None,
     ) -> int:
-        """Adds a mesh; returns its index. positions (n, 3), indices (m, 3) and, if given, normals (n, 3) and uvs (n, 2) are
-        read directly from their memory if they are float32 and uint32, with any stride between rows."""
+        """Adds a mesh; returns its index. positions (n, 3), indices (m, 3) and, if given, normals (n, 3), uvs (n, 2)
+        and colours (n, 4) are read directly from their memory if they are float32 and uint32, with any stride between
+        rows."""
         params = _params.fill(_abi.luxfer_mesh_params, {"material": material, "name": name}, [])
         arrays = []  # kept until the call is done
         for field, stride, values, width, dtype in (
             ("positions", "position_stride", positions, 3, np.float32),
             ("normals", "normal_stride", normals, 3, np.float32),
             ("uvs", "uv_stride", uvs, 2, np.float32),
+            ("colours", "colour_stride", colours, 4, np.float32),
             ("indices", "index_stride", indices, 3, np.uint32),
         ):
             if values is None:
                 continue
             array = _rows(values, width, dtype, field)
             arrays.append(array)
-            if field in ("normals", "uvs") and len(array) != params.vertex_count:
+            if field in ("normals", "uvs", "colours") and len(array) != params.vertex_count:
                 raise ValueError(f"there are {len(array)} {field} for {params.vertex_count} positions")
             if field == "positions":
                 params.vertex_count = len(array)
@@ -260,7 +270,7 @@ class Scene(Handle):
         return self._get_text("get_mesh_name", index)
 
     def mesh_arrays(self, index: int) -> dict[str, NDArray[Any]]:
-        """Copies of a mesh's "positions", "indices" and, if it has them, "normals", "uvs" and "uvs1"."""
+        """Copies of a mesh's "positions", "indices" and, if it has them, "normals", "uvs", "uvs1" and "colours"."""
         info = self.mesh(index)
         out: dict[str, NDArray[Any]] = {"positions": np.empty((info.vertex_count, 3), np.float32)}
         if info.has_normals:
@@ -279,6 +289,9 @@ class Scene(Handle):
                 out[name] = np.empty((info.vertex_count, 2), np.float32)
                 pointer = _arrays.pointer(out[name], ctypes.c_float)
                 self._call("read_mesh_uvs", index, uv_set, info.vertex_count, pointer)
+        if info.has_colours:
+            out["colours"] = np.empty((info.vertex_count, 4), np.float32)
+            self._call("read_mesh_colours", index, info.vertex_count, _arrays.pointer(out["colours"], ctypes.c_float))
         return out
 
     # -- questions

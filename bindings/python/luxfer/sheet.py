@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
 from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
 from ._handle import call
+from ._pointers import POINTER
 from .image import Image, image_of, made
 from .types import SheetReport
 
@@ -35,7 +35,7 @@ def align_sheet(
 ) -> tuple[Image, SheetReport]:
     """Finds the marks in a photo of a sheet, printed with equal settings for a picture of width x height, and
     resamples it to that picture: returns the artwork and the quality of the alignment."""
-    pointer = ctypes.POINTER(_abi.luxfer_image)()
+    pointer = POINTER(_abi.luxfer_image)()
     settings = _params.fill(_abi.luxfer_sheet_params, params, [])
     report = _params.sized(_abi.luxfer_sheet_report)
     call(context, "luxfer_sheet_align", image_of(context, photo), width, height, settings, pointer, report)

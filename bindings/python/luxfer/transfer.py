@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from . import _abi, _params
+from ._pointers import POINTER
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
 from .scene import Scene
@@ -98,13 +99,13 @@ class Transfer(StageBase):
         """Sets rectangles (n, 4) of the surface without lamps: u0, v0, u1, v1 in metres from its corner along its
         axes. They replace earlier ones."""
         values = np.ascontiguousarray(zones, np.float64).reshape(-1, 4)
-        self._call("set_zones", values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), len(values))
+        self._call("set_zones", values.ctypes.data_as(POINTER(ctypes.c_double)), len(values))
 
     def set_triangles(self, triangles: ArrayLike) -> None:
         """Sets the triangles that receive the lights, (n, 2) with mesh and triangle index, instead of the named
         surface; empty: use the name again."""
         values = np.ascontiguousarray(triangles, np.uint32).reshape(-1, 2)
-        self._call("set_triangles", values.ctypes.data_as(ctypes.POINTER(ctypes.c_uint32)), len(values))
+        self._call("set_triangles", values.ctypes.data_as(POINTER(ctypes.c_uint32)), len(values))
 
     # -- results of the caller's own
 
@@ -154,7 +155,7 @@ class Transfer(StageBase):
 
     def scene(self, which: TransferScene | str = TransferScene.LIT) -> Scene:
         """ "lit", the result; "unsolved", before relighting; "white", with white light of equal luminance."""
-        pointer = ctypes.POINTER(_abi.luxfer_scene)()
+        pointer = POINTER(_abi.luxfer_scene)()
         self._call("get_scene", _params.member(TransferScene, which), pointer)
         return Scene._adopt(self._context, pointer)
 

@@ -141,6 +141,15 @@ class LightKind(IntEnum):
     """A directional light: shines from infinitely far away."""
 
 
+class CandidateKind(IntEnum):
+    """What a candidate is."""
+
+    OBJECT = 0
+    """All meshes of one name."""
+    MATERIAL = 1
+    """All triangles of one material."""
+
+
 class Lines(IntEnum):
     """Detector of lines."""
 
@@ -580,8 +589,8 @@ class WarningCode(IntEnum):
     TARGET_CLIPPED = 19
     """The photo clips the target, which is a lower bound; the severity is the number of these channels."""
     IMPLAUSIBLE_SIZE = 20
-    """A scene is so high that its unit is hardly the metre; the severity is its height in metres. The message
-    names the likely unit."""
+    """A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in
+    metres, below the limit if the scene is too small. The message names the likely unit."""
     NOT_RENDERED = 21
     """The file of a scene has a feature or an extension that is not rendered, which the message names with the
     first objects that have it; the severity is their number."""
@@ -1006,6 +1015,11 @@ class MeshParams(TypedDict, total=False):
     set."""
     index_stride: int
     """Bytes from one triangle to the next; at least 12, or 0, the default: packed."""
+    colours: int
+    """Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1].
+    They multiply the material's base colour and alpha. None, the default: none."""
+    colour_stride: int
+    """Bytes from one colour to the next; at least 16, or 0, the default: packed."""
 
 
 class CameraParams(TypedDict, total=False):
@@ -1140,6 +1154,36 @@ class MeshInfo:
     """1 if each vertex has a normal, 0 if the faces are flat."""
     uv_sets: int
     """Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second."""
+    has_colours: int
+    """1 if each vertex has a colour, else 0."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An object or a material of a scene."""
+
+    kind: CandidateKind
+    """CandidateKind."""
+    index: int
+    """Index of the object's first mesh, or of the material."""
+    triangles: int
+    """Number of triangles with an area."""
+    area: float
+    """Area in m²."""
+    level_area: float
+    """Area in m² of the triangles that are inclined by less than 15 degrees, on either side."""
+    height: float
+    """Mean height of these triangles, or of all if there are none, in metres."""
+    low: float
+    """Lowest point, in metres."""
+    high: float
+    """Highest point, in metres."""
+    normal: tuple[float, float, float]
+    """Mean direction of the front sides by area, a unit vector; 0 if they cancel, as for a box."""
+    score: float
+    """Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan
+    that it covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts
+    too."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -1625,6 +1669,15 @@ class LampsGoal:
     """Half-widths of the 95 % confidence intervals of achieved."""
     background: tuple[float, float, float]
     """Mean radiance from all other light, in cd/m²."""
+    target_lux: float
+    """For goals of illuminance, which are those of grids and of Quantity.INCIDENT: target in lux, pi times the
+    luminance of target; 0 for other goals, and likewise for the fields below."""
+    achieved_lux: float
+    """Illuminance with the powers found, in lux."""
+    half_width_lux: float
+    """Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side."""
+    background_lux: float
+    """Illuminance from all other light, in lux."""
 
 
 @dataclass(frozen=True)
@@ -1838,7 +1891,9 @@ class TransferParams(TypedDict, total=False):
     scale of the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit
     ceiling tiles; plane_distance and plane_distance_error of TransferReport state it."""
     white_luminance: float
-    """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100."""
+    """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux.
+    The strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
+    TransferReport."""
     target: Target | str | int
     """Target; default Target.SURFACE."""
     rectify: RectifyParams
@@ -1896,6 +1951,13 @@ class TransferReport:
     plane_distance_error: float
     """Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about
     0.25 for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance."""
+    proposed_white: float
+    """Value proposed for TransferParams.white_luminance in cd/m²: by the exposure that the photo's file states,
+    as PhotoMetadata has it; else 159, which white paper has in the 500 lux of an office."""
+    proposed_white_low: float
+    """Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor."""
+    proposed_white_high: float
+    """Upper bound of proposed_white: by the exposure; else 318, for 1000 lux."""
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import cast
 
 from . import _abi
 from ._handle import Handle
+from ._pointers import POINTER
 from .types import Stage, Warning, WarningCode
 
 
@@ -60,7 +61,7 @@ class Warnings(Handle):
 
 def warnings_of(stage: Handle) -> list[StageWarning]:
     """The warnings of a stage that has some."""
-    pointer = ctypes.POINTER(_abi.luxfer_warnings)()
+    pointer = POINTER(_abi.luxfer_warnings)()
     stage._call("get_warnings", pointer)
     with Warnings._adopt(stage.context, pointer) as warnings:
         return warnings.read()

@@ -4,14 +4,15 @@
 //! |---|---|
 //! | PNG | `cICP`, `iCCP`, `sRGB`, `gAMA` with `cHRM` (PNG specification, third edition, 4.3) |
 //! | JPEG, WebP, TIFF | ICC profile, then the colour space of the EXIF notes (sRGB, Adobe RGB) |
+//! | GIF, BMP | ICC profile; of BMP the mark for sRGB |
 //! | OpenEXR | `chromaticities`, `adoptedNeutral` |
 //! | Radiance HDR | `PRIMARIES`, `EXPOSURE`, `COLORCORR`, `FORMAT` (RGB or XYZ) |
 //!
 //! Without a statement, integers are sRGB and floating-point numbers linear Rec.709. White becomes white: whites other
 //! than D65 are adapted with the Bradford matrix, as ICC profiles are.
 //!
-//! Not modelled: rendering intents other than relative colorimetric, gain maps, profiles of GIF and BMP files,
-//! profiles for the inks of CMYK files. A file with a statement that cannot be used is read as one without, and
+//! Not modelled: rendering intents other than relative colorimetric, gain maps, endpoints and linked profiles of BMP
+//! files, profiles for the inks of CMYK files. A file with a statement that cannot be used is read as one without, and
 //! [`FileColour`] says so.
 
 mod chromaticities;
@@ -29,11 +30,12 @@ pub(super) use conversion::Conversion;
 pub(super) use space::Space;
 pub use space::{ExifColour, FileColour};
 
-use super::containers::{jpeg_segments, riff_chunks};
+use super::containers::{bmp_space, gif_extension, jpeg_segments, riff_chunks};
 use super::format::Format;
 use super::photo::Exif;
 use super::tiff;
 use crate::error::Result;
+use crate::image::try_collect;
 use image::ImageFormat;
 use std::borrow::Cow;
 
@@ -51,6 +53,7 @@ impl Space {
             Some(Self::Native) if is_float => Ok(Self::Other(Conversion::srgb()?)),
             Some(space) => Ok(space),
             None if is_float => Ok(Self::Unstated),
+            None if format == Format::Raster(ImageFormat::Bmp) => Ok(bmp(bytes)),
             None => exif.colour.space(),
         }
     }
@@ -64,7 +67,23 @@ pub fn profile(bytes: &[u8], format: Format) -> Result<Option<Cow<'_, [u8]>>> {
         Format::Raster(ImageFormat::WebP) => {
             riff_chunks(bytes).find(|c| c.0 == b"ICCP").map(|(_, profile)| profile.into())
         }
+        Format::Raster(ImageFormat::Gif) => {
+            let Some(blocks) = gif_extension(bytes, b"ICCRGBG1012") else { return Ok(None) };
+            Some(try_collect(blocks.flatten().copied())?.into())
+        }
+        Format::Raster(ImageFormat::Bmp) => bmp_space(bytes).and_then(|(_, profile)| profile).map(Into::into),
         Format::Tiff => tiff::profile(bytes).map(Into::into),
         Format::Raster(_) | Format::Exr | Format::Radiance => None,
     })
+}
+
+/// The space of a BMP without an embedded profile that can be read.
+fn bmp(bytes: &[u8]) -> Space {
+    match bmp_space(bytes).map(|(kind, _)| kind) {
+        Some(kind) if kind == *b"sRGB" => Space::Native,
+        // A profile in another file, or one that is cut off.
+        Some(kind) if kind == *b"LINK" || kind == *b"MBED" => Space::Unusable,
+        // The space of the system, or endpoints, which most writers leave at 0.
+        _ => Space::Unstated,
+    }
 }

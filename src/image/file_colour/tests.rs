@@ -81,9 +81,13 @@ fn display_p3_is_converted_in_every_format() {
     let green = load(&png(2, &[0, 255, 0], 8, &[iccp(&display_p3())])).0;
     assert_near(&green, [0.0, 1.042_057, 0.0], 5e-4);
     // The other formats, as data and as textures unchanged.
-    for (name, file) in
-        [("JPEG", jpeg(&display_p3())), ("WebP", webp(&display_p3())), ("TIFF", tiff(&display_p3(), codes))]
-    {
+    for (name, file) in [
+        ("JPEG", jpeg(&display_p3())),
+        ("WebP", webp(&display_p3())),
+        ("TIFF", tiff(&display_p3(), codes)),
+        ("GIF", gif(&display_p3())),
+        ("BMP", bmp(b"MBED", &display_p3())),
+    ] {
         let (image, colour) = load(&file);
         assert_eq!(colour, FileColour::Converted, "{name}");
         let stored = decode(&file, Encoding::Srgb).unwrap().pixel(0, 0).to_vec();
@@ -109,6 +113,43 @@ fn jpeg(profile: &[u8]) -> Vec<u8> {
         [&[0xff, 0xe2][..], &length.to_be_bytes(), b"ICC_PROFILE\0", &[number, 2], piece].concat()
     };
     [&file[..2], &segment(2, second), &segment(1, first), &file[2..]].concat()
+}
+
+/// A GIF of one pixel with a profile in sub-blocks.
+fn gif(profile: &[u8]) -> Vec<u8> {
+    let mut file = Vec::new();
+    image::codecs::gif::GifEncoder::new(&mut file)
+        .encode(&[200, 100, 50], 1, 1, image::ExtendedColorType::Rgb8)
+        .unwrap();
+    let blocks = profile.chunks(255).flat_map(|block| [&[block.len() as u8], block].concat());
+    let extension = [&[0x21, 0xff, 11][..], b"ICCRGBG1012", &blocks.collect::<Vec<_>>(), &[0]].concat();
+    let colours = if file[10] & 0x80 != 0 { 3 << ((file[10] & 7) + 1) } else { 0 };
+    [&file[..13 + colours], &extension, &file[13 + colours..]].concat()
+}
+
+/// A BMP of one pixel with a header of version 5 that states a space and holds a profile.
+fn bmp(kind: &[u8; 4], profile: &[u8]) -> Vec<u8> {
+    let pixels = [50, 100, 200, 0];
+    let mut header = [&124u32.to_le_bytes()[..], &1u32.to_le_bytes(), &1u32.to_le_bytes(), &[1, 0, 24, 0]].concat();
+    header.resize(124, 0);
+    header[56..60].copy_from_slice(&u32::from_be_bytes(*kind).to_le_bytes());
+    header[112..116].copy_from_slice(&(124 + pixels.len() as u32).to_le_bytes());
+    header[116..120].copy_from_slice(&(profile.len() as u32).to_le_bytes());
+    let start = 14 + header.len() as u32;
+    let length = start + (pixels.len() + profile.len()) as u32;
+    let head = [&b"BM"[..], &length.to_le_bytes(), &[0; 4], &start.to_le_bytes()].concat();
+    [head, header, pixels.to_vec(), profile.to_vec()].concat()
+}
+
+#[test]
+fn a_bmp_says_how_its_colours_are_understood() {
+    assert_eq!(load(&bmp(b"sRGB", &[])).1, FileColour::Stated);
+    assert_eq!(load(&bmp(b"Win ", &[])).1, FileColour::Assumed);
+    for (kind, profile) in [(b"LINK", &b"a.icc"[..]), (b"MBED", b"no profile")] {
+        let (image, colour) = load(&bmp(kind, profile));
+        assert_eq!(colour, FileColour::Unconverted);
+        assert_eq!(image.pixel(0, 0), load(&bmp(b"Win ", &[])).0.pixel(0, 0));
+    }
 }
 
 fn webp(profile: &[u8]) -> Vec<u8> {

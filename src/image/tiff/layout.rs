@@ -191,7 +191,7 @@ impl<'a> Layout<'a> {
             sizes: directory.field(sizes).ok_or_else(|| missing("StripByteCounts"))?,
             directory,
         };
-        layout.check_room(file_bytes)?;
+        layout.check_memory(file_bytes)?;
         Ok(layout)
     }
 
@@ -255,7 +255,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Refuses dimensions that a file of this size cannot contain, before memory is allocated.
-    fn check_room(&self, file_bytes: usize) -> Result<()> {
+    fn check_memory(&self, file_bytes: usize) -> Result<()> {
         let [across, down] = self.grid();
         let chunks = across * down * self.planes;
         if self.offsets.len() < chunks || self.sizes.len() < chunks {

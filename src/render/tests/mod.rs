@@ -14,6 +14,7 @@ mod place;
 mod refusal;
 mod requirements;
 mod shared;
+mod vertex_colours;
 
 use super::*;
 use crate::error::Error;

@@ -2,7 +2,7 @@
 
 use super::container::{File, missing};
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::{try_collect, try_vec};
+use crate::image::try_vec;
 use gltf::json::accessor::{self, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
@@ -59,15 +59,15 @@ impl<'a> Strided<'a> {
 
     fn float(&self, element: usize, component: usize) -> f32 {
         let b = self.component(element, component);
-        let (value, largest) = match self.kind {
-            ComponentType::I8 => (f32::from(b[0] as i8), 127.0),
-            ComponentType::U8 => (f32::from(b[0]), 255.0),
-            ComponentType::I16 => (f32::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
-            ComponentType::U16 => (f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
-            ComponentType::U32 => (u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32, 4_294_967_295.0),
+        let value = match self.kind {
+            ComponentType::I8 => f32::from(b[0] as i8),
+            ComponentType::U8 => f32::from(b[0]),
+            ComponentType::I16 => f32::from(i16::from_le_bytes([b[0], b[1]])),
+            ComponentType::U16 => f32::from(u16::from_le_bytes([b[0], b[1]])),
+            ComponentType::U32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
             ComponentType::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
         };
-        if self.normalized { (value / largest).max(-1.0) } else { value }
+        if self.normalized { (value / largest_of(self.kind)).max(-1.0) } else { value }
     }
 
     fn unsigned(&self, element: usize) -> Result<u32> {
@@ -85,6 +85,18 @@ impl<'a> Strided<'a> {
     }
 }
 
+/// The integer that stands for 1 where integers are normalised.
+fn largest_of(kind: ComponentType) -> f32 {
+    match kind {
+        ComponentType::I8 => 127.0,
+        ComponentType::U8 => 255.0,
+        ComponentType::I16 => 32_767.0,
+        ComponentType::U16 => 65_535.0,
+        ComponentType::U32 => 4_294_967_295.0,
+        ComponentType::F32 => 1.0,
+    }
+}
+
 fn find<'a>(file: &'a File, index: Index<accessor::Accessor>) -> Result<&'a accessor::Accessor> {
     file.root.get(index).ok_or_else(|| missing("accessor", index.value(), file.root.accessors.len()))
 }
@@ -97,7 +109,8 @@ fn layout(accessor: &accessor::Accessor) -> Result<(ComponentType, usize)> {
                 Type::Vec2 => 2,
                 Type::Vec3 => 3,
                 Type::Vec4 => 4,
-                _ => return Err(Error::format("a matrix where a vector is expected")),
+                Type::Mat4 => 16,
+                Type::Mat2 | Type::Mat3 => return Err(Error::format("a matrix where a vector is expected")),
             };
             Ok((kind.0, components))
         }
@@ -110,17 +123,19 @@ pub fn count(file: &File, index: Index<accessor::Accessor>) -> Result<u64> {
     Ok(find(file, index)?.count.0)
 }
 
-/// Reads colours of three or four numbers; the fourth is 1 where there are three.
-pub fn colours(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; 4]>> {
-    let is_opaque = layout(find(file, index)?)?.1 == 3;
-    if !is_opaque {
-        return vectors(file, index);
-    }
-    let colours: Vec<[f32; 3]> = vectors(file, index)?;
-    try_collect(colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]))
+/// The number of components of an accessor's elements.
+pub fn components(file: &File, index: Index<accessor::Accessor>) -> Result<usize> {
+    Ok(layout(find(file, index)?)?.1)
 }
 
-/// Reads vectors of `N` numbers; normalised integers are scaled to `[0, 1]` or `[-1, 1]`.
+/// The integer that stands for 1, if the accessor's integers are normalised.
+pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f32>> {
+    let accessor = find(file, index)?;
+    let (kind, _) = layout(accessor)?;
+    Ok((accessor.normalized && kind != ComponentType::F32).then(|| largest_of(kind)))
+}
+
+/// Reads vectors of `N` numbers, or matrices of four columns as 16; normalised integers are scaled to `[0, 1]` or `[-1, 1]`.
 pub fn vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
     read_vectors(file, index).map_err(|e| e.within(format_args!("accessor {}", index.value())))
 }

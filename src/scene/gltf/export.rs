@@ -130,6 +130,9 @@ impl Writer {
         if !second.is_empty() {
             attributes.insert("TEXCOORD_1".into(), self.accessor(second, "VEC2", FLOAT, None)?.into());
         }
+        if !mesh.colours.is_empty() {
+            attributes.insert("COLOR_0".into(), self.accessor(&mesh.colours, "VEC4", FLOAT, None)?.into());
+        }
         let indices = self.accessor(&mesh.triangles, "SCALAR", UNSIGNED_INT, None)?;
         let primitive = json!({ "attributes": attributes, "indices": indices, "material": mesh.material });
         self.meshes.push(json!({ "name": mesh.name, "primitives": [primitive] }));

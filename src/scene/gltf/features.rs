@@ -7,13 +7,19 @@ use serde_json::Value;
 pub const IES: &str = "EXT_lights_ies";
 /// Many instances of one mesh.
 pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+/// Primitives in Draco's compression.
+pub const DRACO: &str = "KHR_draco_mesh_compression";
+/// Buffer views in meshoptimizer's compression.
+pub const MESHOPT: &str = "EXT_meshopt_compression";
 /// Textures in WebP files.
 pub const WEBP: &str = "EXT_texture_webp";
 
 /// Extensions that a file may require. Of variants of materials the default ones are shown.
-pub const READ: [&str; 11] = [
+pub const READ: [&str; 13] = [
+    DRACO,
     IES,
     INSTANCING,
+    MESHOPT,
     WEBP,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -25,15 +31,8 @@ pub const READ: [&str; 11] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions that change no picture, or whose file has the same data in another form too.
-const INVISIBLE: [&str; 6] = [
-    "EXT_meshopt_compression",
-    "KHR_animation_pointer",
-    "KHR_draco_mesh_compression",
-    "KHR_xmp",
-    "KHR_xmp_json_ld",
-    "MSFT_texture_dds",
-];
+/// Extensions that change no picture, or whose file has the same picture in another form too.
+const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds"];
 
 /// A member that makes an extension do nothing, and the value that it has then and by default.
 type Neutral = (&'static str, f64);
@@ -56,7 +55,7 @@ const MATERIALS: [(&str, &str, &[Neutral]); 9] = [
 ];
 
 /// Lists of objects, and the name of one of them.
-const LISTS: [(&str, &str); 9] = [
+const LISTS: [(&str, &str); 10] = [
     ("materials", "material"),
     ("meshes", "mesh"),
     ("nodes", "node"),
@@ -66,6 +65,7 @@ const LISTS: [(&str, &str); 9] = [
     ("scenes", "scene"),
     ("accessors", "accessor"),
     ("bufferViews", "buffer view"),
+    ("buffers", "buffer"),
 ];
 
 /// Everything in a file that is not rendered and can be seen in its JSON alone.
@@ -77,7 +77,7 @@ pub fn unrendered(document: &Value) -> Vec<Unrendered> {
             extensions(&mut list, object, &place);
             match name {
                 "meshes" => mesh(&mut list, object, &place),
-                "nodes" => node(&mut list, object, &place),
+                "nodes" => weights(&mut list, object, shown(document, object), &place),
                 "textures" => texture(&mut list, object, &place),
                 "cameras" if object.get("type").and_then(Value::as_str) == Some("orthographic") => {
                     note(&mut list, "orthographic cameras", "they are left out", place);
@@ -150,19 +150,28 @@ fn mesh(list: &mut Vec<Unrendered>, mesh: &Value, place: &dyn Fn() -> String) {
         }
         extensions(list, primitive, place);
     }
-    weights(list, mesh, place);
+    weights(list, mesh, Some(mesh), place);
 }
 
-fn node(list: &mut Vec<Unrendered>, node: &Value, place: &dyn Fn() -> String) {
-    if node.get("skin").is_some() {
-        note(list, "skins", "the mesh is shown as it is without its joints", place);
-    }
-    weights(list, node, place);
+/// The mesh of a node.
+fn shown<'a>(document: &'a Value, node: &Value) -> Option<&'a Value> {
+    let index = node.get("mesh")?.as_f64()?;
+    document.get("meshes")?.get(index as usize)
 }
 
-/// Shapes that are mixed in at rest.
-fn weights(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> String) {
-    if items(object, "weights").any(|(_, weight)| weight.as_f64() != Some(0.0)) {
-        note(list, "morph targets", "the mesh has its basic shape", place);
+/// Notes morph targets that are mixed in at rest and change more than the shape.
+fn weights(list: &mut Vec<Unrendered>, object: &Value, mesh: Option<&Value>, place: &dyn Fn() -> String) {
+    let Some(mesh) = mesh else { return };
+    let mixed = |(_, target): (&(usize, &Value), &Value)| {
+        let is_seen = |name: &String| name.starts_with("COLOR_") || name.starts_with("TEXCOORD_");
+        target.as_object().is_some_and(|target| target.keys().any(is_seen))
+    };
+    for (_, primitive) in items(mesh, "primitives") {
+        let weights = items(object, "weights").collect::<Vec<_>>();
+        let targets = items(primitive, "targets").map(|(_, target)| target);
+        let mut pairs = weights.iter().zip(targets).filter(|((_, weight), _)| weight.as_f64() != Some(0.0));
+        if pairs.any(mixed) {
+            note(list, "morph targets of colours or texture coordinates", "only the shape is mixed", place);
+        }
     }
 }

@@ -4,15 +4,18 @@ use super::container::{File, Folder, missing};
 use super::features::{IES, READ};
 use super::instances::{instances, local_transform};
 use super::material::Materials;
+use super::nodes::roots;
+use super::pose::{self, Bent, mixed};
+use super::vertices::Vertices;
 use super::{Budget, Options, accessor};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{try_collect, try_vec};
 use crate::photometry::{Luminaire, ies};
-use crate::scene::unrendered::note;
 use crate::scene::{Camera, Material, Mesh, PunctualLight, Scene};
-use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::skin::Skin;
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
 use serde_json::Value;
@@ -31,29 +34,45 @@ const MAX_MESHES: usize = 1 << 20;
 /// Errors: `Format` for broken, truncated or inconsistent files, `Unsupported` for features this library lacks, `Io`
 /// for unreadable external files, and errors of the budget.
 pub fn import(bytes: &[u8], base: Option<&Path>, options: Options) -> Result<Scene> {
-    let Options { budget, unit, is_open } = options;
-    let mut file = File::parse(bytes, Folder { path: base, is_open })?;
+    let mut file = File::parse(bytes, Folder { path: base, is_open: options.is_open })?;
     if let Some(unknown) = file.root.extensions_required.iter().find(|e| !READ.contains(&e.as_str())) {
         let message = format!("the file requires the extension {unknown}; save it without that extension");
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
+    // Compressed data are decoded while the file is read.
+    let mut scene = None;
+    options.budget.lend(file.packed_bytes()?, &mut || {
+        file.unpack()?;
+        scene = Some(convert(&mut file, options)?);
+        Ok(())
+    })?;
+    scene.ok_or_else(|| Error::new(ErrorKind::Internal, "the budget ran no work"))
+}
+
+fn convert(file: &mut File, Options { budget, unit, .. }: Options) -> Result<Scene> {
     let mut scene = Scene { unrendered: std::mem::take(&mut file.unrendered), ..Scene::default() };
-    let mut materials = Materials::new(&file, budget);
+    let file = &*file;
+    let mut materials = Materials::new(file, budget);
     for (i, json) in file.root.materials.iter().enumerate() {
         scene.materials.push(materials.read(i, json).map_err(|e| e.within(format_args!("material {i}")))?);
     }
     scene.textures = materials.textures;
     let mut importer = Importer {
-        file: &file,
+        file,
         budget,
         scene,
         default_material: None,
         tinted: Vec::new(),
         profiles: Vec::new(),
+        nodes: Vec::new(),
         vertices: 0,
         triangles: 0,
     };
-    importer.nodes(DMat4::from_scale(DVec3::splat(unit)))?;
+    let world = DMat4::from_scale(DVec3::splat(unit));
+    if !file.root.skins.is_empty() {
+        importer.nodes = pose::node_transforms(file, world)?;
+    }
+    importer.nodes(world)?;
     let scene = importer.scene;
     scene.validate().map_err(|e| Error { kind: ErrorKind::Format, ..e })?;
     Ok(scene)
@@ -69,8 +88,20 @@ struct Importer<'a> {
     tinted: Vec<(usize, [f32; 4], usize)>,
     /// Index of each IES file read so far; its distribution in the scene has the same position.
     profiles: Vec<usize>,
+    /// The transform of each node, if the file has skins, whose joints are nodes.
+    nodes: Vec<Option<DMat4>>,
     vertices: u64,
     triangles: u64,
+}
+
+/// Where and in which shape a node shows its mesh.
+#[derive(Clone, Copy)]
+struct Placement<'a> {
+    transform: DMat4,
+    /// Joints move the mesh instead of the transform.
+    skin: Option<Index<Skin>>,
+    /// Weights of the morph targets.
+    weights: &'a [f32],
 }
 
 impl Importer<'_> {
@@ -103,9 +134,11 @@ impl Importer<'_> {
             let mesh = root.get(index).ok_or_else(|| missing("mesh", index.value(), root.meshes.len()))?;
             let own_name = mesh.name.as_ref().filter(|n| !n.is_empty());
             let name = name.or(own_name).cloned().unwrap_or_else(|| format!("Mesh {}", index.value()));
+            let weights = node.weights.as_ref().or(mesh.weights.as_ref()).map_or(&[][..], Vec::as_slice);
             for transform in instances(self.file, node, transform)? {
+                let placement = Placement { transform, skin: node.skin, weights };
                 for primitive in &mesh.primitives {
-                    self.primitive(&name, primitive, transform).map_err(|e| e.within(format_args!("mesh {name:?}")))?;
+                    self.primitive(&name, primitive, placement).map_err(|e| e.within(format_args!("mesh {name:?}")))?;
                 }
             }
         }
@@ -171,7 +204,7 @@ impl Importer<'_> {
         }
     }
 
-    fn primitive(&mut self, name: &str, primitive: &Primitive, transform: DMat4) -> Result<()> {
+    fn primitive(&mut self, name: &str, primitive: &Primitive, placement: Placement) -> Result<()> {
         let Checked::Valid(mode) = primitive.mode else {
             return Err(Error::format("a primitive's mode is unknown"));
         };
@@ -182,47 +215,49 @@ impl Importer<'_> {
         let positions = attribute(Semantic::Positions).ok_or_else(|| Error::format("a primitive has no POSITION"))?;
         let extras = [(Semantic::Normals, 12), (Semantic::TexCoords(0), 8), (Semantic::TexCoords(1), 8)];
         let extras = extras.into_iter().filter_map(|(semantic, bytes)| attribute(semantic).map(|_| bytes));
-        self.reserve(positions, 12 + extras.sum::<u64>(), primitive.indices, mode)?;
+        let targets = mixed(primitive, placement.weights);
+        self.reserve(positions, 12 + extras.sum::<u64>(), targets.clone().count(), primitive.indices, mode)?;
 
-        // Read the vertices; each attribute must have one value per position.
-        let mut positions = bring_in(accessor::vectors(self.file, positions)?, |p: [f32; 3]| {
-            transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3()
-        })?;
+        // Read the vertices, mix their morph targets and bend them by their joints.
+        let vertices = Vertices::new(self.file, self.budget, primitive)?;
+        let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();
         let count = positions.len();
-        let checked = |what: &str, len: usize| {
-            if len == count {
-                return Ok(());
-            }
-            Err(Error::format(format!("{count} positions, but {len} values of {what}")))
+        pose::mix(self.file, targets.clone(), |target| target.positions, &mut positions)?;
+        let bent = match placement.skin {
+            Some(skin) => Bent::read(self.file, &vertices, skin, &self.nodes, count)?,
+            None => None,
         };
-        // Transform normals by the cofactor matrix: the inverse transpose up to scale, but finite for flat scalings.
-        let linear = DMat3::from_mat4(transform);
-        let flipped = linear.determinant() < 0.0;
-        let cofactor = DMat3::from_cols(
-            linear.y_axis.cross(linear.z_axis),
-            linear.z_axis.cross(linear.x_axis),
-            linear.x_axis.cross(linear.y_axis),
-        );
+        let whole = placement.transform;
+        let point = |transform: DMat4, p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
+        let mut positions = match &bent {
+            Some(bent) => bring_in(positions, |i, p| point(bent.transform(i), p))?,
+            None => bring_in(positions, |_, p| point(whole, p))?,
+        };
+
+        // A reflection turns the winding and the normals.
+        let flipped = bent.as_ref().map_or_else(|| whole.determinant() < 0.0, |bent| bent.is_mirrored(count));
         let side = if flipped { -1.0 } else { 1.0 };
-        let mut normals = match attribute(Semantic::Normals) {
-            Some(index) => bring_in(accessor::vectors(self.file, index)?, |n: [f32; 3]| {
-                (cofactor * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3()
-            })?,
+        let normal = |turn: DMat3, n| (turn * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3();
+        let mut normals = match vertices.checked(&Semantic::Normals, count)? {
+            Some(mut normals) => {
+                pose::mix(self.file, targets, |target| target.normals, &mut normals)?;
+                let turn = cofactor(whole);
+                match &bent {
+                    Some(bent) => bring_in(normals, |i, n| normal(cofactor(bent.transform(i)), n))?,
+                    None => bring_in(normals, |_, n| normal(turn, n))?,
+                }
+            }
             None => Vec::new(),
         };
         let mut uvs = [Vec::new(), Vec::new()];
         for (set, uv) in uvs.iter_mut().enumerate() {
-            if let Some(index) = attribute(Semantic::TexCoords(set as u32)) {
-                *uv = bring_in(accessor::vectors(self.file, index)?, |uv: [f32; 2]| Vec2::from(uv))?;
-                checked("TEXCOORD", uv.len())?;
+            if let Some(read) = vertices.checked(&Semantic::TexCoords(set as u32), count)? {
+                *uv = bring_in(read, |_, uv: [f32; 2]| Vec2::from(uv))?;
             }
         }
 
         // Form triangles of all three modes, restoring their winding after a reflection.
-        let indices = match primitive.indices {
-            Some(index) => accessor::indices(self.file, index)?,
-            None => try_collect(0..count as u32)?,
-        };
+        let (mode, indices) = vertices.indices(mode, count)?;
         if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
             return Err(Error::format(format!("an index is {beyond}, but there are {count} vertices")));
         }
@@ -231,7 +266,6 @@ impl Importer<'_> {
             triangles.iter_mut().for_each(|t| t.swap(1, 2));
         }
         if !normals.is_empty() {
-            checked("NORMAL", normals.len())?;
             mend_normals(&positions, &mut normals, &triangles)?;
         }
         let material = match primitive.material {
@@ -239,24 +273,22 @@ impl Importer<'_> {
             Some(index) => return Err(missing("material", index.value(), self.file.root.materials.len())),
             None => self.default_material(),
         };
-        let material = match attribute(Semantic::Colors(0)) {
-            Some(index) => {
-                let colours = accessor::colours(self.file, index)?;
-                checked("COLOR_0", colours.len())?;
-                self.tint(name, material, &colours)?
-            }
-            None => material,
+        let (material, colours) = match vertices.colours(count)? {
+            Some(colours) => self.tint(material, colours)?,
+            None => (material, Vec::new()),
         };
         positions.shrink_to_fit();
-        self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, triangles });
+        self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, colours, triangles });
         Ok(())
     }
 
-    /// Counts the output of a primitive before allocating it: instances multiply the contents of a small file.
+    /// Counts the output of a primitive before allocating it, and the morph targets to mix: instances multiply the
+    /// contents of a small file.
     fn reserve(
         &mut self,
         positions: Index<json::Accessor>,
         vertex_bytes: u64,
+        targets: usize,
         indices: Option<Index<json::Accessor>>,
         mode: Mode,
     ) -> Result<()> {
@@ -267,14 +299,17 @@ impl Importer<'_> {
             let message = format!("the file has more than {MAX_MESHES} meshes, counting every instance");
             return Err(Error::new(ErrorKind::Unsupported, message));
         }
-        self.vertices = self.vertices.saturating_add(vertices);
+        let read = vertices.saturating_mul(1 + targets as u64);
+        self.vertices = self.vertices.saturating_add(read);
         self.triangles = self.triangles.saturating_add(triangles);
         if self.vertices.max(self.triangles) <= MAX_ELEMENTS {
             return self.budget.keep(vertices * vertex_bytes + 12 * triangles);
         }
         Err(Error::new(
             ErrorKind::Unsupported,
-            format!("the file has more than {MAX_ELEMENTS} vertices or triangles, counting every instance"),
+            format!(
+                "the file has more than {MAX_ELEMENTS} vertices or triangles, counting every instance and morph target"
+            ),
         ))
     }
 
@@ -286,28 +321,31 @@ impl Importer<'_> {
         })
     }
 
-    /// The material for vertices with such colours: multiplied by the colour if all are equal.
-    fn tint(&mut self, name: &str, material: usize, colours: &[[f32; 4]]) -> Result<usize> {
-        let Some((&first, rest)) = colours.split_first() else { return Ok(material) };
+    /// The material and the colours of vertices with such colours: one colour of all is part of the material.
+    fn tint(&mut self, material: usize, colours: Vec<[f32; 4]>) -> Result<(usize, Vec<Vec4>)> {
+        let clamped = |colour: [f32; 4]| Vec4::from(colour).clamp(Vec4::ZERO, Vec4::ONE);
+        let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
         if rest.iter().any(|colour| *colour != first) {
-            let effect = "the vertices have one colour, that of the material";
-            note(&mut self.scene.unrendered, "COLOR_0", effect, || format!("mesh {name:?}"));
-            return Ok(material);
+            self.budget.keep(size_of_val(&colours[..]) as u64)?;
+            return Ok((material, bring_in(colours, |_, colour| clamped(colour))?));
         }
         if first == [1.0; 4] {
-            return Ok(material);
+            return Ok((material, Vec::new()));
         }
         if let Some((.., known)) = self.tinted.iter().find(|(of, colour, _)| (*of, *colour) == (material, first)) {
-            return Ok(*known);
+            return Ok((*known, Vec::new()));
         }
-        let [r, g, b, alpha] = first.map(|v| v.clamp(0.0, 1.0));
+        let colour = clamped(first);
         let plain = &self.scene.materials[material];
-        let product =
-            Material { base_color: plain.base_color * Vec3::new(r, g, b), alpha: plain.alpha * alpha, ..plain.clone() };
+        let product = Material {
+            base_color: plain.base_color * colour.truncate(),
+            alpha: plain.alpha * colour.w,
+            ..plain.clone()
+        };
         self.scene.materials.push(product);
         let index = self.scene.materials.len() - 1;
         self.tinted.push((material, first, index));
-        Ok(index)
+        Ok((index, Vec::new()))
     }
 
     fn camera(&mut self, name: String, camera: &json::Camera, transform: DMat4) -> Result<()> {
@@ -332,33 +370,21 @@ impl Importer<'_> {
     }
 }
 
-/// The root nodes: those of the default or first scene, or else all nodes that are nobody's child.
-fn roots(file: &File) -> Result<Vec<usize>> {
-    let root = &file.root;
-    let number = root.scene.map_or(0, |s| s.value());
-    match root.scenes.get(number) {
-        Some(scene) => Ok(scene.nodes.iter().map(|n| n.value()).collect()),
-        None if root.scene.is_some() => Err(missing("scene", number, root.scenes.len())),
-        None => {
-            let mut is_child = try_vec(root.nodes.len(), false)?;
-            for child in root.nodes.iter().flat_map(|n| n.children.iter().flatten()) {
-                if let Some(flag) = is_child.get_mut(child.value()) {
-                    *flag = true;
-                }
-            }
-            let roots: Vec<usize> = (0..root.nodes.len()).filter(|&i| !is_child[i]).collect();
-            if roots.is_empty() && !root.nodes.is_empty() {
-                return Err(Error::format("every node is the child of another: the nodes form a circle"));
-            }
-            Ok(roots)
-        }
-    }
+/// Changes values by their index.
+fn bring_in<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(usize, T) -> U) -> Result<Vec<U>> {
+    let mut out = try_vec(values.len(), U::default())?;
+    out.iter_mut().zip(values).enumerate().for_each(|(i, (o, v))| *o = change(i, v));
+    Ok(out)
 }
 
-fn bring_in<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(T) -> U) -> Result<Vec<U>> {
-    let mut out = try_vec(values.len(), U::default())?;
-    out.iter_mut().zip(values).for_each(|(o, v)| *o = change(v));
-    Ok(out)
+/// The matrix that transforms normals: the inverse transpose up to scale, but finite for flat scalings.
+fn cofactor(transform: DMat4) -> DMat3 {
+    let linear = DMat3::from_mat4(transform);
+    DMat3::from_cols(
+        linear.y_axis.cross(linear.z_axis),
+        linear.z_axis.cross(linear.x_axis),
+        linear.x_axis.cross(linear.y_axis),
+    )
 }
 
 fn triangulate(mode: Mode, indices: &[u32]) -> Result<Vec<[u32; 3]>> {

@@ -2,14 +2,16 @@
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
 //! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants` (the
-//! default one), `KHR_mesh_quantization`, `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
+//! default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`, `EXT_meshopt_compression`,
+//! `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
 //!
-//! Import: every node × instance × primitive becomes one mesh in world space, named after its node. A vertex colour
-//! that all vertices share becomes part of the material. Not imported: animation, skins and morph targets (the rest
-//! pose is used), other vertex colours, tangents (the renderer derives them), occlusion textures, points and lines,
-//! orthographic cameras, more than two sets of texture coordinates, and material properties of other extensions such
-//! as `KHR_materials_specular`, `_clearcoat`, `_sheen` and `_volume`. A required extension not listed above is an
-//! error; an optional one is ignored. All that is left out and would be seen is listed in [`Scene::unrendered`].
+//! Import: every node × instance × primitive becomes one mesh in world space, named after its node, with its morph
+//! targets mixed by their weights and its skin bent by the joints at rest. A vertex colour that all vertices share
+//! becomes part of the material. Not imported: animation, morph targets of colours and texture coordinates, tangents
+//! (the renderer derives them), occlusion textures, points and lines, orthographic cameras, more than two sets
+//! of texture coordinates, and material properties of other extensions such as `KHR_materials_specular`, `_clearcoat`,
+//! `_sheen` and `_volume`. A required extension not listed above is an error; an optional one is ignored. All that is
+//! left out and would be seen is listed in [`Scene::unrendered`].
 //!
 //! Export: a flat list of nodes, one per mesh, camera and light. The environment is left out, because glTF cannot hold
 //! it.
@@ -21,13 +23,18 @@
 mod accessor;
 mod container;
 mod document;
+mod draco;
 mod export;
 mod features;
 mod import;
 mod instances;
 mod material;
+mod meshopt;
+mod nodes;
+mod pose;
 #[cfg(test)]
 mod tests;
+mod vertices;
 
 pub use export::export;
 pub use import::import;

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use std::cell::Cell;
 use std::sync::Arc;
 
+mod compressed;
 mod features;
 
 fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
@@ -269,7 +270,7 @@ fn strips_fans_and_sparse_accessors() {
 #[test]
 fn lying_files_are_errors_that_say_why() {
     type Edit = fn(&mut Value);
-    let cases: [(&str, Edit); 25] = [
+    let cases: [(&str, Edit); 26] = [
         ("buffer view 9", |f| f["accessors"][0]["bufferView"] = 9.into()),
         ("accessor 7", |f| f["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7.into()),
         ("do not fit", |f| f["accessors"][0]["count"] = 4.into()),
@@ -279,6 +280,9 @@ fn lying_files_are_errors_that_say_why() {
         ("covers", |f| f["bufferViews"][0]["byteLength"] = 41.into()),
         ("covers", |f| f["bufferViews"][1]["byteOffset"] = u64::MAX.into()),
         ("byteLength is 60", |f| f["buffers"][0]["byteLength"] = 60.into()),
+        ("buffer 0 has no URI", |f| {
+            f["buffers"][0].as_object_mut().unwrap().remove("uri");
+        }),
         ("stride", |f| f["bufferViews"][0]["byteStride"] = 0.into()),
         ("an index is", |f| f["bufferViews"][1]["byteOffset"] = 14.into()),
         ("reached twice", |f| f["nodes"][0]["children"] = json!([0])),
@@ -296,7 +300,7 @@ fn lying_files_are_errors_that_say_why() {
         }),
         ("components", |f| f["accessors"][0]["type"] = "VEC2".into()),
         ("unknown", |f| f["accessors"][0]["type"] = "VEC9".into()),
-        ("KHR_draco", |f| f["extensionsRequired"] = json!(["KHR_draco_mesh_compression"])),
+        ("KHR_texture_basisu", |f| f["extensionsRequired"] = json!(["KHR_texture_basisu"])),
         ("at most", |f| f["accessors"][0] = json!({ "componentType": 5126, "count": 60_000_000, "type": "VEC3" })),
         ("beside it", |f| f["buffers"][0]["uri"] = "mesh.bin".into()),
         ("outside the folder", |f| f["buffers"][0]["uri"] = "../mesh.bin".into()),

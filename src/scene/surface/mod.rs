@@ -9,6 +9,7 @@
 //! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area
 //! that slopes away from it.
 
+mod candidates;
 mod facing;
 mod frame;
 mod name;
@@ -17,6 +18,7 @@ mod place;
 #[cfg(test)]
 mod tests;
 
+pub use candidates::{Candidate, Kind, candidates};
 pub use place::{Placed, cover, place};
 
 use super::Scene;

@@ -4,7 +4,7 @@ use super::{Surface, check_triangles};
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::scene::{Material, Mesh, Scene, Texture, TextureRef, Wrap};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// The mesh and material that now emit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +69,7 @@ fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
 fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
     let mut patch = Mesh::default();
     let has_uv = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].uvs[0].is_empty());
+    let has_colours = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].colours.is_empty());
     for &(mesh, triangle) in &surface.triangles {
         let mesh = &scene.meshes[mesh];
         let mut corners = mesh.triangles[triangle].map(|i| i as usize);
@@ -86,6 +87,9 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
             patch.uvs[1].push(at.clamp(Vec2::ZERO, Vec2::ONE));
             if has_uv {
                 patch.uvs[0].push(mesh.uvs[0].get(i).copied().unwrap_or_default());
+            }
+            if has_colours {
+                patch.colours.push(mesh.colours.get(i).copied().unwrap_or(Vec4::ONE));
             }
         }
     }
@@ -131,9 +135,9 @@ pub fn cover(scene: &mut Scene, name: &str) -> Result<usize> {
             Vec3::new(high.x, y, high.z),
             Vec3::new(low.x, y, high.z),
         ],
-        normals: Vec::new(),
         uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
     });
     Ok(scene.meshes.len() - 1)
 }

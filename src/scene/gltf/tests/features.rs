@@ -34,7 +34,7 @@ fn only_gltf_2_is_read() {
 fn valid_files_in_unusual_forms_are_read() {
     let plain = import(&triangle_file(|_| ()), None).unwrap();
     type Edit = fn(&mut Value);
-    let edits: [(&str, Edit); 9] = [
+    let edits: [(&str, Edit); 10] = [
         ("extras of any type", |f| {
             f["extras"] = json!(7);
             f["nodes"][0]["extras"] = json!("a text");
@@ -82,6 +82,10 @@ fn valid_files_in_unusual_forms_are_read() {
                 json!([{ "name": "Default", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
             f["meshes"][0]["primitives"][0]["material"] = json!(0);
         }),
+        ("a buffer without data that nothing uses", |f| {
+            f["buffers"].as_array_mut().unwrap().push(json!({ "byteLength": 1 }));
+            f["bufferViews"].as_array_mut().unwrap().push(json!({ "buffer": 1, "byteLength": 1 }));
+        }),
         ("metadata", |f| f["extensionsUsed"] = json!(["KHR_xmp_json_ld"])),
     ];
     for (name, edit) in edits {
@@ -127,16 +131,12 @@ fn each_feature_that_is_not_rendered_is_named() {
         assert!(texts[0].starts_with(name) && texts[0].contains("material \"Paint\""), "{}", texts[0]);
     }
     type Edit = fn(&mut Value);
-    let others: [(&str, &str, Edit); 7] = [
+    let others: [(&str, &str, Edit); 6] = [
         ("KHR_texture_basisu", "texture 0", |f| {
             f["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
         }),
-        ("skins", "node \"Tri\"", |f| {
-            f["skins"] = json!([{ "joints": [0] }]);
-            f["nodes"][0]["skin"] = json!(0);
-        }),
-        ("morph targets", "mesh 0", |f| {
-            f["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0 }]);
+        ("morph targets of colours", "mesh 0", |f| {
+            f["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0, "COLOR_0": 0 }]);
             f["meshes"][0]["weights"] = json!([0.5]);
         }),
         ("animations", "animation \"Walk\"", |f| {
@@ -158,7 +158,7 @@ fn each_feature_that_is_not_rendered_is_named() {
 }
 
 /// Adds an accessor of floats in a buffer of its own; its index.
-fn add_floats(file: &mut Value, kind: &str, count: usize, numbers: &[f32]) -> usize {
+pub fn add_floats(file: &mut Value, kind: &str, count: usize, numbers: &[f32]) -> usize {
     let raw: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
@@ -220,6 +220,97 @@ fn instances_are_meshes_of_their_own() {
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("1048576 meshes"), "{error}");
 }
 
+/// A triangle of which joints or morph targets move two corners.
+#[test]
+fn a_skin_is_bent_by_its_joints_at_rest() {
+    // The second corner hangs on node 2, the third on nodes 1 and 2 by halves, the first on node 1.
+    let file = |joint: f32, matrices: usize| {
+        triangle_file(|f| {
+            let joints = add_floats(f, "VEC4", 3, &[0.0, 0.0, 0.0, 0.0, joint, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+            let weights = add_floats(f, "VEC4", 3, &[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]);
+            let normals = add_floats(f, "VEC3", 3, &[0.0, 0.0, 1.0].repeat(3));
+            // Bound where node 2 was one metre to the right.
+            let unit = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+            let moved = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0];
+            let inverse = add_floats(f, "MAT4", matrices, &[unit, moved].concat()[..16 * matrices]);
+            let attributes = &mut f["meshes"][0]["primitives"][0]["attributes"];
+            attributes["JOINTS_0"] = joints.into();
+            attributes["WEIGHTS_0"] = weights.into();
+            attributes["NORMAL"] = normals.into();
+            f["skins"] = json!([{ "joints": [1, 2], "inverseBindMatrices": inverse }]);
+            // Joints move the mesh, and its own node does not.
+            let half = std::f32::consts::FRAC_1_SQRT_2;
+            f["nodes"] = json!([
+                { "mesh": 0, "skin": 0, "translation": [100, 0, 0] },
+                { "translation": [0, 0, 5], "children": [2] },
+                { "translation": [1, 0, 0], "rotation": [0, half, 0, half] },
+            ]);
+            f["scenes"][0]["nodes"] = json!([0, 1]);
+        })
+    };
+    let scene = import(&file(1.0, 2), None).unwrap();
+    assert!(scene.unrendered.is_empty(), "{:?}", scene.unrendered);
+    let mesh = &scene.meshes[0];
+    // Node 2 turns about y by 90 degrees at (1, 0, 5): a point is taken to it from (1, 0, 0).
+    let bent = Vec3::new(1.0 + 0.0, 1.0, 5.0 - (0.0 - 1.0));
+    let expected = [Vec3::new(0.0, 0.0, 5.0), Vec3::new(1.0, 0.0, 5.0), (Vec3::new(0.0, 1.0, 5.0) + bent) / 2.0];
+    for (found, wanted) in mesh.corners(0).into_iter().zip(expected) {
+        assert!(near(found, wanted), "{found} instead of {wanted}");
+    }
+    assert!(near(mesh.normals[0], Vec3::Z) && near(mesh.normals[1], Vec3::X), "{:?}", mesh.normals);
+    // Joints that reflect keep the front where the normals are.
+    let mut mirrored: Value = serde_json::from_slice(&file(1.0, 2)).unwrap();
+    mirrored["nodes"][1]["scale"] = json!([-1, 1, 1]);
+    let mesh = &import(mirrored.to_string().as_bytes(), None).unwrap().meshes[0];
+    let [a, b, c] = mesh.corners(0);
+    assert!((b - a).cross(c - a).dot(mesh.normals[0]) > 0.0, "{:?} {:?}", mesh.triangles, mesh.normals);
+    // In millimetres.
+    let scaled = super::super::import(&file(1.0, 2), None, Options { unit: 0.001, ..Options::default() }).unwrap();
+    assert!(near(scaled.meshes[0].corners(0)[1] * 1000.0, expected[1]));
+    for (joint, matrices, message) in [(2.0, 2, "joint 2"), (1.0, 1, "1 inverse bind matrices")] {
+        let error = import(&file(joint, matrices), None).unwrap_err();
+        assert!(error.kind == ErrorKind::Format && error.message.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn morph_targets_are_mixed_by_their_weights() {
+    let file = |node: Value, mesh: Value, count: usize| {
+        triangle_file(|f| {
+            let up = add_floats(f, "VEC3", count, &[0.0, 0.0, 2.0].repeat(count));
+            let right = add_floats(f, "VEC3", 3, &[4.0, 0.0, 0.0].repeat(3));
+            let normals = add_floats(f, "VEC3", 3, &[0.0, 0.0, 1.0].repeat(3));
+            let primitive = &mut f["meshes"][0]["primitives"][0];
+            primitive["attributes"]["NORMAL"] = normals.into();
+            primitive["targets"] = json!([{ "POSITION": up }, { "POSITION": right, "NORMAL": right }]);
+            f["nodes"][0]["weights"] = node;
+            f["meshes"][0]["weights"] = mesh;
+        })
+    };
+    let read = |node: Value, mesh: Value| {
+        let scene = import(&file(node, mesh, 3), None).unwrap();
+        assert!(scene.unrendered.is_empty());
+        (scene.meshes[0].positions[0], scene.meshes[0].normals[0])
+    };
+    assert_eq!(read(Value::Null, Value::Null), (Vec3::ZERO, Vec3::Z));
+    assert_eq!(read(Value::Null, json!([0.5, 0])), (Vec3::Z, Vec3::Z));
+    // The node's weights come before the mesh's.
+    let (position, normal) = read(json!([0, 0.25]), json!([0.5, 0]));
+    assert!(near(position, Vec3::X) && near(normal, Vec3::new(1.0, 0.0, 1.0).normalize()), "{position} {normal}");
+    let error = import(&file(json!([1, 0]), Value::Null, 2), None).unwrap_err();
+    assert!(error.message.contains("2 values for 3 vertices"), "{error}");
+    // A small file with a lot to mix.
+    let bomb = triangle_file(|f| {
+        let accessor = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
+        f["accessors"].as_array_mut().unwrap().push(accessor);
+        f["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(2);
+        f["meshes"][0]["primitives"][0]["targets"] = json!(vec![json!({ "POSITION": 2 }); 64]);
+        f["meshes"][0]["weights"] = json!(vec![1; 64]);
+    });
+    let error = import(&bomb, None).unwrap_err();
+    assert!(error.kind == ErrorKind::Unsupported && error.message.contains("morph target"), "{error}");
+}
+
 #[test]
 fn one_colour_of_all_vertices_becomes_part_of_the_material() {
     let with = |colours: &[f32], kind: &str| {
@@ -239,9 +330,13 @@ fn one_colour_of_all_vertices_becomes_part_of_the_material() {
     assert_eq!((scene.materials[1].base_color, scene.materials[1].alpha), (Vec3::new(0.25, 0.25, 1.0), 0.5));
     assert_eq!(scene.materials[0].base_color, Vec3::new(0.5, 1.0, 1.0));
     assert!(scene.unrendered.is_empty());
-    let scene = with(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], "VEC3");
-    assert_eq!((scene.materials.len(), scene.meshes[0].material), (1, 0));
-    assert!(scene.unrendered[0].to_string().starts_with("COLOR_0") && scene.unrendered[0].count == 2);
+    assert!(scene.meshes[0].colours.is_empty());
+    // Other colours stay with the vertices, and come back from a file that is written.
+    let scene = with(&[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0], "VEC3");
+    assert_eq!((scene.materials.len(), scene.meshes[0].material, scene.unrendered.len()), (1, 0, 0));
+    let colours = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]].map(glam::Vec4::from);
+    assert_eq!(scene.meshes[1].colours, colours);
+    assert_eq!(import(&export(&scene).unwrap(), None).unwrap().meshes[1].colours, colours);
 }
 
 #[test]

@@ -1,0 +1,206 @@
+//! Candidates for the ceiling
+//!
+//! The objects and materials of a scene with their area, height and direction, the likeliest ceilings first: for hosts
+//! that let the user choose the surface with the lights. luxfer_scene_find_surface and luxfer_transfer_set_target take
+//! the names. A list is a copy, which stays as it is when the scene changes.
+
+use super::context::Context;
+use super::guard::enter;
+use super::handle::{self, Handle, Owned, tag};
+use super::params::{Report, Versioned};
+use super::pointer::{Out, copy_text};
+use super::scene::{luxfer_scene, missing};
+use super::status::luxfer_status;
+use crate::error::Result;
+use crate::scene::surface::{self, Candidate, Kind};
+use std::ffi::c_char;
+use std::sync::Arc;
+
+/// A list of candidates. See luxfer_scene_get_candidates.
+pub struct luxfer_candidates {
+    _opaque: [u8; 0],
+}
+
+/// What a candidate is: a LUXFER_CANDIDATE_ value.
+pub type luxfer_candidate_kind = i32;
+/// All meshes of one name.
+pub const LUXFER_CANDIDATE_OBJECT: luxfer_candidate_kind = 0;
+/// All triangles of one material.
+pub const LUXFER_CANDIDATE_MATERIAL: luxfer_candidate_kind = 1;
+
+/// An object or a material of a scene. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_candidate {
+    /// sizeof(luxfer_candidate), set by the caller.
+    pub struct_size: u32,
+    /// LUXFER_CANDIDATE_ value.
+    pub kind: luxfer_candidate_kind,
+    /// Index of the object's first mesh, or of the material.
+    pub index: u32,
+    /// Number of triangles with an area.
+    pub triangles: u32,
+    /// Area in m².
+    pub area: f32,
+    /// Area in m² of the triangles that are inclined by less than 15 degrees, on either side.
+    pub level_area: f32,
+    /// Mean height of these triangles, or of all if there are none, in metres.
+    pub height: f32,
+    /// Lowest point, in metres.
+    pub low: f32,
+    /// Highest point, in metres.
+    pub high: f32,
+    /// Mean direction of the front sides by area, a unit vector; 0 if they cancel, as for a box.
+    pub normal: [f32; 3],
+    /// Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan that it
+    /// covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts too.
+    pub score: f32,
+    /// 0.
+    pub reserved: u32,
+}
+
+const SIZE: usize = 56;
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_candidate {
+    const NAME: &'static str = "luxfer_candidate";
+    const SIZES: &'static [usize] = &[SIZE];
+    fn defaults() -> Self {
+        Self {
+            struct_size: SIZE as u32,
+            kind: LUXFER_CANDIDATE_OBJECT,
+            index: 0,
+            triangles: 0,
+            area: 0.0,
+            level_area: 0.0,
+            height: 0.0,
+            low: 0.0,
+            high: 0.0,
+            normal: [0.0; 3],
+            score: 0.0,
+            reserved: 0,
+        }
+    }
+}
+
+/// The candidates behind a handle.
+pub(super) struct Candidates {
+    context: Arc<Context>,
+    list: Vec<Candidate>,
+}
+
+impl Owned for Candidates {
+    fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl Handle for luxfer_candidates {
+    type Object = Candidates;
+    const TAG: u64 = tag(b"lux.cand");
+    const NAME: &'static str = "luxfer_candidates";
+}
+
+impl Candidates {
+    fn get(&self, index: u32) -> Result<&Candidate> {
+        self.list.get(index as usize).ok_or_else(|| missing("candidate", index, self.list.len()))
+    }
+}
+
+/// Lists the objects of a scene, and the materials in use, the likeliest ceilings first. It reads each triangle once.
+/// The caller releases *candidates. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_get_candidates(
+    scene: *mut luxfer_scene,
+    candidates: *mut *mut luxfer_candidates,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let out = Out::new(candidates, "candidates")?;
+        let scene = object.snapshot();
+        scene.validate()?;
+        let list = surface::candidates(&scene)?;
+        out.set(handle::give(Arc::new(Candidates { context: object.context().clone(), list })));
+        Ok(())
+    })
+}
+
+/// Counts the candidates of a list. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_candidates_count(candidates: *mut luxfer_candidates, count: *mut u32) -> luxfer_status {
+    enter(candidates, |object| {
+        Out::new(count, "count")?.set(u32::try_from(object.list.len()).unwrap_or(u32::MAX));
+        Ok(())
+    })
+}
+
+/// Gets the figures of a candidate. Any thread.
+/// LUXFER_NOT_FOUND if there is no such candidate.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_candidates_get(
+    candidates: *mut luxfer_candidates,
+    index: u32,
+    candidate: *mut luxfer_candidate,
+) -> luxfer_status {
+    enter(candidates, |object| {
+        let out = Report::new(candidate)?;
+        let found = object.get(index)?;
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        out.set(luxfer_candidate {
+            kind: match found.kind {
+                Kind::Object => LUXFER_CANDIDATE_OBJECT,
+                Kind::Material => LUXFER_CANDIDATE_MATERIAL,
+            },
+            index: count(found.index),
+            triangles: count(found.triangles),
+            area: found.area as f32,
+            level_area: found.level_area as f32,
+            height: found.height as f32,
+            low: found.low as f32,
+            high: found.high as f32,
+            normal: found.normal.as_vec3().to_array(),
+            score: found.score as f32,
+            ..luxfer_candidate::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Copies the name of a candidate into buffer, as luxfer_context_last_error copies a message. Any thread.
+/// LUXFER_NOT_FOUND if there is no such candidate.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_candidates_get_name(
+    candidates: *mut luxfer_candidates,
+    index: u32,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(candidates, |object| copy_text(&object.get(index)?.name, buffer, capacity, needed))
+}
+
+/// Copies the reason for the score of a candidate, in English and with its figures, as luxfer_candidates_get_name
+/// copies the name. Any thread.
+/// LUXFER_NOT_FOUND if there is no such candidate.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_candidates_get_reason(
+    candidates: *mut luxfer_candidates,
+    index: u32,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(candidates, |object| copy_text(&object.get(index)?.reason, buffer, capacity, needed))
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_candidates_retain(candidates: *mut luxfer_candidates) -> luxfer_status {
+    handle::retain(candidates)
+}
+
+/// Gives a reference back. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_candidates_release(candidates: *mut luxfer_candidates) -> luxfer_status {
+    handle::release(candidates)
+}

@@ -1,0 +1,83 @@
+//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`), decoded by the crate meshoptimizer-rs.
+
+use super::features::MESHOPT;
+use crate::error::{Error, ErrorKind, Result};
+use gltf::json::Buffer;
+use gltf::json::buffer::View;
+use meshoptimizer_rs::codec::{BufferView, Filter, Mode};
+use meshoptimizer_rs::{Limits, Workspace};
+use serde_json::Value;
+
+/// Decoded bytes for each byte of a stream, at most: the codec of attributes states groups of 64 equal bytes in one.
+const MAX_RATIO: u64 = 64;
+
+/// Bytes that the decoder may give beyond that ratio: one block.
+const BLOCK: u64 = 8192;
+
+/// A compressed buffer view.
+pub struct Packed {
+    pub buffer: usize,
+    pub start: u64,
+    pub length: u64,
+    view: BufferView,
+}
+
+impl Packed {
+    /// The description of a view; `None` if it is not compressed.
+    pub fn of(view: &View) -> Option<Result<Self>> {
+        let settings = view.extensions.as_ref()?.others.get(MESHOPT)?;
+        Some(Self::read(settings, view).map_err(|e| e.within(MESHOPT)))
+    }
+
+    fn read(settings: &Value, parent: &View) -> Result<Self> {
+        let number = |key: &str| settings.get(key).and_then(Value::as_u64);
+        let required = |key: &str| number(key).ok_or_else(|| Error::format(format!("it has no {key}")));
+        let text = |key: &str, default| settings.get(key).map_or(Some(default), Value::as_str).unwrap_or_default();
+        let refused = |what: &str, e| Error::format(format!("its {what}: {e}"));
+        let (mode, filter) = (text("mode", ""), text("filter", "NONE"));
+        let mode = Mode::parse(mode).map_err(|_| Error::format(format!("its mode is {mode:?}")))?;
+        let filter = Filter::parse(filter).map_err(|_| Error::format(format!("its filter is {filter:?}")))?;
+        let size = |key: &str| required(key).map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+        let view =
+            BufferView::new(mode, filter, size("count")?, size("byteStride")?).map_err(|e| refused("layout", e))?;
+        let stride = parent.byte_stride.map(|stride| stride.0);
+        let bytes = usize::try_from(parent.byte_length.0).unwrap_or(usize::MAX);
+        view.validate_parent(bytes, stride).map_err(|e| refused("buffer view", e))?;
+        let packed = Self {
+            buffer: usize::try_from(required("buffer")?).unwrap_or(usize::MAX),
+            start: number("byteOffset").unwrap_or(0),
+            length: required("byteLength")?,
+            view,
+        };
+        let most = packed.length.saturating_mul(MAX_RATIO).saturating_add(BLOCK);
+        if packed.bytes() > most {
+            let message = format!("{} bytes cannot be in a stream of {}", packed.bytes(), packed.length);
+            return Err(Error::format(message));
+        }
+        Ok(packed)
+    }
+
+    /// Size of the decoded data.
+    pub fn bytes(&self) -> u64 {
+        self.view.byte_length() as u64
+    }
+
+    pub fn decode(&self, stream: &[u8]) -> Result<Vec<u8>> {
+        let limits = Limits { max_bytes: usize::MAX, max_work: u64::MAX };
+        let decoded = self.view.decode(stream, &mut Workspace::new(limits));
+        decoded.map_err(|e| {
+            let kind = match e {
+                meshoptimizer_rs::Error::AllocationFailed => ErrorKind::OutOfMemory,
+                meshoptimizer_rs::Error::UnsupportedVersion => ErrorKind::Unsupported,
+                _ => ErrorKind::Format,
+            };
+            Error::new(kind, format!("{MESHOPT}: {e}"))
+        })
+    }
+}
+
+/// Whether a buffer stands for decoded data and need not be there.
+pub fn is_fallback(buffer: &Buffer) -> bool {
+    let settings = buffer.extensions.as_ref().and_then(|e| e.others.get(MESHOPT));
+    settings.and_then(|settings| settings.get("fallback")?.as_bool()) == Some(true)
+}

@@ -1,0 +1,156 @@
+//! Meshes at rest: shapes mixed from morph targets, and skins bent by joints where the nodes of the file put them
+//! (glTF 2.0, sections 3.7.2.2 and 3.7.3).
+
+use super::container::{File, missing};
+use super::instances::local_transform;
+use super::vertices::Vertices;
+use super::{accessor, nodes};
+use crate::error::{Error, Result};
+use crate::image::{try_collect, try_vec, try_with_capacity};
+use glam::{DMat4, Vec3};
+use gltf::json::mesh::{MorphTarget, Primitive, Semantic};
+use gltf::json::skin::Skin;
+use gltf::json::{Accessor, Index};
+
+/// Maximum number of sets of joints of a vertex: JOINTS_0 to JOINTS_3, 16 joints.
+const MAX_SETS: u32 = 4;
+
+/// The transforms to the world of all nodes of a file; `None` for nodes that are their own ancestors.
+pub fn node_transforms(file: &File, world: DMat4) -> Result<Vec<Option<DMat4>>> {
+    let all = &file.root.nodes;
+    let mut placed = try_vec(all.len(), None)?;
+    let mut stack = try_collect(nodes::tops(&file.root)?.into_iter().map(|top| (top, world)))?;
+    while let Some((index, parent)) = stack.pop() {
+        let Some(node) = all.get(index) else { continue };
+        if placed[index].is_none() {
+            let transform = parent * local_transform(node);
+            placed[index] = Some(transform);
+            stack.extend(node.children.iter().flatten().map(|child| (child.value(), transform)));
+        }
+    }
+    Ok(placed)
+}
+
+/// How joints bend the vertices of a primitive.
+pub struct Bent {
+    /// From the mesh's space at binding to the world, of each joint.
+    joints: Vec<DMat4>,
+    /// Indices of joints and their weights, for each vertex.
+    sets: Vec<(Vec<[f32; 4]>, Vec<[f32; 4]>)>,
+}
+
+impl Bent {
+    /// The joints of `count` vertices; `None` if they name none.
+    pub fn read(
+        file: &File,
+        vertices: &Vertices,
+        skin: Index<Skin>,
+        nodes: &[Option<DMat4>],
+        count: usize,
+    ) -> Result<Option<Self>> {
+        let mut sets = Vec::new();
+        for set in 0..MAX_SETS {
+            let joints = vertices.checked(&Semantic::Joints(set), count)?;
+            let weights = vertices.checked(&Semantic::Weights(set), count)?;
+            let (Some(joints), Some(weights)) = (joints, weights) else { break };
+            sets.push((joints, weights));
+        }
+        if sets.is_empty() {
+            return Ok(None);
+        }
+        let joints = joints(file, skin, nodes).map_err(|e| e.within(format_args!("skin {}", skin.value())))?;
+        let bent = Self { joints, sets };
+        for vertex in 0..count {
+            bent.check(vertex)?;
+        }
+        Ok(Some(bent))
+    }
+
+    /// The joints that move a vertex, with their weights.
+    fn influences(&self, vertex: usize) -> impl Iterator<Item = (usize, f64)> {
+        let set = move |(joints, weights): &(Vec<[f32; 4]>, Vec<[f32; 4]>)| {
+            let (joints, weights) = (joints[vertex], weights[vertex]);
+            (0..4).map(move |i| (joints[i] as usize, f64::from(weights[i])))
+        };
+        self.sets.iter().flat_map(set).filter(|influence| influence.1 != 0.0)
+    }
+
+    fn check(&self, vertex: usize) -> Result<()> {
+        match self.influences(vertex).find(|&(joint, _)| joint >= self.joints.len()) {
+            Some((joint, _)) => Err(missing("joint", joint, self.joints.len())),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether joints reflect most of the vertices.
+    pub fn is_mirrored(&self, count: usize) -> bool {
+        let is_possible = self.joints.iter().any(|joint| joint.determinant() < 0.0);
+        is_possible && (0..count).map(|i| self.transform(i).determinant().signum()).sum::<f64>() < 0.0
+    }
+
+    /// The transform of a vertex: the mean of its joints' transforms by their weights, or that of its first joint if
+    /// all weights are 0.
+    pub fn transform(&self, vertex: usize) -> DMat4 {
+        let (mut sum, mut total) = (DMat4::ZERO, 0.0);
+        for (joint, weight) in self.influences(vertex) {
+            sum += self.joints[joint] * weight;
+            total += weight;
+        }
+        if total != 0.0 {
+            return sum * (1.0 / total);
+        }
+        let first = self.sets[0].0[vertex][0] as usize;
+        self.joints.get(first).copied().unwrap_or(DMat4::IDENTITY)
+    }
+}
+
+/// The transforms of a skin's joints, each after its inverse bind matrix.
+fn joints(file: &File, skin: Index<Skin>, nodes: &[Option<DMat4>]) -> Result<Vec<DMat4>> {
+    let root = &file.root;
+    let skin = root.get(skin).ok_or_else(|| missing("skin", skin.value(), root.skins.len()))?;
+    let inverse = skin.inverse_bind_matrices.map(|index| accessor::vectors::<16>(file, index)).transpose()?;
+    if let Some(inverse) = inverse.as_ref().filter(|inverse| inverse.len() < skin.joints.len()) {
+        let message = format!("it has {} joints, but {} inverse bind matrices", skin.joints.len(), inverse.len());
+        return Err(Error::format(message));
+    }
+    let mut out = try_with_capacity(skin.joints.len())?;
+    for (i, joint) in skin.joints.iter().enumerate() {
+        let at = joint.value();
+        let node = nodes.get(at).ok_or_else(|| missing("node", at, nodes.len()))?;
+        let node = node.ok_or_else(|| Error::format(format!("its joint, node {at}, is its own ancestor")))?;
+        let bind = inverse.as_ref().map_or(DMat4::IDENTITY, |all| DMat4::from_cols_array(&all[i].map(f64::from)));
+        let transform = node * bind;
+        if !transform.is_finite() {
+            return Err(Error::format(format!("its joint, node {at}, has a transform that is not finite")));
+        }
+        out.push(transform);
+    }
+    Ok(out)
+}
+
+/// The morph targets of a primitive that are mixed in, with their weights.
+pub fn mixed<'a>(primitive: &'a Primitive, weights: &'a [f32]) -> impl Iterator<Item = (&'a MorphTarget, f32)> + Clone {
+    let targets = primitive.targets.iter().flatten();
+    targets.zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
+}
+
+/// Adds the displacements of morph targets to the values of one attribute.
+pub fn mix<'a>(
+    file: &File,
+    targets: impl Iterator<Item = (&'a MorphTarget, f32)>,
+    attribute: impl Fn(&MorphTarget) -> Option<Index<Accessor>>,
+    values: &mut [[f32; 3]],
+) -> Result<()> {
+    for (target, weight) in targets {
+        let Some(index) = attribute(target) else { continue };
+        let moves: Vec<[f32; 3]> = accessor::vectors(file, index)?;
+        if moves.len() != values.len() {
+            let message = format!("a morph target has {} values for {} vertices", moves.len(), values.len());
+            return Err(Error::format(message));
+        }
+        for (value, by) in values.iter_mut().zip(moves) {
+            *value = (Vec3::from(*value) + Vec3::from(by) * weight).to_array();
+        }
+    }
+    Ok(())
+}
