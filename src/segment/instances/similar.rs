@@ -38,8 +38,6 @@ const SHOWN: f64 = 0.01;
 const BROADER: f64 = 1.5;
 /// Share of the smallest area on the plane that the photo's border leaves of a lamp. [bench photos:tune]
 const CUT: f64 = 0.06;
-/// Share of a lamp's pixels that strokes beside lamps may graze. [bench photos:tune]
-const GRAZED: f64 = 0.03;
 /// Share of the ring that must be plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// Power of the area in the order of candidates: of nested regions with contours almost as sharp, the largest. [judged on 44 photos]
@@ -201,7 +199,7 @@ impl Search<'_> {
     fn likeness(&self, model: &Model, node: usize) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !self.has_size(model, node) || self.negatives[node] > GRAZED * area {
+        if !self.has_size(model, node) || self.negatives[node] > 0.0 {
             return 0.0;
         }
         let sharpness = sharpness(area);
