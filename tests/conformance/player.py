@@ -24,7 +24,10 @@ import time
 from script import FUNCTIONS, ROOM, STRUCTS, is_handle, is_release, makes
 
 from luxfer import _abi as abi
-from luxfer._library import library
+from luxfer._library import library as typed
+
+#: The library again, with types of its own: the package's functions in this process keep theirs.
+library = ctypes.CDLL(typed._name)
 
 TYPES = {
     "float": ctypes.c_float,
@@ -49,7 +52,8 @@ MEMORY = 6 << 30
 for name, (result, arguments) in abi.FUNCTIONS.items():
     # Pointers go in as they are.
     is_pointer = [hasattr(t, "contents") or t is ctypes.c_char_p for _, t in arguments]
-    getattr(library, name).argtypes = [ctypes.c_void_p if p else t for p, (_, t) in zip(is_pointer, arguments)]
+    function = getattr(library, name)
+    function.restype, function.argtypes = result, [ctypes.c_void_p if p else t for p, (_, t) in zip(is_pointer, arguments)]
 
 
 class Broken(Exception):
