@@ -53,7 +53,8 @@ for name, (result, arguments) in abi.FUNCTIONS.items():
     # Pointers go in as they are.
     is_pointer = [hasattr(t, "contents") or t is ctypes.c_char_p for _, t in arguments]
     function = getattr(library, name)
-    function.restype, function.argtypes = result, [ctypes.c_void_p if p else t for p, (_, t) in zip(is_pointer, arguments)]
+    function.restype = result
+    function.argtypes = [ctypes.c_void_p if p else t for p, (_, t) in zip(is_pointer, arguments)]
 
 
 class Broken(Exception):
