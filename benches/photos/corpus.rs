@@ -127,8 +127,8 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
     }
 }
 
-/// The lamps without those that lie in one another: several seeds on one lamp grow regions that hold each other. The largest region
-/// is the lamp.
+/// The lamps, each once: several seeds on one lamp grow regions that contain each other, and the largest region is the
+/// lamp.
 fn distinct(mut lamps: Vec<Lamp>, [width, height]: [usize; 2]) -> Vec<Lamp> {
     let drawn = |lamp: &Lamp| {
         let mut mask = Mask::new(width, height);

@@ -4,15 +4,17 @@ use crate::error::Result;
 use crate::image::{Image, pyramid};
 use crate::job::Job;
 
-/// Standard deviation of the blur in photo pixels: the edge of a clipped lamp is a staircase of whole pixels, and its half level is
-/// straight again after a blur of about a pixel. [convention]
+/// Standard deviation of the blur in photo pixels: the edge of a clipped lamp is a staircase of whole pixels, and its
+/// half level is straight again after a blur of about a pixel. [convention]
 const EDGE_BLUR: f32 = 0.9;
-/// Widest gap between two lamps that is kept open, in photo pixels: the blur closes gaps of up to twice its deviation. [convention]
+/// Widest gap between two lamps that is kept open, in photo pixels: the blur closes gaps of up to twice its deviation.
+/// [convention]
 const GAP: usize = 2;
 /// Steps across a gap: along a row, a column and the diagonals.
 const ACROSS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
-/// The confidence of lamps with straight edges, for resampling. Gaps between lamps stay open, as the bars between panes.
+/// The confidence of lamps with straight edges, for resampling. Gaps between lamps stay open, as the bars between
+/// panes.
 pub fn smooth_edges(confidence: &Image, job: Job) -> Result<Image> {
     let mut smooth = pyramid::blur(confidence, EDGE_BLUR, job)?;
     for y in 0..smooth.height {

@@ -18,8 +18,8 @@ const AGREEMENT: f64 = 0.9;
 /// Cosine between normals that are equal but for rounding: those of a room laid out as a box, and not of a depth map. [rounding]
 const EQUAL: f32 = 1.0 - 1e-4;
 
-/// The normal of the face that the positive strokes lie on, in a room laid out as a box. Position then says no more than the face
-/// does, and a classifier that looks at it cuts off parts of the face that no stroke has touched.
+/// The normal of the face that the positive strokes lie on, in a room laid out as a box. Position then says no more
+/// than the face does, and a classifier that looks at it cuts off parts of the face that no stroke has touched.
 pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
 }

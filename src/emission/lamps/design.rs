@@ -39,8 +39,9 @@ const ALIGNED: f64 = 0.07;
 /// Standard deviation of a side, and of the bloom at each edge, in pixels of the photo. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// The same of the bloom where the lamps show it: where it explains this share of the differences of their sides, of so many lamps
-/// at least. Lamps of several lengths, or hidden in part, do not grow with magnification. [bench photos:tune, photos:real]
+/// Standard deviation of the bloom where the lamps show it: where it explains this share of the differences of their
+/// sides, and there are at least this many lamps. Sides of lamps of several lengths, or hidden in part, do not grow with
+/// magnification. [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 1.5;
 const EXPLAINED: f64 = 0.5;
 const MIN_JUDGES: usize = 4;

@@ -1,4 +1,5 @@
-//! What each pixel shows of the room's surface: lamps of one kind cover equal areas of it, in equal shapes, however far they are.
+//! The part of the room's surface that each pixel shows: lamps of one kind cover equal areas of it, in equal shapes, at
+//! any distance.
 
 use crate::error::Result;
 use crate::exec;
@@ -9,7 +10,7 @@ use glam::Vec3;
 /// Where the positions are in the features.
 const POSITION: usize = 4;
 
-/// What each pixel shows of the room's surface, in the unit of the positions.
+/// The part of the room's surface that each pixel shows, in the unit of the positions.
 pub struct Footprint {
     pub area: Vec<f32>,
     /// Coordinates along the face that the strokes lie on.
@@ -17,8 +18,8 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// Areas by the cross product of the differences of positions along rows and columns; coordinates along the two room axes that are
-    /// farthest from the normal of the face.
+    /// Areas by the cross product of the differences of positions along rows and columns; coordinates along the two
+    /// room axes that are farthest from the normal of the face.
     pub fn new(features: &Image, normal: Vec3, job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);
         let position = |x: usize, y: usize| Vec3::from_slice(&features.pixel(x, y)[POSITION..]);

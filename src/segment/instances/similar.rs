@@ -27,8 +27,8 @@ const LARGER: f64 = 1.6;
 /// Factor between its area on the plane and those of the painted lamps: bloom and blur spread far ones. [judged on 44
 /// photos]
 const SURFACE: f64 = 4.0;
-/// Factors by which a lamp may be rounder or longer on the plane than the painted lamps: blur widens thin ones, and lengthens far ones
-/// along the view. [bench photos:tune]
+/// Factors by which a lamp may be rounder or longer on the plane than the painted lamps: blur widens thin ones, and
+/// lengthens far ones along the view. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
 /// Share of the pixels of the largest painted lamp from which a painted lamp shows its area on the plane. [judged on 44
@@ -177,8 +177,8 @@ impl Search<'_> {
         }))
     }
 
-    /// Whether a node has the size of a lamp: on the plane where the room was laid out, else in the photo. The border of the photo
-    /// may cut it to any smaller size.
+    /// Whether a node has the size of a lamp: on the plane where the room was laid out, else in the photo. A lamp that
+    /// the border of the photo cuts may be much smaller.
     fn has_size(&self, model: &Model, node: usize) -> bool {
         let regions = self.regions;
         let area = regions.area[node];
