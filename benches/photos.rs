@@ -3,6 +3,7 @@
 //! `cargo bench --bench photos -- SECTION …`, or `make bench ONLY=photos:SECTION`:
 //! - `real` runs the photos of the test data by their strokes, end to end with default settings, but for the quarter of the
 //!   corpus that is set aside; `real:WORD` runs those whose name contains the word. Contact sheets go to `out/bench/photos/`.
+//! - `nostrokes` runs the same photos without any stroke; `nostrokes:tune:COUNT` does so with generated photos.
 //! - `made` runs 200 generated photos of the evaluation seeds; `made:40` the first 40 of them, without figures. Photos are
 //!   kept under `target/photolab`, so that they are made once.
 //! - `tune` runs generated photos of the tuning seeds: `tune`, `tune:COUNT`, `tune:SEED`, `tune:FIRST:COUNT`.
@@ -27,6 +28,8 @@
 //! - *Usable*: precision above 0.5, found at least 70 %, and factors of 2, 1.6, 1.3 and 2.
 //! - *Wrong*: everything else, also a run that ends in an error. *Wrong, unwarned* where neither an error nor a warning says so.
 //! - A trap, a photo that holds no pattern of lamps, is right where the run declines or warns, else judged as the others are.
+//! - A photo whose lamps lie on no plane, or shine away from the camera, is right where the run ends in an error or says by
+//!   `DIM_LAMPS` or `NO_PATTERN` that its texture is not to be used, else judged as the others are.
 //! - Where nothing is known of a photo's lamps there is no verdict; where the camera is not known the masks alone decide.
 
 #[path = "photos/camera.rs"]
@@ -89,10 +92,15 @@ fn main() {
     pool.run(|| match arguments.split_first() {
         None => {
             real::real(&[]);
+            real::without_strokes(&[]);
             generated::evaluate(&[]);
         }
         Some((section, words)) => match section.as_str() {
             "real" => real::real(words),
+            "nostrokes" => match words.split_first() {
+                Some((first, rest)) if first == "tune" => generated::tune_without_strokes(rest),
+                _ => real::without_strokes(words),
+            },
             "held" => real::held(),
             "made" => generated::evaluate(words),
             "tune" => generated::tune(words),

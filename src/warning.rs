@@ -52,10 +52,16 @@ pub enum Code {
     ImplausibleSize = 20,
     /// Scene: its file has a feature that is not rendered.
     NotRendered = 21,
+    /// Mask of the lights: what is painted as light is hardly brighter than what is painted as plane.
+    DimLamps = 22,
+    /// Emission: a texture without light would differ less from the photo.
+    NoPattern = 23,
+    /// Mask: strokes were missing, and it is a proposal.
+    Proposed = 24,
 }
 
 impl Code {
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 24] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -77,6 +83,9 @@ impl Code {
         Self::TargetClipped,
         Self::ImplausibleSize,
         Self::NotRendered,
+        Self::DimLamps,
+        Self::NoPattern,
+        Self::Proposed,
     ];
 }
 

@@ -32,6 +32,21 @@ pub const HELD: [&str; 10] = [
 /// the photo leaves a corner or an end.
 const TRAPS: [&str; 4] = ["alma_glassroom", "alma_racks", "cmtc_discs", "foyer_sconces"];
 
+/// Photos whose lamps lie on no plane, or shine away from the camera, by the words of the corpus ("no plane", "no clean plane",
+/// "hanging" chandeliers, "uplight brighter than the lamps").
+const WITHOUT_PLANE: [&str; 10] = [
+    "aero_workshop",
+    "chester_dining",
+    "chester_patio",
+    "civil_battens_a",
+    "civil_battens_b",
+    "hall_swags_lowres",
+    "junda_tennis_s3",
+    "north2408_indirect",
+    "still_corridor_lowres",
+    "still_stairs_lowres",
+];
+
 /// Pixels between a lamp's polygon and the border of its photo below which the border may cut the lamp. [rounding]
 const BORDER: f64 = 2.0;
 
@@ -124,6 +139,7 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
         distance: None,
         to_photo,
         is_trap: TRAPS.contains(&name),
+        may_decline: WITHOUT_PLANE.contains(&name),
     }
 }
 

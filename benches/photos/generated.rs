@@ -7,7 +7,7 @@ use super::sheet::{self, Sheets};
 use super::tally::{Line, Tally};
 use crate::harness::{figure, median, quantile};
 use luxfer::image::Image;
-use luxfer::segment::strokes;
+use luxfer::segment::{StrokeSet, strokes};
 use std::sync::Arc;
 
 /// Photos that figures are of, unless fewer or more are asked for.
@@ -53,6 +53,26 @@ pub fn tune(words: &[String]) {
         [count] => drop(run("tune", TUNING, count as usize)),
         [first, count, ..] => drop(run("tune", first, count as usize)),
     }
+}
+
+/// The first photos of the tuning seeds without any stroke: tables, no figures.
+pub fn tune_without_strokes(words: &[String]) {
+    let count = words.first().and_then(|word| word.parse().ok()).unwrap_or(60);
+    let scene = Arc::new(hall());
+    let (mut sheets, mut tally) = (Sheets::new("nostrokes_tune"), Tally::default());
+    for seed in TUNING..TUNING + count {
+        let mut photo = made(seed).photo;
+        photo.strokes = StrokeSet::default();
+        let outcome = Outcome::of(&photo, &scene);
+        let line = Line::of(&photo, &outcome);
+        if seed % 3 == 0 {
+            sheets.add(&photo, &outcome, &line.caption());
+        }
+        tally.lines.push(line);
+    }
+    sheets.finish();
+    tally.table("Generated photos without strokes; × is the factor from the true lamps to the texture's");
+    tally.by_pattern();
 }
 
 /// Runs a number of photos from a seed on, and the masks by ten strokes of each.

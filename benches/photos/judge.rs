@@ -167,7 +167,7 @@ impl Judgement {
             agreement,
             verdict: Verdict::Unjudged,
         };
-        let declined = truth.is_trap && !outcome.warnings().is_empty();
+        let declined = (truth.is_trap && !outcome.warnings().is_empty()) || (truth.may_decline && outcome.declines());
         judgement.verdict = if declined { Verdict::Right } else { judgement.weigh(outcome) };
         judgement
     }

@@ -172,6 +172,7 @@ fn truth(room: &Room, shot: &Shot, look: &Look, scenery: &Scenery) -> Truth {
         distance: Some(shot.distance.into()),
         to_photo: Some(to_photo),
         is_trap: false,
+        may_decline: false,
     }
 }
 

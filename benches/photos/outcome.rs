@@ -8,6 +8,7 @@ use luxfer::emission::Emission;
 use luxfer::job::Monitor;
 use luxfer::scene::Scene;
 use luxfer::transfer::{Input, Params, Results, Stage, Transfer};
+use luxfer::warning::Code;
 use std::sync::Arc;
 
 /// Size of the picture of the lit room, and its paths per pixel.
@@ -71,6 +72,13 @@ impl Outcome {
 
     pub fn emission(&self) -> Option<&Emission> {
         self.results().emission.as_deref()
+    }
+
+    /// Whether the run says that its texture is not to be used: it ended early, the painted lamps do not shine, or a texture
+    /// without light would be nearer to the photo.
+    pub fn declines(&self) -> bool {
+        let raised = self.results().warnings(&self.transfer.input.strokes);
+        self.failure.is_some() || raised.iter().any(|(_, w)| matches!(w.code, Code::DimLamps | Code::NoPattern))
     }
 
     /// The run's own words that its texture may not be the photo's: its error, and its warnings up to the texture.

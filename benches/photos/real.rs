@@ -5,7 +5,9 @@ use super::hall::hall;
 use super::outcome::Outcome;
 use super::sheet::Sheets;
 use super::tally::{Line, Tally};
+use super::truth::Photo;
 use crate::harness::{absent, figure, median};
+use luxfer::segment::StrokeSet;
 use std::sync::Arc;
 
 /// Photos of the development part, or those whose names contain one of some words.
@@ -29,14 +31,35 @@ pub fn held() {
     }
 }
 
+/// Photos of the development part without any stroke: plane and lamps are proposed.
+pub fn without_strokes(words: &[String]) {
+    let belongs = |source: &Source| !HELD.contains(&source.name.as_str());
+    let prepare = |photo: &mut Photo| photo.strokes = StrokeSet::default();
+    let Some(tally) = run_prepared("nostrokes", words, belongs, prepare) else { return };
+    if words.is_empty() {
+        tally.verdicts("nostrokes");
+        tally.lights("nostrokes.lights");
+    }
+}
+
 fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool) -> Option<Tally> {
+    run_prepared(section, words, belongs, |_| {})
+}
+
+fn run_prepared(
+    section: &str,
+    words: &[String],
+    belongs: fn(&Source) -> bool,
+    prepare: fn(&mut Photo),
+) -> Option<Tally> {
     let sources = corpus::sources().map_err(|reason| absent(&format!("photos.{section}.right"), &reason)).ok()?;
     let is_wanted = |source: &&Source| words.is_empty() || words.iter().any(|word| source.name.contains(word.as_str()));
     let scene = Arc::new(hall());
     let (mut sheets, mut tally) = (Sheets::new(section), Tally::default());
     for source in sources.iter().filter(|source| belongs(source)).filter(is_wanted) {
         match corpus::load(source) {
-            Ok(photo) => {
+            Ok(mut photo) => {
+                prepare(&mut photo);
                 let mut outcome = Outcome::of(&photo, &scene);
                 outcome.render();
                 let line = Line::of(&photo, &outcome);
@@ -48,6 +71,6 @@ fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool) -> Option<
         }
     }
     sheets.finish();
-    tally.table("Real photos by strokes; × is the factor from the true lamps to the texture's");
+    tally.table("Real photos; × is the factor from the true lamps to the texture's");
     Some(tally)
 }

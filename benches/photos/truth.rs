@@ -49,4 +49,6 @@ pub struct Truth {
     pub to_photo: Option<Homography>,
     /// Whether the photo holds no answer, so that a run should decline or warn.
     pub is_trap: bool,
+    /// Whether the lamps of the photo lie on no plane or shine away from the camera, so that a run may decline.
+    pub may_decline: bool,
 }

@@ -7,6 +7,8 @@ use crate::warning::{Code, Warning, percent};
 const MAX_ERROR: f64 = 0.25;
 /// The same where no lattice holds the lamps. [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
+/// The difference of a texture without light, whose lit share is all that is missing. [convention]
+const UNLIT_ERROR: f64 = 1.0;
 /// Whole lamps that show a size and a spacing. [convention]
 const MIN_LAMPS: usize = 2;
 
@@ -25,14 +27,26 @@ impl Emission {
     }
 
     fn uncertain(&self) -> Option<Warning> {
+        let difference = || {
+            let parts = "the lit share, the size or the spacing of its lamps";
+            format!("the texture differs from the photo by {} in {parts}", percent(self.error))
+        };
+        let is_hopeless = self.error > UNLIT_ERROR;
+        if is_hopeless {
+            return Warning::above(
+                Code::NoPattern,
+                self.error,
+                UNLIT_ERROR,
+                || format!("{}, more than a texture without light does", difference()),
+                "do not use the texture: if the lamps hang or lie on several planes, the photo has no pattern to copy; \
+                 otherwise paint more strokes where the masks are wrong",
+            );
+        }
         Warning::above(
             Code::PatternUncertain,
             self.error,
             MAX_ERROR,
-            || {
-                let parts = "the lit share, the size or the spacing of its lamps";
-                format!("the texture differs from the photo by {} in {parts}", percent(self.error))
-            },
+            difference,
             "compare the texture with the unwarped photo; correct the mask of the lights, or lower max_magnification of \
              the rectification",
         )

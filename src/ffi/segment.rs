@@ -163,7 +163,7 @@ unsafe impl Versioned for luxfer_segment_report {
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
-    features: Option<Arc<Pixels>>,
+    pub(super) features: Option<Arc<Pixels>>,
     pub(super) region: Option<Arc<Pixels>>,
     pub(super) strokes: Vec<Stroke>,
 }

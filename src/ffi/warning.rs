@@ -81,6 +81,15 @@ pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// The file of a scene has a feature or an extension that is not rendered, which the message names with the first
 /// objects that have it; the severity is their number.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
+/// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability that
+/// a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest lamp.
+pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
+/// A texture without light would differ less from the photo, so that this one holds nothing of its pattern; the severity is
+/// the error of luxfer_emission_report. Raised in place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
+/// Strokes are missing, so that a mask is a proposal: the plane without a negative stroke, or the lights without a positive one;
+/// the severity is the share of the mask that is expected to be wrong.
+pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 
 /// A reason to doubt a result. Set struct_size before the call.
 #[repr(C)]
@@ -206,7 +215,10 @@ pub unsafe extern "C" fn luxfer_segment_get_warnings(
         let out = Out::new(warnings, "warnings")?;
         let (made, inputs) = (stage.output()?, stage.inputs());
         let lit = inputs.region.as_ref().and_then(|region| segment::almost_all_lit(&made.mask, region.image()));
-        let list = made.warnings().into_iter().chain(made.missed(inputs.strokes.iter())).chain(lit).collect();
+        let dim = inputs.features.as_ref().filter(|_| inputs.region.is_some());
+        let dim = dim.and_then(|features| segment::dim_lamps(features.image(), &[], &inputs.strokes));
+        let missed = made.missed(inputs.strokes.iter());
+        let list = made.warnings().into_iter().chain(missed).chain(lit).chain(dim).collect();
         let phase = if inputs.region.is_some() { Stage::Lights } else { Stage::Plane };
         out.set(give(stage.context(), of(phase, list)));
         Ok(())

@@ -1,9 +1,9 @@
 //! A surface that strokes lie on is one face of the room, and hangs together: a classifier of single pixels carries on to walls
 //! and floors of its colour, which no stroke has touched.
 
-use super::Input;
 use super::classify::Classified;
-use crate::error::Result;
+use super::{Input, Segmentation};
+use crate::error::{Error, Result};
 use crate::features::CHANNELS;
 use crate::image::{Image, try_push, try_vec};
 use glam::Vec3;
@@ -22,6 +22,35 @@ const EQUAL: f32 = 1.0 - 1e-4;
 /// than the face does, and a classifier that looks at it cuts off parts of the face that no stroke has touched.
 pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
+}
+
+/// The normal of a ceiling: normals point into the room, and y points down. [convention]
+pub const CEILING: Vec3 = Vec3::Y;
+/// Share of the photo that a ceiling must cover to be proposed. [convention]
+const MIN_CEILING: f64 = 0.02;
+/// Share of a proposed mask's pixels that is wrong. [bench photos:nostrokes]
+const PROPOSED_ERROR: f64 = 0.12;
+
+/// The face of the room that the positive strokes lie on; without positive strokes, the ceiling. `None` where the strokes agree on
+/// no face. Errors: there is no stroke, and no ceiling (`Degenerate`).
+pub fn propose(input: &Input) -> Result<Option<Segmentation>> {
+    let features = input.features;
+    let count = features.width * features.height;
+    let is_painted = input.strokes.iter().any(|s| s.positive && s.pixels.iter().any(|&p| (p as usize) < count));
+    let normal = if is_painted { stroked_normal(input, SAME_FACE) } else { Some(CEILING) };
+    let Some(normal) = normal else { return Ok(None) };
+    let is_on = |i: usize| normal_at(features, i).dot(normal) >= SAME_FACE;
+    let mut mask = Image::new(features.width, features.height, 1)?;
+    mask.data.iter_mut().enumerate().for_each(|(i, m)| *m = f32::from(is_on(i)));
+    let covered = mask.data.iter().filter(|m| **m > 0.5).count();
+    if (covered as f64) < MIN_CEILING * count as f64 {
+        return Err(Error::degenerate(
+            "nothing is painted, and no ceiling was found in the photo: paint at least one positive stroke on the plane that holds \
+             the lights, and one negative stroke beside it",
+        ));
+    }
+    let own = Segmentation::from_confidence(&mask)?;
+    Ok(Some(Segmentation { error: PROPOSED_ERROR, is_proposed: true, ..own }))
 }
 
 /// Takes pixels out of the mask that lie on another face of the room than the positive strokes; where the strokes agree on no

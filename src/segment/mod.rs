@@ -50,7 +50,7 @@ mod warnings;
 pub use distance::dilate;
 pub use edges::smooth_edges;
 pub use strokes::{Stroke, StrokeSet};
-pub use warnings::almost_all_lit;
+pub use warnings::{almost_all_lit, dim_lamps};
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;
@@ -173,6 +173,9 @@ pub struct Segmentation {
     pub contradictory: usize,
     /// Stroke pixels outside the image; they were ignored.
     pub off_image: usize,
+    /// Whether the mask was proposed because strokes were missing: of the plane without a negative stroke, of lamps without a
+    /// positive one.
+    pub is_proposed: bool,
 }
 
 impl Segmentation {
@@ -197,6 +200,7 @@ impl Segmentation {
             samples: [0, 0],
             contradictory: 0,
             off_image: 0,
+            is_proposed: false,
         })
     }
 }
@@ -218,7 +222,12 @@ fn not_finite(bad: usize) -> Error {
     Error::argument(format!("features has {bad} values that are NaN or infinite; all must be finite"))
 }
 
-/// Segments an image by examples. Fails where either class has no pixel in the image.
+/// Segments an image by examples.
+///
+/// With the [`CHANNELS`] of the features, a mask whose examples are missing is proposed: without negative strokes the face of the
+/// room that the positive ones lie on, the ceiling without any; lamps without positive strokes, among the brightest things within
+/// the given mask. Errors: with other features, either class has no pixel in the image; nothing is painted, and no ceiling or no
+/// lamp was found (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
@@ -239,6 +248,14 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         return instances::run(input, job);
     }
 
+    let has_negative = input.strokes.iter().any(|s| !s.positive && s.pixels.iter().any(|&p| is_inside(features, p)));
+    if input.within.is_none()
+        && features.channels == CHANNELS
+        && !has_negative
+        && let Some(proposed) = face::propose(input)?
+    {
+        return Ok(proposed);
+    }
     if params.channels == 0 && input.within.is_none() && face::laid_out(input).is_some() {
         subsets.retain(|subset| subset & POSITION == 0);
     }
@@ -272,7 +289,13 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         samples: samples.counts,
         contradictory: samples.contradictory,
         off_image: samples.off_image,
+        is_proposed: false,
     })
+}
+
+/// Whether an image has a pixel.
+fn is_inside(image: &Image, pixel: u32) -> bool {
+    (pixel as usize) < image.width * image.height
 }
 
 /// Draws examples of the given channels, and finds the model and the subset of channels that do best on strokes they have

@@ -23,6 +23,10 @@ impl Results {
             add(Stage::Lights, lights.warnings());
             add(Stage::Lights, lights.missed(strokes.lights.iter()).into_iter().collect());
         }
+        if let (Some(features), Some(_)) = (&self.features, &self.lights) {
+            let dim = segment::dim_lamps(&features.image, &strokes.plane, &strokes.lights);
+            add(Stage::Lights, dim.into_iter().collect());
+        }
         if let (Some(plane), Some(lights)) = (&self.plane, &self.lights) {
             add(Stage::Lights, segment::almost_all_lit(&lights.mask, &plane.mask).into_iter().collect());
         }

@@ -42,6 +42,15 @@ fn a_large_error_raises_a_warning() {
 }
 
 #[test]
+fn a_texture_further_from_the_photo_than_darkness_has_no_pattern() {
+    assert_eq!(codes(&Emission { error: 1.0, ..made() }), [Code::PatternUncertain]);
+    let hopeless = Emission { error: 2.52, ..made() };
+    assert_eq!(codes(&hopeless), [Code::NoPattern]);
+    assert!(hopeless.warnings()[0].message.contains("252 %"));
+    assert_eq!(codes(&Emission { error: f64::INFINITY, ..made() }), [Code::NoPattern]);
+}
+
+#[test]
 fn a_single_lamp_is_no_pattern_but_may_be_copied() {
     let single = Emission { exemplar_lamps: 1, ..made() };
     assert_eq!(codes(&single), [Code::FewLamps]);
@@ -54,6 +63,6 @@ fn free_patches_raise_a_warning_where_they_differ() {
     let free = |error| Emission { continuation: Continuation::Free, regularity: 0.0, error, ..made() };
     assert_eq!(codes(&free(0.05)), []);
     assert_eq!(codes(&free(0.2)), [Code::NoLattice]);
-    assert_eq!(codes(&free(2.1)), [Code::PatternUncertain, Code::NoLattice]);
+    assert_eq!(codes(&free(0.9)), [Code::PatternUncertain, Code::NoLattice]);
     assert_eq!(codes(&Emission { error: 0.2, ..made() }), []);
 }

@@ -16,6 +16,7 @@
 
 mod footprint;
 mod painted;
+mod proposed;
 mod regions;
 mod similar;
 mod soft;
@@ -28,6 +29,7 @@ use super::face;
 use super::samples::{self, Ownership};
 use super::{Input, Segmentation};
 use crate::error::{Error, Result};
+use crate::features::CHANNELS;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use footprint::Footprint;
@@ -56,8 +58,9 @@ const ERRORS: [f64; 2] = [0.03, 0.1];
 pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let (width, height) = (input.features.width, input.features.height);
     let paint = samples::ownership(input)?;
-    let painted_pixels: usize = paint.positive.iter().map(Vec::len).sum();
-    if painted_pixels == 0 {
+    let is_proposed = paint.positive.iter().all(Vec::is_empty);
+    let can_propose = input.features.channels == CHANNELS && input.within.is_some();
+    if is_proposed && !can_propose {
         return Err(Error::degenerate(format!(
             "no positive stroke covers any pixel of the {width} x {height} image ({} strokes, {} of their pixels off the image, {} painted \
              over by the other class): paint at least one stroke on a lamp",
@@ -72,11 +75,18 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     {
         return Err(Error::argument(format!("features holds a colour of {:?}; all must be finite", &bad[..3])));
     }
-    let photo = Brightness::new(input.features, white(input.features, &paint)?, job.part(0.0, 0.2))?;
-    let floor = floor(&photo, &paint)?;
+    // What the lamps are as bright as: the pixels of the strokes, else the brightest ones of the plane.
+    let plane = input.within.filter(|_| is_proposed);
+    let examples = match plane {
+        Some(plane) => vec![proposed::brightest(input.features, plane)?],
+        None => try_collect(paint.positive.iter().cloned())?,
+    };
+    let photo = Brightness::new(input.features, white(input.features, &examples)?, job.part(0.0, 0.2))?;
+    let floor = floor(&photo, &examples)?;
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
     // In a room laid out as a box, the features tell how large things are.
-    let footprint = match face::laid_out(input) {
+    let normal = if is_proposed { Some(face::CEILING) } else { face::laid_out(input) };
+    let footprint = match normal {
         Some(normal) => Some(Footprint::new(input.features, normal, job.part(0.6, 0.65))?),
         None => None,
     };
@@ -85,8 +95,16 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);
 
-    let mut painted =
-        painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?;
+    let mut painted = match plane {
+        Some(plane) => proposed::find(&Search {
+            tree: &tree,
+            regions: &regions,
+            photo: &photo,
+            plane: Some(plane),
+            negatives: &negatives,
+        })?,
+        None => painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?,
+    };
     let nobody = try_vec(width * height, false)?;
     let mut is_brighter = try_vec(painted.len(), false)?;
     for (is_brighter, &node) in is_brighter.iter_mut().zip(&painted) {
@@ -98,12 +116,13 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let plane = input.within;
     let search = Search { tree: &tree, regions: &regions, photo: &photo, plane, negatives: &negatives };
     let similar = search.run(&painted, job.part(0.8, 0.95))?;
-    segmentation(&search, &painted, &similar, &paint)
+    let found = segmentation(&search, &painted, &similar, &paint)?;
+    Ok(Segmentation { is_proposed, ..found })
 }
 
 /// L* of the strokes' brightest pixels: a quantile, so that no sparkle sets it.
-fn white(features: &Image, paint: &Ownership) -> Result<f32> {
-    let pixels = paint.positive.iter().flatten();
+fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
+    let pixels = examples.iter().flatten();
     let mut lightness = try_collect(pixels.map(|&p| features.data[p as usize * features.channels]))?;
     let bright = (lightness.len() - 1) as f64 * WHITE;
     let (_, white, _) = lightness.select_nth_unstable_by(bright as usize, f32::total_cmp);
@@ -111,9 +130,9 @@ fn white(features: &Image, paint: &Ownership) -> Result<f32> {
 }
 
 /// The level below which no contour is looked for.
-fn floor(photo: &Brightness, paint: &Ownership) -> Result<u16> {
+fn floor(photo: &Brightness, examples: &[Vec<u32>]) -> Result<u16> {
     let mut lightness: Vec<f32> = Vec::new();
-    for stroke in &paint.positive {
+    for stroke in examples {
         lightness.extend(stroke.iter().map(|&p| photo.smooth.data[p as usize]));
     }
     let edge = (lightness.len() as f64 * STROKE_EDGE) as usize;
@@ -150,5 +169,6 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
         samples,
         contradictory: paint.contradictory,
         off_image: paint.off_image,
+        is_proposed: false,
     })
 }

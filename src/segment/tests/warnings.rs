@@ -115,6 +115,31 @@ fn lights_over_most_of_the_plane_raise_a_warning() {
 }
 
 #[test]
+fn painted_lamps_no_brighter_than_the_plane_raise_a_warning_with_a_place_on_the_darkest() {
+    // Lightness rises from left to right.
+    let ramp = Image::from_fn(WIDTH, HEIGHT, |x, _| [x as f32]).unwrap();
+    let plane = [stroke(true, [20.0, 60.0], [60.0, 60.0]), stroke(false, [150.0, 90.0], [150.0, 99.0])];
+    let lamp = |x: f64| stroke(true, [x, 10.0], [x, 20.0]);
+    assert_eq!(dim_lamps(&ramp, &plane, &[lamp(100.0), lamp(120.0)]), None);
+    let dim = dim_lamps(&ramp, &plane, &[lamp(100.0), lamp(40.0)]).unwrap();
+    assert_eq!(dim.code, Code::DimLamps);
+    // All of the plane is darker than one lamp, half of it than the other.
+    assert!((dim.severity - 0.75).abs() < 0.01, "{dim:?}");
+    assert!((dim.place.unwrap().x - 40.0).abs() < 4.0, "{dim:?}");
+    // Equal lightness tells nothing: one half.
+    let flat = Image::from_fn(WIDTH, HEIGHT, |_, _| [7.0]).unwrap();
+    assert_eq!(dim_lamps(&flat, &plane, &[lamp(100.0)]).unwrap().severity, 0.5);
+    // Negative strokes of the lights are plane as well, and alone where strokes of the plane run over lamps.
+    let beside = |x: f64| stroke(false, [x, 5.0], [x, 9.0]);
+    assert!(dim_lamps(&ramp, &[], &[lamp(100.0), beside(140.0)]).is_some());
+    let over = [stroke(true, [80.0, 15.0], [140.0, 15.0])];
+    assert!(dim_lamps(&ramp, &over, &[lamp(100.0)]).is_some());
+    assert_eq!(dim_lamps(&ramp, &over, &[lamp(100.0), beside(60.0)]), None);
+    // Without any plane there is nothing to compare.
+    assert_eq!(dim_lamps(&ramp, &[], &[lamp(100.0)]), None);
+}
+
+#[test]
 fn regions_that_may_be_lamps_raise_a_warning_with_a_place_on_one() {
     let square = |x: usize, y: usize, left: usize| (left..left + 10).contains(&x) && (20..30).contains(&y);
     let mask = Image::from_fn(WIDTH, HEIGHT, |x, y| [f32::from(square(x, y, 20) || square(x, y, 60))]).unwrap();

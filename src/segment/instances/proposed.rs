@@ -1,0 +1,86 @@
+//! Without a stroke on a lamp: the regions of the plane that are the most like lamps, in place of painted ones.
+//!
+//! Lamps are among the brightest things on their plane, compact, and sharp against it. Of all regions that are, the one
+//! with the sharpest contour is a lamp, and others that are nearly as sharp are lamps too.
+
+use super::painted::MIN_AREA;
+use super::similar::Search;
+use super::surroundings;
+use crate::error::{Error, Result};
+use crate::image::{Image, try_collect, try_vec};
+
+/// Share of the plane's pixels that are looked at for its brightest. [bench photos:nostrokes]
+const BRIGHTEST: f64 = 0.002;
+/// Least mean L* of a lamp, where that of the brightest pixels is 100. [bench photos:nostrokes]
+const MIN_LIGHTNESS: f64 = 80.0;
+/// Least contrast of a lamp to the ring around it, in L*. [bench photos:nostrokes]
+const MIN_RING: f64 = 10.0;
+/// Least solidity of a lamp. [bench photos:nostrokes]
+const MIN_SOLIDITY: f64 = 0.75;
+/// Largest share of the plane that a lamp may cover. [bench photos:nostrokes]
+const MAX_SHARE: f64 = 0.25;
+/// Share of the ring around a lamp that must be plane. [bench photos:nostrokes]
+const ON_PLANE: f64 = 0.6;
+/// Worth of a region, relative to the best, from which it is a lamp as well. [bench photos:nostrokes]
+const NEARLY_BEST: f64 = 0.4;
+/// Power of the area in the worth of a region. [bench photos:nostrokes]
+const AREA_POWER: f64 = 0.25;
+
+/// The brightest pixels of a plane, at least one. Errors: the plane has no pixel (`Degenerate`).
+pub fn brightest(features: &Image, plane: &Image) -> Result<Vec<u32>> {
+    let mut pixels = try_collect((0..plane.data.len() as u32).filter(|&p| plane.data[p as usize] > 0.5))?;
+    if pixels.is_empty() {
+        return Err(Error::degenerate("no stroke is on a lamp, and the plane to look on is empty: paint the lamps"));
+    }
+    let count = (BRIGHTEST * pixels.len() as f64).ceil() as usize;
+    let lightness = |p: &u32| features.data[*p as usize * features.channels];
+    pixels.select_nth_unstable_by(count - 1, |p, q| lightness(q).total_cmp(&lightness(p)));
+    pixels.truncate(count);
+    Ok(pixels)
+}
+
+/// The regions that are most like lamps, none inside another. Errors: there is none (`Degenerate`).
+pub fn find(search: &Search) -> Result<Vec<u32>> {
+    let Search { tree, regions, photo, plane, negatives } = *search;
+    let plane_area = plane.map_or(tree.node_of.len(), |p| p.data.iter().filter(|v| **v > 0.5).count()) as f64;
+    let worth = |node: usize| regions.contrast(node) * regions.area[node].powf(AREA_POWER);
+    let is_compact = |node: &usize| {
+        (MIN_AREA..=MAX_SHARE * plane_area).contains(&regions.area[*node])
+            && negatives[*node] == 0.0
+            && regions.colour(*node)[0] >= MIN_LIGHTNESS
+            && regions.solidity(*node) >= MIN_SOLIDITY
+    };
+    let mut candidates: Vec<(u32, f64)> =
+        (1..tree.len()).filter(is_compact).map(|node| (node as u32, worth(node))).collect();
+    candidates.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+
+    // The best first; regions in or around one that was taken belong to it.
+    let nobody = try_vec(tree.node_of.len(), false)?;
+    let mut is_closed = try_vec(tree.len(), false)?;
+    let mut is_taken = try_vec(tree.len(), false)?;
+    let mut lamps: Vec<u32> = Vec::new();
+    let mut best = 0.0;
+    for (node, worth) in candidates {
+        if worth < NEARLY_BEST * best {
+            break;
+        }
+        if is_closed[node as usize] || tree.ancestors(node).any(|n| is_taken[n as usize]) {
+            continue;
+        }
+        let Some(ring) = surroundings::around(node, tree, photo, plane, &nobody)? else { continue };
+        if ring.contrast < MIN_RING || ring.on_plane < ON_PLANE {
+            continue;
+        }
+        best = worth.max(best);
+        tree.ancestors(node).for_each(|n| is_closed[n as usize] = true);
+        is_taken[node as usize] = true;
+        lamps.push(node);
+    }
+    if lamps.is_empty() {
+        return Err(Error::degenerate(
+            "no stroke is on a lamp, and nothing on the plane looks like one: paint at least one stroke on a lamp",
+        ));
+    }
+    lamps.sort_unstable();
+    Ok(lamps)
+}
