@@ -70,7 +70,7 @@ fn layouts(pairs: &[&Case]) {
             ..Default::default()
         };
         let Ok(view) = rectify::find_view(&case.photo, &camera, monitor.job()) else { continue };
-        let lines = RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[] };
+        let lines = RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[], layout: None };
         let painted = case.strokes.plane_strokes();
         let painted: Vec<_> = painted.map(|s| PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
         let of = |depth, segments, strokes| {
@@ -204,7 +204,7 @@ fn pairs() -> Vec<Case> {
 
 impl Case {
     fn features(&self, params: &Params) -> Image {
-        let room = RoomView { perspective: &self.camera, segments: &[], strokes: &[] };
+        let room = RoomView { perspective: &self.camera, segments: &[], strokes: &[], layout: None };
         let depth = DepthMap { image: &self.depth, kind: DepthKind::AlongZ };
         let input = Input { photo: &self.photo, depth: Some(depth), room: Some(room) };
         features::run(&input, params, Monitor::default().job()).unwrap().image
@@ -274,7 +274,7 @@ fn megapixel() {
     let case = room(0.002);
     let monitor = Monitor::default();
     let monitor = &monitor;
-    let rooms = RoomView { perspective: &case.camera, segments: &[], strokes: &[] };
+    let rooms = RoomView { perspective: &case.camera, segments: &[], strokes: &[], layout: None };
     let run = |input: Input| {
         let _ = features::run(&input, &Params::default(), monitor.job()).unwrap();
     };

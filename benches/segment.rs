@@ -108,7 +108,7 @@ fn room(seed: u64) -> [Case; 2] {
         std::array::from_fn(|c| ((paints[face][c] * shade) as f32 * (1.0 + 0.04 * rng.normal() as f32)).clamp(0.0, 1.0))
     });
     let photo = photo.unwrap();
-    let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
+    let room = RoomView { perspective: &camera, segments: &[], strokes: &[], layout: None };
     let map = DepthMap { image: &depth, kind: DepthKind::AlongZ };
     let input = features::Input { photo: &photo, depth: Some(map), room: Some(room) };
     let features = features::run(&input, &Default::default(), Monitor::default().job()).unwrap().image;
@@ -155,7 +155,7 @@ fn photos() -> Vec<Case> {
         let text = std::fs::read_to_string(root.join(format!("tests/strokes/{name}.txt"))).ok()?;
         let set = strokes::parse(&text, photo.width, photo.height).ok()?;
         let view = rectify::find_view(&photo, &Default::default(), monitor.job()).ok()?;
-        let room = RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[] };
+        let room = RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[], layout: None };
         let input = features::Input { photo: &photo, depth: None, room: Some(room) };
         let features = features::run(&input, &Default::default(), monitor.job()).ok()?.image;
         Some(Case {

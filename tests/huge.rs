@@ -108,7 +108,7 @@ fn read(small: &Image, times: usize) -> Reading {
     let strokes = strokes(times);
     let pixels = width * height;
     let (lines, view) = cost(pixels, || rectify::find_view(&photo, &Default::default(), monitor.job()).unwrap());
-    let room = Some(RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[] });
+    let room = Some(RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[], layout: None });
     let input = features::Input { photo: &photo, depth: None, room };
     let (all, features) = cost(pixels, || features::run(&input, &Default::default(), monitor.job()).unwrap().image);
     let input = Input { features: &features, strokes: &strokes, within: None };

@@ -146,7 +146,8 @@ fn ceilings_and_their_lights_are_found_in_real_photos() {
         let view = pool.run(|| rectify::find_view(&photo, &params, monitor.job())).unwrap();
         let painted: Vec<_> =
             set.plane_strokes().map(|s| PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
-        let room = RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &painted };
+        let room =
+            RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &painted, layout: None };
         let started = Instant::now();
         let input = features::Input { photo: &photo, depth: None, room: Some(room) };
         let features = pool.run(|| features::run(&input, &Default::default(), monitor.job())).unwrap();
@@ -200,7 +201,7 @@ fn measured_depth_gives_smooth_walls_and_upright_normals() {
         let photo = load(&data.join(format!("rgbd/{name}_rgb.jpg")), Encoding::Srgb).unwrap();
         let depth = load(&data.join(format!("rgbd/{name}_depth.png")), Encoding::Linear).unwrap().channel(0).unwrap();
         let map = DepthMap { image: &depth, kind: DepthKind::AlongZ };
-        let room = RoomView { perspective: &perspective, segments: &[], strokes: &[] };
+        let room = RoomView { perspective: &perspective, segments: &[], strokes: &[], layout: None };
         let input = features::Input { photo: &photo, depth: Some(map), room: Some(room) };
         let started = Instant::now();
         let got = pool.run(|| features::run(&input, &Default::default(), Monitor::default().job())).unwrap();

@@ -1,5 +1,6 @@
 //! The inputs and the settings of the features.
 
+use super::layout::Layout;
 use crate::error::{Result, check_range};
 use crate::geometry::{Perspective, Segment};
 use crate::image::Image;
@@ -31,6 +32,8 @@ pub struct RoomView<'a> {
     pub segments: &'a [(Segment, Option<usize>)],
     /// Strokes on one plane of the room (any one), and strokes on other surfaces, if any.
     pub strokes: &'a [PlaneStroke<'a>],
+    /// The room as it is known already; absent, it is laid out from the segments and the strokes.
+    pub layout: Option<Layout>,
 }
 
 /// A user's stroke as evidence about the room.

@@ -87,7 +87,47 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     }
 }
 
+/// By how much an enlarged room exceeds what it must hold, so that lamps there have plane around them. [convention]
+const MARGIN: f64 = 1.05;
+
 impl Layout {
+    /// The face on which most of some pixels lie.
+    pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
+        let to_room = facing_axes(perspective).transpose();
+        let mut counts = [0usize; Face::COUNT];
+        pixels.for_each(|p| counts[self.hit(to_room * perspective.ray(p)).0 as usize] += 1);
+        let most = (0..Face::COUNT).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
+        [Face::Left, Face::Right, Face::Ceiling, Face::Floor, Face::Back][most]
+    }
+
+    /// The smallest room around this one that shows some pixels on one of its faces, which keeps its place. Pixels whose rays do
+    /// not meet the face are left out.
+    pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Self {
+        let to_room = facing_axes(perspective).transpose();
+        let [mut left, mut right, mut top, mut bottom] = self.sides;
+        let mut back = 1.0f64;
+        let distance = if face == Face::Back { 1.0 } else { self.sides[face as usize] };
+        for pixel in pixels {
+            let ray = to_room * perspective.ray(pixel);
+            let at = ray * (distance / -ray.dot(face.normal()));
+            if !(at.is_finite() && at.dot(ray) > 0.0) {
+                continue;
+            }
+            let at = at * MARGIN;
+            if face.axis() != HORIZONTAL_A {
+                (left, right) = (left.max(-at.x), right.max(at.x));
+            }
+            if face.axis() != VERTICAL {
+                (top, bottom) = (top.max(-at.y), bottom.max(at.y));
+            }
+            if face.axis() != HORIZONTAL_B {
+                back = back.max(at.z);
+            }
+        }
+        // The back wall is at distance one.
+        Self { sides: [left, right, top, bottom].map(|side| side / back), ..*self }
+    }
+
     /// The face seen along a direction in (facing) room axes, and the inverse of the ray parameter at the face.
     pub fn hit(&self, ray: DVec3) -> (Face, f64) {
         faces(&self.sides, ray)[0]

@@ -44,7 +44,7 @@ mod warnings;
 
 pub use frustum::Frustum;
 pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, Params, PlaneStroke, RoomView};
-pub use layout::Layout;
+pub use layout::{Face, Layout};
 #[cfg(feature = "onnx")]
 pub use monocular::{DepthNetwork, Normalisation, run_with_network};
 
@@ -89,7 +89,10 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
             Ok((depth::from_map(map, &frustum, radius, geometry_job)?, DepthSource::Caller, None))
         }
         (None, Some(room)) => {
-            let layout = search::find(room, width, height, geometry_job.part(0.0, 0.6))?;
+            let layout = match room.layout {
+                Some(known) => known,
+                None => search::find(room, width, height, geometry_job.part(0.0, 0.6))?,
+            };
             let surface = layout.surface(room, width, height, &frustum, geometry_job.part(0.6, 1.0))?;
             Ok((surface, DepthSource::Layout, Some(layout)))
         }

@@ -89,7 +89,7 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
             [(4.0 * per_z * truth(&camera, &sides, x, y).0) as f32]
         })
         .unwrap();
-        let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
+        let room = RoomView { perspective: &camera, segments: &[], strokes: &[], layout: None };
         let photo = photo(width, height);
         let features = run_with(&photo, Some(DepthMap { image: &depth, kind }), Some(room)).unwrap();
         assert_eq!(features.depth_source, DepthSource::Caller);
@@ -130,7 +130,7 @@ fn noise_depth_edges_and_holes_leave_normals_robust() {
         [if hole { f32::NAN } else { (z * noise(x, y)) as f32 }]
     })
     .unwrap();
-    let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
+    let room = RoomView { perspective: &camera, segments: &[], strokes: &[], layout: None };
     let params = Params { normal_radius: 5, ..Params::default() };
     let photo = photo(width, height);
     let depth = DepthMap { image: &depth, kind: DepthKind::AlongZ };
@@ -162,7 +162,7 @@ fn the_layout_of_a_synthetic_room_is_recovered() {
     {
         let camera = camera(yaw, pitch, 0.02, width, height);
         let segments = room_segments(&camera, &sides, width, height);
-        let room = RoomView { perspective: &camera, segments: &segments, strokes: &[] };
+        let room = RoomView { perspective: &camera, segments: &segments, strokes: &[], layout: None };
         let features = run_with(&photo(width, height), None, Some(room)).unwrap();
         let layout = features.layout.unwrap();
         // Nearly every visible pixel lies on the correct face, at nearly the correct depth.
@@ -190,14 +190,14 @@ fn the_layout_of_a_synthetic_room_is_recovered() {
 #[test]
 fn without_segments_the_layout_is_the_prior_room_with_low_confidence() {
     let camera = camera(0.0, 0.0, 0.0, 64, 48);
-    let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
+    let room = RoomView { perspective: &camera, segments: &[], strokes: &[], layout: None };
     let features = run_with(&photo(64, 48), None, Some(room)).unwrap();
     assert_eq!(features.depth_source, DepthSource::Layout);
     assert!(features.depth_confidence.data.iter().all(|&c| c <= 0.05));
     // Segments of zero length and of unknown axis are no evidence either.
     let point = Segment { a: DVec2::ONE, b: DVec2::ONE };
     let segments = [(point, Some(1)), (point, None), (point, Some(9))];
-    let room = RoomView { perspective: &camera, segments: &segments, strokes: &[] };
+    let room = RoomView { perspective: &camera, segments: &segments, strokes: &[], layout: None };
     assert_eq!(run_with(&photo(64, 48), None, Some(room)).unwrap().image, features.image);
 }
 
@@ -241,7 +241,7 @@ fn planes_are_exact_beside_holes_and_on_narrow_images() {
         [if hole { 0.0 } else { -2.0 / slanted.dot(ray) }]
     })
     .unwrap();
-    let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
+    let room = RoomView { perspective: &camera, segments: &[], strokes: &[], layout: None };
     let map = Some(DepthMap { image: &depth, kind: DepthKind::AlongZ });
     let features = run_with(&photo(width, height), map, Some(room)).unwrap();
     for p in features.image.data.chunks_exact(CHANNELS) {
@@ -325,7 +325,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
             let strokes =
                 [(0..4000, true), (9000..15000, false)].map(|(p, positive)| (p.collect::<Vec<u32>>(), positive));
             let strokes = strokes.each_ref().map(|(pixels, positive)| PlaneStroke { pixels, positive: *positive });
-            let room = RoomView { perspective: &camera, segments: &segments, strokes: &strokes };
+            let room = RoomView { perspective: &camera, segments: &segments, strokes: &strokes, layout: None };
             let layout = run_with(&photo, None, Some(room)).unwrap();
             let given = run_with(&photo, Some(map), None).unwrap();
             [layout.image, layout.depth_confidence, given.image, given.depth_confidence]

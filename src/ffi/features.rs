@@ -413,6 +413,7 @@ pub unsafe extern "C" fn luxfer_features_start(
                     perspective: &view.perspective,
                     segments: &view.segments,
                     strokes: &strokes,
+                    layout: None,
                 }),
             };
             compute(&input, inputs.network.as_deref(), &params, job)

@@ -176,6 +176,9 @@ pub struct Segmentation {
     /// Whether the mask was proposed because strokes were missing: of the plane without a negative stroke, of lamps without a
     /// positive one.
     pub is_proposed: bool,
+    /// Of lamps: regions off the mask to look within that are as large as a lamp, and of its shape, if the plane goes on there. They
+    /// tell that the room is larger than it was laid out.
+    pub beyond: Vec<Stroke>,
 }
 
 impl Segmentation {
@@ -201,6 +204,7 @@ impl Segmentation {
             contradictory: 0,
             off_image: 0,
             is_proposed: false,
+            beyond: Vec::new(),
         })
     }
 }
@@ -290,6 +294,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         contradictory: samples.contradictory,
         off_image: samples.off_image,
         is_proposed: false,
+        beyond: Vec::new(),
     })
 }
 

@@ -34,7 +34,7 @@ use crate::relight::{self, Solution};
 use crate::render::{self, Film};
 use crate::scene::surface::{Placed, Surface};
 use crate::scene::{Camera, Scene};
-use crate::segment::{self, Segmentation, StrokeSet};
+use crate::segment::{self, Segmentation, Stroke, StrokeSet};
 use glam::{DVec4, Vec3};
 use std::sync::Arc;
 use std::time::Instant;
@@ -157,6 +157,8 @@ pub struct LitScene {
 pub struct Results {
     pub view: Option<Arc<View>>,
     pub features: Option<Arc<Features>>,
+    /// Lamps that were found beyond the plane as it was laid out first: examples of the plane, by which it was laid out again.
+    pub beyond: Vec<Stroke>,
     pub plane: Option<Arc<Segmentation>>,
     pub lights: Option<Arc<Segmentation>>,
     pub unwarped: Option<Arc<Unwarped>>,
@@ -201,6 +203,9 @@ impl Transfer {
             part.check()?;
             let clock = Instant::now();
             self.run_stage(*stage, part, &mut publish)?;
+            if *stage == Stage::Lights && from <= Stage::Features {
+                self.look_again(part).map_err(|e| e.within(format_args!("stage {stage:?}")))?;
+            }
             self.results.seconds[*stage as usize] = clock.elapsed().as_secs_f64();
             done = (done + weight).min(1.0);
             job.report(done);
@@ -213,7 +218,10 @@ impl Transfer {
     fn run_stage(&mut self, stage: Stage, job: Job, publish: &mut dyn FnMut(&Results)) -> Result<()> {
         match stage {
             Stage::View => self.find_view(job),
-            Stage::Features => self.compute_features(job),
+            Stage::Features => {
+                self.results.beyond.clear();
+                self.compute_features(None, job)
+            }
             Stage::Plane => self.segment_plane(job),
             Stage::Lights => self.segment_lights(job),
             Stage::Unwarp => self.unwarp(job),

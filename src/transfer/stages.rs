@@ -11,7 +11,7 @@ use crate::render::World;
 use crate::scene::Camera;
 use crate::scene::surface::{self, Surface};
 use crate::{emission, features, rectify, relight, render, segment};
-use glam::{UVec2, Vec3};
+use glam::{DVec2, UVec2, Vec3};
 use std::sync::Arc;
 
 impl Transfer {
@@ -24,7 +24,8 @@ impl Transfer {
         Ok(())
     }
 
-    pub(super) fn compute_features(&mut self, job: Job) -> Result<()> {
+    /// Computes the features; of a room that is laid out already where it is given.
+    pub(super) fn compute_features(&mut self, layout: Option<features::Layout>, job: Job) -> Result<()> {
         let photo = need(&self.input.photo, "set the photo")?;
         let depth = self.input.depth.as_ref().map(|(image, kind)| features::DepthMap { image, kind: *kind });
         // What the strokes tell of the plane, they tell of the room around it.
@@ -32,8 +33,12 @@ impl Transfer {
         let strokes: Vec<_> =
             painted.map(|s| features::PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
         let view = self.results.view.as_ref();
-        let room =
-            view.map(|v| features::RoomView { perspective: &v.perspective, segments: &v.segments, strokes: &strokes });
+        let room = view.map(|v| features::RoomView {
+            perspective: &v.perspective,
+            segments: &v.segments,
+            strokes: &strokes,
+            layout,
+        });
         let input = features::Input { photo, depth, room };
         self.results.features = Some(Arc::new(features::run(&input, &self.params.features, job)?));
         Ok(())
@@ -41,7 +46,10 @@ impl Transfer {
 
     pub(super) fn segment_plane(&mut self, job: Job) -> Result<()> {
         let features = need(&self.results.features, "run stage Features")?;
-        let strokes = self.input.strokes.plane_examples();
+        let mut strokes = self.input.strokes.plane_examples();
+        if !strokes.is_empty() {
+            strokes.extend(self.results.beyond.iter().cloned());
+        }
         let input = segment::Input { features: &features.image, strokes: &strokes, within: None };
         let plane = segment::run(&input, &self.params.plane, job).map_err(|e| e.within("strokes of the plane"))?;
         self.results.plane = Some(Arc::new(plane));
@@ -56,6 +64,25 @@ impl Transfer {
         let lights = segment::run(&input, &self.params.lights, job).map_err(|e| e.within("strokes of the lights"))?;
         self.results.lights = Some(Arc::new(lights));
         Ok(())
+    }
+
+    /// Enlarges the room if lamps lie beyond their plane as it was laid out, and finds plane and lights in the larger room.
+    pub(super) fn look_again(&mut self, job: Job) -> Result<()> {
+        let Results { view: Some(view), features: Some(features), lights: Some(lights), .. } = &self.results else {
+            return Ok(());
+        };
+        let Some(layout) = features.layout.filter(|_| !lights.beyond.is_empty()) else { return Ok(()) };
+        let width = lights.mask.width;
+        let centre = |p: usize| DVec2::new((p % width) as f64 + 0.5, (p / width) as f64 + 0.5);
+        let lit = (0..lights.mask.data.len()).filter(|&p| lights.mask.data[p] > 0.5);
+        let face = layout.face_of(&view.perspective, lit.map(centre));
+        let beyond = lights.beyond.clone();
+        let pixels = beyond.iter().flat_map(|lamp| &lamp.pixels).map(|&p| centre(p as usize));
+        let layout = layout.enlarged(face, &view.perspective, pixels);
+        self.results.beyond = beyond;
+        self.compute_features(Some(layout), job.part(0.0, 0.5))?;
+        self.segment_plane(job.part(0.5, 0.75))?;
+        self.segment_lights(job.part(0.75, 1.0))
     }
 
     pub(super) fn unwarp(&mut self, job: Job) -> Result<()> {

@@ -1,6 +1,7 @@
 //! The part of the room's surface that each pixel shows: lamps of one kind cover equal areas of it, in equal shapes, at
 //! any distance.
 
+use super::super::face::{NORMAL, SAME_FACE};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_collect, try_vec};
@@ -10,19 +11,30 @@ use glam::Vec3;
 /// Where the positions are in the features.
 const POSITION: usize = 4;
 
-/// The part of the room's surface that each pixel shows, in the unit of the positions.
+/// The part of a face of the room that each pixel shows, in the unit of the positions. The face goes on beyond its edges: pixels of
+/// other faces show what lies on its extension.
 pub struct Footprint {
+    /// Infinite where a pixel's ray does not meet the face.
     pub area: Vec<f32>,
-    /// Coordinates along the face that the strokes lie on.
+    /// Coordinates along the face.
     pub at: Vec<[f32; 2]>,
 }
+
+/// Least sine of the angle between a ray and the face that it meets. [rounding]
+const MIN_SINE: f32 = 1e-3;
 
 impl Footprint {
     /// Areas by the cross product of the differences of positions along rows and columns; coordinates along the two
     /// room axes that are farthest from the normal of the face.
     pub fn new(features: &Image, normal: Vec3, job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);
-        let position = |x: usize, y: usize| Vec3::from_slice(&features.pixel(x, y)[POSITION..]);
+        let offset = offset(features, normal);
+        // The point where the ray through a pixel meets the face.
+        let position = |x: usize, y: usize| {
+            let p = Vec3::from_slice(&features.pixel(x, y)[POSITION..]);
+            let depth = p.dot(normal) * offset.signum();
+            if depth > MIN_SINE * p.length() { p * (offset.abs() / depth) } else { Vec3::INFINITY }
+        };
         let mut area = try_vec(width * height, 0f32)?;
         exec::for_rows(&mut area, width, job, |y, row| {
             let (above, below) = (y.saturating_sub(1), (y + 1).min(height - 1));
@@ -31,7 +43,8 @@ impl Footprint {
                 let across = position(right, y) - position(left, y);
                 let down = position(x, below) - position(x, above);
                 let steps = ((right - left).max(1) * (below - above).max(1)) as f32;
-                *area = across.cross(down).length() / steps;
+                let shown = across.cross(down).length() / steps;
+                *area = if shown.is_finite() { shown } else { f32::INFINITY };
             }
         })?;
         let off = normal.abs().max_position();
@@ -43,24 +56,54 @@ impl Footprint {
     }
 }
 
+/// The distance of a face from the camera along its normal: the mean over the pixels with this normal.
+fn offset(features: &Image, normal: Vec3) -> f32 {
+    let pixels = features.data.chunks_exact(features.channels);
+    let on_face = pixels.filter(|pixel| Vec3::from_slice(&pixel[NORMAL..]).dot(normal) >= SAME_FACE);
+    let (sum, count) = on_face.fold((0.0, 0usize), |(sum, count), pixel| {
+        (sum + f64::from(Vec3::from_slice(&pixel[POSITION..]).dot(normal)), count + 1)
+    });
+    (sum / count.max(1) as f64) as f32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::features::CHANNELS;
     use crate::job::Monitor;
 
-    #[test]
-    fn a_pixel_of_an_inclined_plane_shows_the_area_of_its_parallelogram() {
-        let (across, down) = (Vec3::new(0.5, 0.0, 0.25), Vec3::new(0.0, 0.75, -0.5));
+    /// Features of a plane with a normal, where pixels right of a column have another one and lie half as far away.
+    fn inclined(across: Vec3, down: Vec3, column: usize) -> (Image, Vec3) {
+        let normal = down.cross(across).normalize();
         let features = Image::from_fn(6, 5, |x, y| {
-            let at = x as f32 * across + y as f32 * down;
+            let at = Vec3::new(-1.0, -2.0, 4.0) + x as f32 * across + y as f32 * down;
+            let (at, normal) = if x < column { (at, normal) } else { (0.5 * at, Vec3::X) };
             let mut pixel = [0.0; CHANNELS];
             pixel[POSITION..POSITION + 3].copy_from_slice(&at.to_array());
+            pixel[NORMAL..NORMAL + 3].copy_from_slice(&normal.to_array());
             pixel
         });
-        let footprint = Footprint::new(&features.unwrap(), Vec3::Y, Monitor::default().job()).unwrap();
-        let areas = footprint.area;
+        (features.unwrap(), normal)
+    }
+
+    #[test]
+    fn a_pixel_of_an_inclined_plane_shows_the_area_of_its_parallelogram_also_beyond_its_edge() {
+        let (across, down) = (Vec3::new(0.5, 0.0, 0.25), Vec3::new(0.0, 0.25, -0.5));
         let expected = across.cross(down).length();
-        assert!(areas.iter().all(|area| (area - expected).abs() < 1e-5 * expected), "{expected} {areas:?}");
+        for column in [6, 3] {
+            let (features, normal) = inclined(across, down, column);
+            let areas = Footprint::new(&features, normal, Monitor::default().job()).unwrap().area;
+            assert!(areas.iter().all(|area| (area - expected).abs() < 1e-4 * expected), "{expected} {areas:?}");
+        }
+    }
+
+    #[test]
+    fn a_pixel_that_does_not_see_the_plane_shows_an_infinite_area() {
+        let (mut features, normal) = inclined(Vec3::new(0.5, 0.0, 0.25), Vec3::new(0.0, 0.25, -0.5), 3);
+        let behind = features.pixel(5, 2)[POSITION..POSITION + 3].to_vec();
+        features.data[(2 * 6 + 5) * CHANNELS + POSITION..][..3].iter_mut().zip(behind).for_each(|(v, p)| *v = -p);
+        let areas = Footprint::new(&features, normal, Monitor::default().job()).unwrap().area;
+        assert_eq!(areas[2 * 6 + 5], f32::INFINITY);
+        assert!(areas[2 * 6 + 1].is_finite());
     }
 }

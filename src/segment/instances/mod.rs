@@ -27,7 +27,7 @@ mod tree;
 
 use super::face;
 use super::samples::{self, Ownership};
-use super::{Input, Segmentation};
+use super::{Input, Segmentation, Stroke};
 use crate::error::{Error, Result};
 use crate::features::CHANNELS;
 use crate::image::{Image, try_collect, try_vec};
@@ -151,6 +151,11 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
     for &node in &similar.doubtful {
         tree.pixels(node).iter().for_each(|&p| unseen.data[p as usize] = 1.0);
     }
+    let beyond = similar.beyond.iter().map(|&node| {
+        let pixels = try_collect(tree.pixels(node).iter().copied())?;
+        Ok(Stroke { pixels, positive: true })
+    });
+    let beyond = beyond.collect::<Result<Vec<Stroke>>>()?;
     let mut mask = Image::new(width, height, 1)?;
     mask.data.iter_mut().zip(&confidence.data).for_each(|(m, &c)| *m = f32::from(c > 0.5));
 
@@ -170,5 +175,6 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
         contradictory: paint.contradictory,
         off_image: paint.off_image,
         is_proposed: false,
+        beyond,
     })
 }

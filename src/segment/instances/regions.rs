@@ -127,6 +127,20 @@ impl OnSurface {
         Ok(sums)
     }
 
+    /// Whether two nodes lie in one row along a side of the face: their centres differ across it by less than a share of their width.
+    pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
+        let moments = |node: usize, first: &[f64], second: &[f64]| {
+            let area = self.area[node].max(f64::MIN_POSITIVE);
+            let mean = first[node] / area;
+            (mean, 12.0 * (second[node] / area - mean * mean).max(0.0))
+        };
+        let near = |first: &[f64], second: &[f64]| {
+            let ((at, square), (other, other_square)) = (moments(a, first, second), moments(b, first, second));
+            (at - other).abs() <= share * square.max(other_square).sqrt()
+        };
+        near(&self.u, &self.uu) || near(&self.v, &self.vv)
+    }
+
     /// Ratio of the axes of the ellipse with the same second moments, at least 1.
     pub fn aspect(&self, node: usize) -> f64 {
         let area = self.area[node].max(f64::MIN_POSITIVE);

@@ -8,6 +8,7 @@ use super::tree::Tree;
 use crate::error::Result;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
+use std::ops::RangeInclusive;
 
 /// How far below the dimmest painted lamp another one may be, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
@@ -40,6 +41,15 @@ const BROADER: f64 = 1.5;
 const CUT: f64 = 0.06;
 /// Share of the ring that must be plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
+/// Ratios to the area and to the aspect of a painted lamp within which a region off the plane is a lamp: blur spreads far ones.
+/// [bench photos:tune]
+const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
+const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
+/// Share of a lamp's width by which lamps of one row may be off it. [bench photos:tune]
+const IN_ROW: f64 = 0.25;
+/// Difference of the colours of rings, in CIELAB, within which a region off the plane is surrounded by more of it. [bench
+/// photos:tune]
+const EQUAL_RING: f64 = 8.0;
 /// Power of the area in the order of candidates: of nested regions with contours almost as sharp, the largest. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
 /// Share of the likeness asked for that makes a region doubtful rather than none. [judged on 28 photos]
@@ -59,6 +69,8 @@ pub struct Similar {
     pub found: Vec<u32>,
     /// Bright regions on the plane that differ from the painted lamps in one respect.
     pub doubtful: Vec<u32>,
+    /// Regions off the plane that would be like the painted lamps if the plane went on there.
+    pub beyond: Vec<u32>,
 }
 
 /// The painted lamps as a measure for others.
@@ -71,9 +83,19 @@ struct Model {
     min_lightness: f64,
     min_solidity: f64,
     colours: Vec<[f64; 3]>,
+    /// Colours of the rings around them.
+    rings: Vec<[f64; 3]>,
     /// Least contrast along the contour and to the ring, of a lamp too large for blur to matter.
     contour: f64,
     ring: f64,
+}
+
+impl Model {
+    /// Whether a ring has the colour of one around a painted lamp.
+    fn is_beside(&self, ring: &Surroundings) -> bool {
+        let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
+        self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
+    }
 }
 
 /// Ranges of lamps on the surface of the room.
@@ -129,10 +151,18 @@ impl Search<'_> {
             }
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
             let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
-            if ring.on_plane < ON_PLANE || likeness < NEARLY {
-                continue;
-            }
-            let list = if likeness >= 1.0 { &mut similar.found } else { &mut similar.doubtful };
+            let is_on_plane = ring.on_plane >= ON_PLANE;
+            let list = match () {
+                () if is_on_plane && likeness >= 1.0 => &mut similar.found,
+                () if is_on_plane && likeness >= NEARLY => &mut similar.doubtful,
+                () if likeness >= 1.0
+                    && model.is_beside(&ring)
+                    && self.continues(painted.iter().chain(&similar.found), node as usize) =>
+                {
+                    &mut similar.beyond
+                }
+                () => continue,
+            };
             list.push(node);
             tree.ancestors(node).for_each(|n| is_closed[n as usize] = true);
             is_taken[node as usize] = true;
@@ -143,10 +173,11 @@ impl Search<'_> {
     fn model(&self, painted: &[u32]) -> Result<Option<Model>> {
         let Self { tree, regions, photo, .. } = *self;
         let nobody = try_vec(tree.node_of.len(), false)?;
-        let mut rings = Vec::new();
+        let (mut rings, mut colours_around) = (Vec::new(), Vec::new());
         for &node in painted {
-            let ring = surroundings::around(node, tree, photo, self.plane, &nobody)?;
-            rings.extend(ring.map(|Surroundings { contrast, .. }| contrast / sharpness(regions.area[node as usize])));
+            let Some(ring) = surroundings::around(node, tree, photo, self.plane, &nobody)? else { continue };
+            rings.push(ring.contrast / sharpness(regions.area[node as usize]));
+            colours_around.push(ring.colour);
         }
         if rings.is_empty() {
             return Ok(None);
@@ -172,6 +203,7 @@ impl Search<'_> {
             min_lightness: least(of(&|n| regions.colour(n)[0])) - DIMMER,
             min_solidity: least(of(&|n| regions.solidity(n))) * SOLIDITY,
             colours: painted.iter().map(|&n| regions.colour(n as usize)).collect(),
+            rings: colours_around,
             contour: median(of(&|n| regions.contrast(n) / sharpness(regions.area[n]))) * CONTOUR,
             ring: (median(rings) * RING).max(f64::MIN_POSITIVE),
         }))
@@ -192,6 +224,18 @@ impl Search<'_> {
         let is_whole = surface.area[node] >= on_surface.area[0]
             && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
         area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
+    }
+
+    /// Whether a node has nearly the size and shape, on the surface of a room that was laid out, of one of the lamps, and lies in a row
+    /// with it.
+    fn continues<'a>(&self, mut lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
+        let Some(surface) = &self.regions.surface else { return false };
+        let ratio = |of: &dyn Fn(usize) -> f64, lamp: u32| of(node) / of(lamp as usize);
+        lamps.any(|&lamp| {
+            EQUAL_AREA.contains(&ratio(&|n| surface.area[n], lamp))
+                && EQUAL_ASPECT.contains(&ratio(&|n| surface.aspect(n), lamp))
+                && surface.are_in_row(node, lamp as usize, IN_ROW)
+        })
     }
 
     /// 1 and more where a node is like the painted lamps in all respects but its surroundings; below it, how far it is from that in

@@ -16,6 +16,8 @@ pub struct Surroundings {
     pub contrast: f64,
     /// Share of the ring on the plane; 1 where no plane is given.
     pub on_plane: f64,
+    /// Median of the ring's L*, a* and b*, each alone.
+    pub colour: [f64; 3],
 }
 
 /// Looks at the ring around a node's pixels. Pixels of other regions, `taken` ones and those as bright as the node itself, do not
@@ -37,18 +39,22 @@ pub fn around(
     for (k, &d) in distance.iter().enumerate() {
         let i = bounds.pixel(k, photo.width);
         if d as isize > GAP && d as isize <= GAP + RING && !taken[i] && photo.levels[i] < contour {
-            try_push(&mut ring, photo.smooth.data[i])?;
+            try_push(&mut ring, i)?;
             on_plane += usize::from(plane.is_none_or(|p| p.data[i] > 0.5));
         }
     }
     if ring.is_empty() {
         return Ok(None);
     }
-    let middle = ring.len() / 2;
-    let (_, &mut median, _) = ring.select_nth_unstable_by(middle, f32::total_cmp);
+    let mut values = try_vec(ring.len(), 0f32)?;
+    let mut median = |of: &dyn Fn(usize) -> f32| {
+        values.iter_mut().zip(&ring).for_each(|(value, &i)| *value = of(i));
+        f64::from(*values.select_nth_unstable_by(ring.len() / 2, f32::total_cmp).1)
+    };
+    let [l, a, b] = [median(&|i| photo.smooth.data[i]), median(&|i| photo.lab[i][1]), median(&|i| photo.lab[i][2])];
     let mean = pixels.iter().map(|&p| f64::from(photo.smooth.data[p as usize])).sum::<f64>() / pixels.len() as f64;
     let on_plane = on_plane as f64 / ring.len() as f64;
-    Ok(Some(Surroundings { contrast: mean - f64::from(median), on_plane }))
+    Ok(Some(Surroundings { contrast: mean - l, on_plane, colour: [l, a, b] }))
 }
 
 /// A rectangle of pixels, `[x0, x1) × [y0, y1)`.
