@@ -74,7 +74,7 @@ impl<'a> Iterator for Lines<'a> {
 fn resolution(line: &[u8]) -> Result<[usize; 3]> {
     let text = String::from_utf8_lossy(line);
     let wrong =
-        || Error::format(format!("the Radiance file's resolution is {:.40}; it must be like -Y 480 +X 640", text));
+        || Error::format(format!("the Radiance file's resolution is {text:.40}; it must be like -Y 480 +X 640"));
     let parts: Vec<&str> = text.split_whitespace().take(5).collect();
     let [across, rows, along, columns] = parts[..] else { return Err(wrong()) };
     // The orientation as EXIF numbers it.

@@ -209,7 +209,7 @@ impl Equations {
         let equal = sided::common_power(&together, &self.right, &self.senses);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
         let Self { matrix, right, senses, .. } = self;
-        Problem { matrix, right, senses, regularisation: regularisation, preferred: &preferred, upper }.solve()
+        Problem { matrix, right, senses, regularisation, preferred: &preferred, upper }.solve()
     }
 }
 

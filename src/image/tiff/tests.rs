@@ -220,7 +220,7 @@ fn every_depth_compression_predictor_and_layout_gives_its_samples_back() {
                         [(None, 2, false), (None, 9, true), (Some([16, 16]), 0, false), (Some([3, 4]), 0, true)]
                     {
                         let plain = Picture::new(3, depth.0, depth.1, 2);
-                        Picture { order, compression, predictor, tile, strip, is_planar, ..plain }.check(3, sample);
+                        Picture { order, compression, predictor, is_planar, strip, tile, ..plain }.check(3, sample);
                     }
                 }
             }

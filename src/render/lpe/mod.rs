@@ -4,8 +4,7 @@
 //! An expression is a regular expression over the events of a path, in one of two orders:
 //!
 //! * Light first, as in the papers, from a light `L` to the eye `E`: `LDE`, `LSE`, `LD{1,2}E`, `L.*DDE`, `LS*DE`. `L`
-//!   is any light
-//! and `S` is any event that is not diffuse: Heckbert has no other classes.
+//!   is any light and `S` is any event that is not diffuse: Heckbert has no other classes.
 //! * Camera first, as in Open Shading Language, from the camera `C`: `C<RD>L`, `C[GS]+.*<L.'Lamp'>`.
 //!
 //! | event | |

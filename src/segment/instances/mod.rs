@@ -73,7 +73,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
         return Err(Error::argument(format!("features holds a colour of {:?}; all must be finite", &bad[..3])));
     }
     let photo = Brightness::new(input.features, white(input.features, &paint)?, job.part(0.0, 0.2))?;
-    let floor = floor(&photo, &paint)?;
+    let floor = floor(&photo, &paint);
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
     // In a room laid out as a box, the features tell how large things are.
     let footprint = match face::laid_out(input) {
@@ -111,14 +111,14 @@ fn white(features: &Image, paint: &Ownership) -> Result<f32> {
 }
 
 /// The level below which no contour is looked for.
-fn floor(photo: &Brightness, paint: &Ownership) -> Result<u16> {
+fn floor(photo: &Brightness, paint: &Ownership) -> u16 {
     let mut lightness: Vec<f32> = Vec::new();
     for stroke in &paint.positive {
         lightness.extend(stroke.iter().map(|&p| photo.smooth.data[p as usize]));
     }
     let edge = (lightness.len() as f64 * STROKE_EDGE) as usize;
     let (_, dim, _) = lightness.select_nth_unstable_by(edge, f32::total_cmp);
-    Ok(level(*dim * (1.0 - DEPTH)) as u16)
+    level(*dim * (1.0 - DEPTH)) as u16
 }
 
 fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Ownership) -> Result<Segmentation> {
