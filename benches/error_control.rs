@@ -19,11 +19,11 @@ use luxfer::scene::{Camera, Environment, Material, Mesh, Scene};
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// Renders per scene and number of paths for the coverage of intervals.
+/// Number of renders, per scene and path count, that measure the coverage of intervals.
 const SEEDS: u64 = 32;
-/// Renders per scene and target.
+/// Number of renders per scene and target.
 const TARGETED: u64 = 10;
-/// Renders per scene and number of paths for the bias of previews.
+/// Number of renders, per scene and path count, that measure the bias of previews.
 const PREVIEWS: u64 = 10;
 /// Paths per pixel of references.
 const REFERENCE: u32 = 2048;

@@ -111,7 +111,8 @@ fn products_of_stacks_of_matrices() {
         let (x, w) = (x.as_floats().unwrap(), w.as_floats().unwrap());
         close(&got, &out, |i| {
             let (matrix, row, column) = (i / columns / rows, i / columns % rows, i % columns);
-            // Matrices of the stacks: a's repeat along its axis of size 1, b's over the outermost.
+            // Broadcasting of the stacks: the matrices of `a` repeat along its axis of size 1, those of `b` along the
+            // outermost axis.
             let (m, n) = match a.len() {
                 4 if a[1] == 1 => (matrix / 3, matrix % 3),
                 _ => (matrix, 0),
@@ -134,7 +135,7 @@ fn products_of_stacks_of_matrices() {
 }
 
 #[test]
-fn what_goes_item_by_item_is_spread_as_in_numpy() {
+fn element_wise_operators_broadcast_as_in_numpy() {
     let x = noise(1, &[2, 3, 4]);
     let values = x.as_floats().unwrap().to_vec();
     for (shape, at) in

@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn joining_mends_strays_lowers_its_cost_and_leaves_what_fits() {
+    fn joining_corrects_outliers_lowers_the_cost_and_keeps_good_matches() {
         let (query, base) = (noise(70, 60), noise(70, 60));
         let allowed = Domain::new(70, 60, 5, None, false).unwrap();
         let search = Search {

@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_pass_through_what_is_known_of_them() {
+    fn curves_pass_through_their_points() {
         let curve = Curve { min_seconds: 1.0, max_seconds: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
         for ([seconds, square], expected) in curve.points.iter().map(|p| (*p, p[1])) {
             assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");

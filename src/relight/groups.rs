@@ -24,7 +24,7 @@ use glam::DVec3;
 /// Luminance of linear RGB ([`crate::image::colour::luminance`]).
 pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
 
-/// Largest number of dimming levels. [convention]
+/// Largest number of dimming levels. \[convention\]
 pub const MAX_LEVELS: usize = 4096;
 
 /// Which changes of a group are allowed.

@@ -9,7 +9,7 @@ use crate::error::{Error, Result, check_range};
 use crate::image::colour;
 use glam::DVec3;
 
-/// Largest number of primaries of a luminaire. [convention]
+/// Largest number of primaries of a luminaire. \[convention\]
 pub const MAX_PRIMARIES: usize = 64;
 
 /// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [origin not
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_reach_is_told_with_the_nearest() {
+    fn unreachable_colours_return_the_nearest_colour() {
         // Warm and cold white span a plane: the error of the nearest colour to green is orthogonal to both.
         let (warm, cold) = (DVec3::new(1.0, 0.7, 0.4), DVec3::new(0.8, 1.0, 1.2));
         let mixture = mix_primaries(&[warm, cold], FREE, DVec3::Y).unwrap();

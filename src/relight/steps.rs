@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn lamps_that_are_alike_share_the_rounding() {
+    fn equal_lamps_share_the_rounding() {
         // Ten lamps at 0.24, which can only be on or off: two or three of them must be on.
         let terms = Terms { matrix: &[1.0; 10], right: &[2.4], senses: &[Sense::Exactly] };
         let on = terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>();

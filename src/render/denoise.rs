@@ -66,12 +66,12 @@ const HALF: f32 = 2.0;
 /// Squared difference in luminance, relative to the sum of both variances, that lowers a weight by a factor e at
 /// strength 1. [origin not recorded]
 const RANGE: f32 = 12.0;
-/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by e. [origin not
+/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by a factor e. [origin not
 /// recorded]
 const PLANE: f32 = 0.01;
-/// 1 - cosine of the angle between normals that lowers a weight by e. [origin not recorded]
+/// 1 - cosine of the angle between normals that lowers a weight by a factor e. [origin not recorded]
 const FACING: f32 = 0.02;
-/// Squared difference in albedo that lowers a weight by e. [origin not recorded]
+/// Squared difference in albedo that lowers a weight by a factor e. [origin not recorded]
 const COLOUR: f32 = 0.02;
 /// Smallest albedo to divide by, so that lamps and black surfaces keep their light. [origin not recorded]
 const MIN_ALBEDO: f32 = 0.02;

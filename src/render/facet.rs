@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn moving_to_the_centre_rounds_nothing() {
+    fn the_translation_to_the_centre_is_exact() {
         let mut rng = Rng::new(31, &[]);
         for _ in 0..2000 {
             let exponent = |rng: &mut Rng, range: f32| (rng.next_f32() * 2.0 * range - range).exp2();

@@ -58,7 +58,7 @@ impl Lobe {
 }
 
 /// A point uniform in the unit disc, and its squared distance from the centre, by the concentric map (Shirley and Chiu
-/// 1997), which preserves neighbourhoods. Sine and cosine of up to 45 degrees by their series.
+/// 1997), which preserves neighbourhoods. Their series give sine and cosine of up to 45 degrees.
 #[inline]
 pub fn disc(u: Vec2) -> (Vec2, f32) {
     let p = u * 2.0 - 1.0;
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_to_the_disc_and_back_is_the_identity() {
+    fn the_concentric_map_and_its_inverse_are_the_identity() {
         let n = 257;
         for i in 0..n * n {
             let u = Vec2::new((i % n) as f32, (i / n) as f32) / n as f32;
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_areas_of_the_square_become_equal_areas_of_the_disc() {
+    fn the_concentric_map_preserves_areas() {
         // By central differences: the determinant of the map is the ratio of the areas, pi.
         let h = 1.0 / 1024.0;
         for i in 0..64 * 64 {
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn facets_are_chosen_as_often_as_they_are_seen_at_any_roughness() {
+    fn sampled_facets_follow_the_visible_normal_pdf_at_any_roughness() {
         let (side, n, fine) = (10usize, 20_000, 16);
         let mut rng = crate::rng::Rng::new(14, &[]);
         let cases: Vec<(f32, f32)> =
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_to_a_facet_has_a_way_back() {
+    fn sampling_a_facet_can_be_inverted() {
         for roughness in [0.03f32, 0.3, 1.0] {
             for cosine in [0.9, 0.3] {
                 let (alpha, wo) = (roughness * roughness, view(cosine));

@@ -292,7 +292,7 @@ fn strokes_alone_shape_the_room() {
 }
 
 #[test]
-fn strokes_of_one_kind_off_the_photo_and_at_odds() {
+fn strokes_of_one_kind_outside_the_photo_or_contradictory() {
     let room = Cluttered::new(3);
     let plain = layout_of(&room.camera, &room.segments, &[]);
     let beyond = vec![(SIZE[0] * SIZE[1]) as u32, u32::MAX];

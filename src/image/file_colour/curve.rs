@@ -12,7 +12,7 @@ const NODES: usize = 65_536;
 /// tables of 1024 values of 16 bits, with errors of 1e-4 near black.
 const SAME: f32 = 4e-4;
 
-/// A curve on `[0, 1]`, continued linearly above, and odd.
+/// A curve on `[0, 1]`, continued linearly above 1 and as an odd function below 0.
 #[derive(Clone)]
 pub struct Curve(Arc<Vec<f32>>);
 

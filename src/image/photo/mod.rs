@@ -61,7 +61,8 @@ pub struct Luminance {
 }
 
 impl PhotoMetadata {
-    /// For a photo with these sides, before or after turning it upright.
+    /// Converts the metadata of a file to those of its photo, whose sides may be given before or after turning it
+    /// upright.
     pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {
             orientation: exif.orientation,

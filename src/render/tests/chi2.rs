@@ -68,7 +68,7 @@ fn bins_are_taken_together_and_none_is_lost() {
 
 #[test]
 #[should_panic(expected = "chi-squared is")]
-fn what_is_a_few_percent_off_is_found() {
+fn deviations_of_a_few_percent_are_detected() {
     let observed: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1050.0 } else { 950.0 }).collect();
     assert_follows(&[1000.0; 100], &observed, 1, "a comb");
 }

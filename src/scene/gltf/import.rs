@@ -5,7 +5,7 @@ use super::features::{IES, READ};
 use super::instances::{instances, local_transform};
 use super::material::Materials;
 use super::nodes::roots;
-use super::pose::{self, Bent, mixed};
+use super::pose::{self, Skinning, mixed};
 use super::vertices::Vertices;
 use super::{Budget, Options, accessor};
 use crate::error::{Error, ErrorKind, Result};
@@ -94,11 +94,11 @@ struct Importer<'a> {
     triangles: u64,
 }
 
-/// Where and in which shape a node shows its mesh.
+/// The transform and the pose with which a node shows its mesh.
 #[derive(Clone, Copy)]
 struct Placement<'a> {
     transform: DMat4,
-    /// Joints move the mesh instead of the transform.
+    /// The skin, whose joints replace the transform.
     skin: Option<Index<Skin>>,
     /// Weights of the morph targets.
     weights: &'a [f32],
@@ -218,33 +218,34 @@ impl Importer<'_> {
         let targets = mixed(primitive, placement.weights);
         self.reserve(positions, 12 + extras.sum::<u64>(), targets.clone().count(), primitive.indices, mode)?;
 
-        // Read the vertices, mix their morph targets and bend them by their joints.
+        // Read the vertices, apply their morph targets and their skin.
         let vertices = Vertices::new(self.file, self.budget, primitive)?;
         let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();
         let count = positions.len();
         pose::mix(self.file, targets.clone(), |target| target.positions, &mut positions)?;
-        let bent = match placement.skin {
-            Some(skin) => Bent::read(self.file, &vertices, skin, &self.nodes, count)?,
+        let skinning = match placement.skin {
+            Some(skin) => Skinning::read(self.file, &vertices, skin, &self.nodes, count)?,
             None => None,
         };
         let whole = placement.transform;
         let point = |transform: DMat4, p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
-        let mut positions = match &bent {
-            Some(bent) => bring_in(positions, |i, p| point(bent.transform(i), p))?,
-            None => bring_in(positions, |_, p| point(whole, p))?,
+        let mut positions = match &skinning {
+            Some(skinning) => map_indexed(positions, |i, p| point(skinning.transform(i), p))?,
+            None => map_indexed(positions, |_, p| point(whole, p))?,
         };
 
-        // A reflection turns the winding and the normals.
-        let flipped = bent.as_ref().map_or_else(|| whole.determinant() < 0.0, |bent| bent.is_mirrored(count));
+        // A reflection reverses the winding and the normals.
+        let flipped =
+            skinning.as_ref().map_or_else(|| whole.determinant() < 0.0, |skinning| skinning.is_mirrored(count));
         let side = if flipped { -1.0 } else { 1.0 };
         let normal = |turn: DMat3, n| (turn * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3();
         let mut normals = match vertices.checked(&Semantic::Normals, count)? {
             Some(mut normals) => {
                 pose::mix(self.file, targets, |target| target.normals, &mut normals)?;
                 let turn = cofactor(whole);
-                match &bent {
-                    Some(bent) => bring_in(normals, |i, n| normal(cofactor(bent.transform(i)), n))?,
-                    None => bring_in(normals, |_, n| normal(turn, n))?,
+                match &skinning {
+                    Some(skinning) => map_indexed(normals, |i, n| normal(cofactor(skinning.transform(i)), n))?,
+                    None => map_indexed(normals, |_, n| normal(turn, n))?,
                 }
             }
             None => Vec::new(),
@@ -252,7 +253,7 @@ impl Importer<'_> {
         let mut uvs = [Vec::new(), Vec::new()];
         for (set, uv) in uvs.iter_mut().enumerate() {
             if let Some(read) = vertices.checked(&Semantic::TexCoords(set as u32), count)? {
-                *uv = bring_in(read, |_, uv: [f32; 2]| Vec2::from(uv))?;
+                *uv = map_indexed(read, |_, uv: [f32; 2]| Vec2::from(uv))?;
             }
         }
 
@@ -327,7 +328,7 @@ impl Importer<'_> {
         let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
         if rest.iter().any(|colour| *colour != first) {
             self.budget.keep(size_of_val(&colours[..]) as u64)?;
-            return Ok((material, bring_in(colours, |_, colour| clamped(colour))?));
+            return Ok((material, map_indexed(colours, |_, colour| clamped(colour))?));
         }
         if first == [1.0; 4] {
             return Ok((material, Vec::new()));
@@ -355,7 +356,7 @@ impl Importer<'_> {
             axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to zero")))
         };
         let forward = axis(DVec3::NEG_Z)?;
-        // Non-uniform scaling shears the axes: make up orthogonal again.
+        // Non-uniform scaling shears the axes: orthogonalise `up`.
         let up = axis(DVec3::Y)?;
         let up = (up - forward * forward.dot(up)).try_normalize();
         let up = up.ok_or_else(|| Error::format(format!("camera {name:?} has parallel axes")))?;
@@ -370,8 +371,8 @@ impl Importer<'_> {
     }
 }
 
-/// Changes values by their index.
-fn bring_in<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(usize, T) -> U) -> Result<Vec<U>> {
+/// Maps each value and its index to a new value; returns an error if memory is short.
+fn map_indexed<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(usize, T) -> U) -> Result<Vec<U>> {
     let mut out = try_vec(values.len(), U::default())?;
     out.iter_mut().zip(values).enumerate().for_each(|(i, (o, v))| *o = change(i, v));
     Ok(out)

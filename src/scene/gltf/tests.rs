@@ -94,7 +94,7 @@ fn near(a: Vec3, b: Vec3) -> bool {
 }
 
 #[test]
-fn a_scene_survives_the_way_out_and_in() {
+fn a_scene_is_unchanged_by_export_and_import() {
     let (before, glb) = (scene(), export(&scene()).unwrap());
     let after = import(&glb, None).unwrap();
     assert_eq!(after.meshes, before.meshes);
@@ -143,7 +143,7 @@ fn a_scene_survives_the_way_out_and_in() {
 
 /// Luminaires keep their orientation and their distributions, each of which is written once.
 #[test]
-fn luminaires_survive_the_way_out_and_in() {
+fn luminaires_are_unchanged_by_export_and_import() {
     let measured = |planes: usize| Luminaire {
         planes: (0..planes).map(|i| i as f64 * 90.0).collect(),
         gammas: vec![0.0, 30.0, 90.0],
@@ -268,7 +268,7 @@ fn strips_fans_and_sparse_accessors() {
 }
 
 #[test]
-fn lying_files_are_errors_that_say_why() {
+fn inconsistent_files_are_errors_that_give_the_reason() {
     type Edit = fn(&mut Value);
     let cases: [(&str, Edit); 26] = [
         ("buffer view 9", |f| f["accessors"][0]["bufferView"] = 9.into()),
@@ -326,7 +326,7 @@ fn lying_files_are_errors_that_say_why() {
 #[test]
 fn a_budget_is_asked_for_all_that_will_be_made() {
     let glb = export(&scene()).unwrap();
-    /// What is kept, and the largest loan.
+    /// A budget that records the bytes of the scene and the largest temporary amount.
     struct Limited {
         limit: u64,
         kept: Cell<u64>,
@@ -366,7 +366,7 @@ fn a_budget_is_asked_for_all_that_will_be_made() {
 fn a_vertex_that_is_no_number_is_named() {
     let mut glb = export(&scene()).unwrap();
     let json_length = u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
-    // Images come first; only the JSON knows the file's layout.
+    // Images are stored first; only the JSON states the layout of the file.
     let root: Value = serde_json::from_slice(&glb[20..20 + json_length]).unwrap();
     let view = &root["bufferViews"][root["accessors"][0]["bufferView"].as_u64().unwrap() as usize];
     let at = 28 + json_length + view["byteOffset"].as_u64().unwrap() as usize + 12;
