@@ -104,6 +104,13 @@ struct Placement<'a> {
     weights: &'a [f32],
 }
 
+/// The vertices of a primitive in world space.
+struct Posed {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    is_mirrored: bool,
+}
+
 impl Importer<'_> {
     /// Visits every node of the default scene once, parents first, in file order.
     fn nodes(&mut self, world: DMat4) -> Result<()> {
@@ -216,56 +223,13 @@ impl Importer<'_> {
         let extras = [(Semantic::Normals, 12), (Semantic::TexCoords(0), 8), (Semantic::TexCoords(1), 8)];
         let extras = extras.into_iter().filter_map(|(semantic, bytes)| attribute(semantic).map(|_| bytes));
         let targets = mixed(primitive, placement.weights);
-        self.reserve(positions, 12 + extras.sum::<u64>(), targets.clone().count(), primitive.indices, mode)?;
+        self.reserve(positions, 12 + extras.sum::<u64>(), targets.count(), primitive.indices, mode)?;
 
-        // Read the vertices, apply their morph targets and their skin.
         let vertices = Vertices::new(self.file, self.budget, primitive)?;
-        let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();
+        let Posed { mut positions, mut normals, is_mirrored } = self.pose(&vertices, primitive, placement)?;
         let count = positions.len();
-        pose::mix(self.file, targets.clone(), |target| target.positions, &mut positions)?;
-        let skinning = match placement.skin {
-            Some(skin) => Skinning::read(self.file, &vertices, skin, &self.nodes, count)?,
-            None => None,
-        };
-        let whole = placement.transform;
-        let point = |transform: DMat4, p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
-        let mut positions = match &skinning {
-            Some(skinning) => map_indexed(positions, |i, p| point(skinning.transform(i), p))?,
-            None => map_indexed(positions, |_, p| point(whole, p))?,
-        };
-
-        // A reflection reverses the winding and the normals.
-        let flipped =
-            skinning.as_ref().map_or_else(|| whole.determinant() < 0.0, |skinning| skinning.is_mirrored(count));
-        let side = if flipped { -1.0 } else { 1.0 };
-        let normal = |turn: DMat3, n| (turn * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3();
-        let mut normals = match vertices.checked(&Semantic::Normals, count)? {
-            Some(mut normals) => {
-                pose::mix(self.file, targets, |target| target.normals, &mut normals)?;
-                let turn = cofactor(whole);
-                match &skinning {
-                    Some(skinning) => map_indexed(normals, |i, n| normal(cofactor(skinning.transform(i)), n))?,
-                    None => map_indexed(normals, |_, n| normal(turn, n))?,
-                }
-            }
-            None => Vec::new(),
-        };
-        let mut uvs = [Vec::new(), Vec::new()];
-        for (set, uv) in uvs.iter_mut().enumerate() {
-            if let Some(read) = vertices.checked(&Semantic::TexCoords(set as u32), count)? {
-                *uv = map_indexed(read, |_, uv: [f32; 2]| Vec2::from(uv))?;
-            }
-        }
-
-        // Form triangles of all three modes, restoring their winding after a reflection.
-        let (mode, indices) = vertices.indices(mode, count)?;
-        if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
-            return Err(Error::format(format!("an index is {beyond}, but there are {count} vertices")));
-        }
-        let mut triangles = triangulate(mode, &indices)?;
-        if flipped {
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
+        let uvs = texture_coordinates(&vertices, count)?;
+        let triangles = triangles(&vertices, mode, count, is_mirrored)?;
         if !normals.is_empty() {
             mend_normals(&positions, &mut normals, &triangles)?;
         }
@@ -281,6 +245,42 @@ impl Importer<'_> {
         positions.shrink_to_fit();
         self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, colours, triangles });
         Ok(())
+    }
+
+    /// Reads positions and normals, applies morph targets and skin, and transforms them to world space.
+    fn pose(&self, vertices: &Vertices, primitive: &Primitive, placement: Placement) -> Result<Posed> {
+        let targets = mixed(primitive, placement.weights);
+        let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();
+        let count = positions.len();
+        pose::mix(self.file, targets.clone(), |target| target.positions, &mut positions)?;
+        let skinning = match placement.skin {
+            Some(skin) => Skinning::read(self.file, vertices, skin, &self.nodes, count)?,
+            None => None,
+        };
+        let whole = placement.transform;
+        let point = |transform: DMat4, p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
+        let positions = match &skinning {
+            Some(skinning) => map_indexed(positions, |i, p| point(skinning.transform(i), p))?,
+            None => map_indexed(positions, |_, p| point(whole, p))?,
+        };
+
+        // A reflection reverses the winding and the normals.
+        let is_mirrored =
+            skinning.as_ref().map_or_else(|| whole.determinant() < 0.0, |skinning| skinning.is_mirrored(count));
+        let side = if is_mirrored { -1.0 } else { 1.0 };
+        let normal = |turn: DMat3, n| (turn * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3();
+        let normals = match vertices.checked(&Semantic::Normals, count)? {
+            Some(mut normals) => {
+                pose::mix(self.file, targets, |target| target.normals, &mut normals)?;
+                let turn = cofactor(whole);
+                match &skinning {
+                    Some(skinning) => map_indexed(normals, |i, n| normal(cofactor(skinning.transform(i)), n))?,
+                    None => map_indexed(normals, |_, n| normal(turn, n))?,
+                }
+            }
+            None => Vec::new(),
+        };
+        Ok(Posed { positions, normals, is_mirrored })
     }
 
     /// Counts the output of a primitive before allocating it, and the morph targets to mix: instances multiply the
@@ -369,6 +369,30 @@ impl Importer<'_> {
         });
         Ok(())
     }
+}
+
+/// Both sets of texture coordinates of a primitive; a missing set is empty.
+fn texture_coordinates(vertices: &Vertices, count: usize) -> Result<[Vec<Vec2>; 2]> {
+    let mut uvs = [Vec::new(), Vec::new()];
+    for (set, uv) in uvs.iter_mut().enumerate() {
+        if let Some(read) = vertices.checked(&Semantic::TexCoords(set as u32), count)? {
+            *uv = map_indexed(read, |_, uv: [f32; 2]| Vec2::from(uv))?;
+        }
+    }
+    Ok(uvs)
+}
+
+/// Forms the triangles of a primitive of any of the three modes; a mirrored pose reverses their winding.
+fn triangles(vertices: &Vertices, mode: Mode, count: usize, is_mirrored: bool) -> Result<Vec<[u32; 3]>> {
+    let (mode, indices) = vertices.indices(mode, count)?;
+    if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
+        return Err(Error::format(format!("an index is {beyond}, but there are {count} vertices")));
+    }
+    let mut triangles = triangulate(mode, &indices)?;
+    if is_mirrored {
+        triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    Ok(triangles)
 }
 
 /// Maps each value and its index to a new value; returns an error if memory is short.
