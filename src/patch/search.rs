@@ -295,7 +295,8 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Tries uniformly random positions if there is no match yet, then positions around the best one, at falling radii.
+    /// Tries uniformly random positions if there is no match yet, then positions around the best one, at falling
+    /// radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
         if self.error == u32::MAX {

@@ -1,9 +1,9 @@
 //! Powers of groups of lamps that best meet several goals, within bounds.
 //!
 //! Radiance is linear in the powers `x`. The best powers minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and
-//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which decides what
-//! the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without it). With one
-//! group and one goal this is the closed form of [`super::run`].
+//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which decides
+//! what the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without it). With
+//! one group and one goal this is the closed form of [`super::run`].
 //!
 //! A goal may be a limit, which counts only where it is violated ([`Sense`]).
 //!

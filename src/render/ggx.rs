@@ -1,12 +1,13 @@
-//! The GGX microfacet distribution (Walter et al. 2007) with height-correlated Smith masking (Heitz 2014), its sampling
-//! by visible normals (Heitz 2018), and its directional albedo.
+//! The GGX microfacet distribution (Walter et al. 2007) with height-correlated Smith masking (Heitz 2014), its
+//! sampling by visible normals (Heitz 2018), and its directional albedo.
 //!
 //! Directions are in a frame whose third axis is the normal; `alpha` is the squared roughness.
 
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, PI};
 
-/// Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and grazing (`f90`) incidence.
+/// Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and grazing (`f90`)
+/// incidence.
 #[inline]
 pub fn schlick(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
     let m = (1.0 - cosine).clamp(0.0, 1.0);

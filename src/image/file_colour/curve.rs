@@ -5,7 +5,7 @@ use crate::image::colour::{linear_to_srgb, srgb_to_linear};
 use crate::image::try_collect;
 use std::sync::Arc;
 
-/// Number of nodes of a curve: one for each 16-bit code; each 8-bit code is a node too, with a distance of 257 nodes.
+/// Number of nodes of a curve: one for each 16-bit code. The 8-bit codes are every 257th node.
 const NODES: usize = 65_536;
 
 /// Maximum difference of a curve from that of sRGB at which it counts as sRGB. [rounding]: profiles store the curve in

@@ -77,8 +77,8 @@ fn a_dot_product_with_the_map_equals_tracing() {
     }
 }
 
-/// Reciprocity: the light per area that the floor gets from a uniform ceiling equals that which the ceiling gets from a
-/// uniform floor, all reflections included.
+/// Reciprocity: the light per area that the floor gets from a uniform ceiling equals that which the ceiling gets from
+/// a uniform floor, all reflections included.
 #[test]
 fn light_transport_is_reciprocal() {
     let mean = |emitter: usize, target: usize| {

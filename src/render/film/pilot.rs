@@ -174,8 +174,8 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Time per path of the image, from the time that all pilot tiles took together: corrected for the difference between the
-/// selected tiles and all tiles of the image.
+/// Time per path of the image, from the time that all pilot tiles took together: corrected for the difference between
+/// the selected tiles and all tiles of the image.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);

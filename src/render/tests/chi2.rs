@@ -5,8 +5,8 @@ const MIN_EXPECTED: f64 = 10.0;
 /// Probability that at least one of all tests of a routine fails by chance. [convention]
 const CHANCE: f64 = 1e-3;
 
-/// Asserts that counts follow their expectation, as one of `tests` tests whose joint probability of a chance failure is
-/// 1/1000 (Šidák 1967). Both must cover the whole sample space: their sums are equal up to quadrature errors.
+/// Asserts that counts follow their expectation, as one of `tests` tests whose joint probability of a chance failure
+/// is 1/1000 (Šidák 1967). Both must cover the whole sample space: their sums are equal up to quadrature errors.
 pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], tests: usize, what: &str) {
     let bins = pooled(expected, observed);
     let (total, seen) = bins.iter().fold((0.0, 0.0), |(e, o), bin| (e + bin.0, o + bin.1));

@@ -1,4 +1,5 @@
-//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`), decoded by the crate meshoptimizer-rs.
+//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`), decoded by the crate
+//! meshoptimizer-rs.
 
 use super::features::MESHOPT;
 use crate::error::{Error, ErrorKind, Result};

@@ -1,8 +1,8 @@
 //! glTF 2.0 import and export: GLB, or JSON with embedded or external buffers and images.
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
-//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants` (the
-//! default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`, `EXT_meshopt_compression`,
+//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants`
+//! (the default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`, `EXT_meshopt_compression`,
 //! `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
 //!
 //! Import: every node × instance × primitive becomes one mesh in world space, named after its node, with its morph
