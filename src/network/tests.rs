@@ -173,13 +173,14 @@ fn element_wise_operators_broadcast_as_in_numpy() {
     }
 }
 
+fn expect(got: Tensor, shape: &[usize], values: &[f32]) {
+    assert_eq!((got.shape.as_slice(), got.as_floats().unwrap()), (shape, values));
+}
+
 #[test]
-fn items_are_put_where_they_belong() {
+fn items_are_rearranged_broadcast_padded_and_reduced() {
     let x = Tensor::floats(vec![2, 3], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     let ints = |values: &[i64]| Tensor::integers(vec![values.len()], values.to_vec());
-    let expect = |got: Tensor, shape: &[usize], values: &[f32]| {
-        assert_eq!((got.shape.as_slice(), got.as_floats().unwrap()), (shape, values));
-    };
     expect(node("Transpose", &x, &[], &[]), &[3, 2], &[0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
     expect(
         node(
@@ -217,6 +218,11 @@ fn items_are_put_where_they_belong() {
     expect(node("Reshape", &x, &[("s", &ints(&[0, -1, 1]))], &[]), &[2, 3, 1], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     expect(node("ReduceMean", &x, &[], &[Is("axes", &[0]), I("keepdims", 0)]), &[3], &[1.5, 2.5, 3.5]);
     expect(node("ReduceMax", &x, &[], &[Is("axes", &[-1])]), &[2, 1], &[2.0, 5.0]);
+}
+
+#[test]
+fn images_are_rearranged_resized_and_pooled() {
+    let ints = |values: &[i64]| Tensor::integers(vec![values.len()], values.to_vec());
     let depth = Tensor::floats(vec![1, 4, 1, 2], (0..8).map(|v| v as f32).collect());
     expect(
         node("DepthToSpace", &depth, &[], &[I("blocksize", 2)]),

@@ -104,9 +104,8 @@ fn sampling_the_tree_can_be_inverted() {
     }
 }
 
-#[test]
-fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
-    // The pdf of a punctual light is its pmf × the squared distance.
+/// A floor under an emissive square, six punctual lights of all kinds, and an environment.
+fn every_light() -> Scene {
     let mut scene =
         over_floor(vec![Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)], vec![matt(0.0, 3.0)]);
     let intensity = |i: usize| Vec3::splat(1.0 + i as f32);
@@ -133,7 +132,12 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
         .collect();
     scene.distributions = vec![Arc::new(Luminaire::lambertian("panel", 4.0, [0.0; 3]))];
     scene.environment = Some(Environment::Constant(Vec3::splat(0.5)));
-    let world = world(scene);
+    scene
+}
+
+#[test]
+fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
+    let world = world(every_light());
     let receiver = Receiver { position: Vec3::new(0.1, 0.0, 0.0), normal: Vec3::Y };
     // Count the punctual lights, the surface, the environment, and samples without a light.
     let (mut counts, mut stated) = ([0.0; 9], [0.0; 9]);
@@ -147,6 +151,7 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
         };
         match sample.source {
             LightSource::Punctual(index) => {
+                // The pdf of a punctual light is its pmf × the squared distance.
                 let distance2 = match sample.end {
                     Some(LightEnd::Point(p)) => p.distance_squared(receiver.position),
                     _ => 1.0,

@@ -16,11 +16,8 @@ fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
     super::import(bytes, base, Options::default())
 }
 
-/// One of each object that the format can hold.
-fn scene() -> Scene {
-    let colour = Image::from_fn(4, 2, |x, y| [x as f32 / 3.0, y as f32, 0.5, 1.0]).unwrap();
-    let lights = Image::from_fn(4, 4, |x, y| [if (x + y) % 3 == 0 { 8.0 } else { 0.0 }, 2.0, 0.5]).unwrap();
-    let normals = Image::from_fn(2, 2, |x, _| [0.5, 0.25 + 0.5 * x as f32, 1.0]).unwrap();
+/// An opaque material with textures, a cut-out lamp, and glass.
+fn materials() -> Vec<Material> {
     let turned = Mat3::from_cols(Vec3::new(0.0, -2.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.1, 0.2, 1.0));
     let oak = Material {
         base_color: Vec3::new(0.5, 0.4, 0.3),
@@ -45,6 +42,24 @@ fn scene() -> Scene {
         alpha_mode: AlphaMode::Blend,
         ..Material::diffuse("Glass", Vec3::ONE)
     };
+    vec![oak, lamp, glass]
+}
+
+/// A point, a spot and a directional light.
+fn lights() -> Vec<PunctualLight> {
+    let direction = Vec3::new(0.6, -0.8, 0.0);
+    vec![
+        PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::new(300.0, 200.0, 100.0) },
+        PunctualLight::Spot { position: Vec3::Y, direction, intensity: Vec3::ONE, inner_angle: 0.2, outer_angle: 0.5 },
+        PunctualLight::Directional { direction: -direction, illuminance: Vec3::splat(1000.0) },
+    ]
+}
+
+/// One of each object that the format can hold.
+fn scene() -> Scene {
+    let colour = Image::from_fn(4, 2, |x, y| [x as f32 / 3.0, y as f32, 0.5, 1.0]).unwrap();
+    let emission = Image::from_fn(4, 4, |x, y| [if (x + y) % 3 == 0 { 8.0 } else { 0.0 }, 2.0, 0.5]).unwrap();
+    let normals = Image::from_fn(2, 2, |x, _| [0.5, 0.25 + 0.5 * x as f32, 1.0]).unwrap();
     let triangle = Mesh {
         name: "Desk".into(),
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z],
@@ -62,26 +77,15 @@ fn scene() -> Scene {
     };
     let pane = Mesh { name: "Pane".into(), material: 2, uvs: [Vec::new(), Vec::new()], ..triangle.clone() };
     let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 0.5, 0.0), 0.8);
-    let direction = Vec3::new(0.6, -0.8, 0.0);
     Scene {
         meshes: vec![triangle, sheet, pane],
-        materials: vec![oak, lamp, glass],
+        materials: materials(),
         textures: vec![
             Texture { wrap: [Wrap::Mirror, Wrap::Repeat], ..Texture::new("Colour", colour) },
-            Texture { wrap: [Wrap::Clamp; 2], ..Texture::new("Lights", lights) },
+            Texture { wrap: [Wrap::Clamp; 2], ..Texture::new("Lights", emission) },
             Texture::new("Data", normals),
         ],
-        lights: vec![
-            PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::new(300.0, 200.0, 100.0) },
-            PunctualLight::Spot {
-                position: Vec3::Y,
-                direction,
-                intensity: Vec3::ONE,
-                inner_angle: 0.2,
-                outer_angle: 0.5,
-            },
-            PunctualLight::Directional { direction: -direction, illuminance: Vec3::splat(1000.0) },
-        ],
+        lights: lights(),
         distributions: Vec::new(),
         environment: None,
         cameras: vec![Camera { name: "View".into(), ..camera }],
