@@ -71,7 +71,7 @@ struct Design {
     filled: f64,
 }
 
-/// Where the place 0, 0 of a design is, in pixels.
+/// Position of the place (0, 0) of a design, in pixels.
 const ORIGIN: DVec2 = DVec2::new(17.0, 11.0);
 
 const DISC: f64 = std::f64::consts::PI * 81.0;

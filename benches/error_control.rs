@@ -19,11 +19,11 @@ use luxfer::scene::{Camera, Environment, Material, Mesh, Scene};
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// Renders per scene and number of paths for the coverage of intervals.
+/// Number of renders, per scene and path count, that measure the coverage of intervals.
 const SEEDS: u64 = 32;
-/// Renders per scene and target.
+/// Number of renders per scene and target.
 const TARGETED: u64 = 10;
-/// Renders per scene and number of paths for the bias of previews.
+/// Number of renders, per scene and path count, that measure the bias of previews.
 const PREVIEWS: u64 = 10;
 /// Paths per pixel of references.
 const REFERENCE: u32 = 2048;
@@ -177,15 +177,7 @@ fn targets(ready: &[Ready]) {
                 squares += distance(&film) / TARGETED as f64;
                 shifts.push(100.0 * (mean(&film.beauty) / mean(&truth) - 1.0));
             }
-            // The error of that number of paths everywhere: interpolate logarithms between powers of two, where points
-            // are stratified best.
-            let below = 1u32 << (paths as u32).max(1).ilog2();
-            let [low, high] = [below, 2 * below].map(|samples| {
-                let seeds = TARGETED / 2;
-                let film = |seed| shoot(world, camera, &Params { samples, seed, ..size.clone() });
-                (0..seeds).map(|seed| distance(&film(seed)) / seeds as f64).sum::<f64>()
-            });
-            let even = low * (high / low).powf((paths / f64::from(below)).log2());
+            let even = even_error((world, camera), &size, paths, &distance);
             let (bias, interval) = mean_and_interval(&shifts);
             // A target on every pixel does not reduce the error of the whole image, because it optimises another
             // error.
@@ -219,6 +211,18 @@ fn targets(ready: &[Ready]) {
     figure("render.adaptive.bias", most, "%");
 }
 
+/// The squared error of a mean number of paths in every pixel: interpolates logarithms between powers of two, where
+/// points are stratified best.
+fn even_error((world, camera): (&World, &Camera), size: &Params, paths: f64, distance: &dyn Fn(&Film) -> f64) -> f64 {
+    let below = 1u32 << (paths as u32).max(1).ilog2();
+    let [low, high] = [below, 2 * below].map(|samples| {
+        let seeds = TARGETED / 2;
+        let film = |seed| shoot(world, camera, &Params { samples, seed, ..size.clone() });
+        (0..seeds).map(|seed| distance(&film(seed)) / seeds as f64).sum::<f64>()
+    });
+    low * (high / low).powf((paths / f64::from(below)).log2())
+}
+
 /// Error of previews against a reference, their bias, and their time.
 fn previews(ready: &[Ready]) {
     let mut table = Table::new([
@@ -239,24 +243,8 @@ fn previews(ready: &[Ready]) {
         let truth = shoot(world, camera, &Params { samples: REFERENCE / 2, seed: 1 << 40, ..size.clone() }).beauty;
         let mut gains = Vec::new();
         for samples in [8, 16] {
-            let (mut before, mut after, mut left, mut stated) = (0.0, [0.0; 3], 0.0, 0.0);
-            let mut smoothed = Vec::new();
-            for seed in 0..PREVIEWS {
-                let films = [0.3, 1.0, 3.0]
-                    .map(|preview| shoot(world, camera, &Params { samples, seed, preview, ..size.clone() }));
-                let beauty = films[0].beauty.clone();
-                let outputs = films.map(|film| film.preview.expect("a preview was asked for"));
-                let share = 1.0 / PREVIEWS as f64;
-                before += share * relative_error(&beauty, &truth);
-                after.iter_mut().zip(&outputs).for_each(|(a, o)| *a += share * relative_error(&o.image, &truth));
-                let [_, usual, _] = outputs;
-                left += share * squared_distance(&usual.image, &truth);
-                stated += share * usual.bias.powi(2);
-                if samples == 8 && seed == 0 {
-                    save(name, &beauty, &usual.image, &truth);
-                }
-                smoothed.push(usual.image);
-            }
+            let PreviewErrors { before, after, left, stated, smoothed } =
+                preview_errors(name, (world, camera), &Params { samples, ..size.clone() }, &truth);
             gains.push(before / after[1]);
             table.row([
                 name.to_string(),
@@ -281,7 +269,45 @@ fn previews(ready: &[Ready]) {
         "previews, {PREVIEWS} renders each: mean squared error relative to the reference, before and after; at strength 1, \
          error and bias relative to the mean of the image"
     ));
-    let (_, world, camera) = &ready[0];
+    time_preview(&ready[0]);
+}
+
+/// Means over the renders of a scene with previews.
+#[derive(Default)]
+struct PreviewErrors {
+    /// Relative mean squared error before the filter, and after it at strengths 0.3, 1 and 3.
+    before: f64,
+    after: [f64; 3],
+    /// Mean squared error of the filtered image, and the squared bias that it states, at strength 1.
+    left: f64,
+    stated: f64,
+    /// The filtered images at strength 1.
+    smoothed: Vec<Image>,
+}
+
+/// Compares previews with the truth; saves the first render with 8 paths per pixel.
+fn preview_errors(name: &str, (world, camera): (&World, &Camera), params: &Params, truth: &Image) -> PreviewErrors {
+    let mut errors = PreviewErrors::default();
+    for seed in 0..PREVIEWS {
+        let films = [0.3, 1.0, 3.0].map(|preview| shoot(world, camera, &Params { seed, preview, ..params.clone() }));
+        let beauty = films[0].beauty.clone();
+        let outputs = films.map(|film| film.preview.expect("a preview was asked for"));
+        let share = 1.0 / PREVIEWS as f64;
+        errors.before += share * relative_error(&beauty, truth);
+        errors.after.iter_mut().zip(&outputs).for_each(|(a, o)| *a += share * relative_error(&o.image, truth));
+        let [_, usual, _] = outputs;
+        errors.left += share * squared_distance(&usual.image, truth);
+        errors.stated += share * usual.bias.powi(2);
+        if params.samples == 8 && seed == 0 {
+            save(name, &beauty, &usual.image, truth);
+        }
+        errors.smoothed.push(usual.image);
+    }
+    errors
+}
+
+/// Times the filter alone.
+fn time_preview((_, world, camera): &Ready) {
     let outputs = Outputs { aovs: vec![Aov::Albedo, Aov::Normal, Aov::Position], ..Outputs::default() };
     let film = |seed| shoot(world, camera, &Params { samples: 2, seed, outputs: outputs.clone(), ..Params::default() });
     let (one, other) = (film(1), film(2));

@@ -87,46 +87,51 @@ fn layouts(pairs: &[&Case]) {
         ];
         for (name, segments, strokes) in sources {
             let found = of(None, segments, strokes);
-            // Invert Eq. 1: from screen depth to inverse depth.
-            let Params { near, far, .. } = Params::default();
-            let inverse = |i: usize| (1.0 - found.image.data[i * 10 + 3] * (far - near) / far) / near;
-            let pixels = case.measured();
-            let mut logs: Vec<f64> =
-                pixels.iter().map(|&i| -f64::from(inverse(i).max(1e-6) * case.depth.data[i]).ln()).collect();
-            let middle = median(&logs);
-            logs.iter_mut().for_each(|l| *l = (*l - middle).abs());
-            let trust = |i: usize| f64::from(found.depth_confidence.data[i]);
-            let typical = median(&pixels.iter().map(|&i| trust(i)).collect::<Vec<_>>());
-            let half = |trusted: bool| -> Vec<f64> {
-                let of_half = pixels.iter().zip(&logs).filter(|p| (trust(*p.0) > typical) == trusted);
-                of_half.map(|p| *p.1).collect()
-            };
-            // Without any lines or strokes all pixels have equal confidence.
-            let percent = |values: &[f64]| match values.is_empty() {
-                true => "-".into(),
-                false => format!("{:.0}", 100.0 * (median(values).exp() - 1.0)),
-            };
-            let within = logs.iter().filter(|l| **l < 1.25f64.ln()).count() as f64 / logs.len() as f64;
-            let angles: Vec<f64> = pixels
-                .iter()
-                .map(|&i| f64::from(normal(&found.image, i).angle_between(normal(&measured, i)).to_degrees()))
-                .collect();
+            let (median_error, cells) = layout_row(case, &found, &measured);
             if name == "lines" {
-                errors.push(100.0 * (median(&logs).exp() - 1.0));
+                errors.push(median_error);
             }
-            table.row([
-                case.name.clone(),
-                name.into(),
-                percent(&logs),
-                format!("{:.0} %", 100.0 * within),
-                percent(&half(true)),
-                percent(&half(false)),
-                format!("{:.0}", median(&angles)),
-            ]);
+            table.row([case.name.clone(), name.into()].into_iter().chain(cells).collect::<Vec<_>>());
         }
     }
     table.print("The room laid out from its lines and strokes, beside the measured depth, but for its scale");
     figure("features.layout.depth_error", median(&errors), "%");
+}
+
+/// Median error of the depth of a layout in %, and the cells of its row in the table.
+fn layout_row(case: &Case, found: &features::Features, measured: &Image) -> (f64, [String; 5]) {
+    // Invert Eq. 1: from screen depth to inverse depth.
+    let Params { near, far, .. } = Params::default();
+    let inverse = |i: usize| (1.0 - found.image.data[i * 10 + 3] * (far - near) / far) / near;
+    let pixels = case.measured();
+    let mut logs: Vec<f64> =
+        pixels.iter().map(|&i| -f64::from(inverse(i).max(1e-6) * case.depth.data[i]).ln()).collect();
+    let middle = median(&logs);
+    logs.iter_mut().for_each(|l| *l = (*l - middle).abs());
+    let trust = |i: usize| f64::from(found.depth_confidence.data[i]);
+    let typical = median(&pixels.iter().map(|&i| trust(i)).collect::<Vec<_>>());
+    let half = |trusted: bool| -> Vec<f64> {
+        let of_half = pixels.iter().zip(&logs).filter(|p| (trust(*p.0) > typical) == trusted);
+        of_half.map(|p| *p.1).collect()
+    };
+    // Without any lines or strokes all pixels have equal confidence.
+    let percent = |values: &[f64]| match values.is_empty() {
+        true => "-".into(),
+        false => format!("{:.0}", 100.0 * (median(values).exp() - 1.0)),
+    };
+    let within = logs.iter().filter(|l| **l < 1.25f64.ln()).count() as f64 / logs.len() as f64;
+    let angles: Vec<f64> = pixels
+        .iter()
+        .map(|&i| f64::from(normal(&found.image, i).angle_between(normal(measured, i)).to_degrees()))
+        .collect();
+    let cells = [
+        percent(&logs),
+        format!("{:.0} %", 100.0 * within),
+        percent(&half(true)),
+        percent(&half(false)),
+        format!("{:.0}", median(&angles)),
+    ];
+    (100.0 * (median(&logs).exp() - 1.0), cells)
 }
 
 fn looking(focal: f64, principal: DVec2, axes: DMat3) -> Perspective {

@@ -153,7 +153,7 @@ fn places(count: usize) -> impl Iterator<Item = Vec2> {
     })
 }
 
-/// Squares under the ceiling.
+/// The room with `count` square lamps as meshes under the ceiling.
 fn mesh_lamps(count: usize) -> Scene {
     let mut scene = room();
     let side = SIDE * (LIT / count as f32).sqrt();
@@ -169,7 +169,7 @@ fn mesh_lamps(count: usize) -> Scene {
     scene
 }
 
-/// Squares of texels of the ceiling.
+/// The room with `count` square lamps in the emission texture of the ceiling.
 fn texture_lamps(count: usize) -> Scene {
     let side = ((TEXELS as f32) * (LIT / count as f32).sqrt()).round().max(1.0) as usize;
     let mut image = Image::new(TEXELS, TEXELS, 1).expect("an image");

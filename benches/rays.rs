@@ -214,57 +214,76 @@ fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Tabl
     for (kind, rays, any) in
         [("coherent", &rays.camera, false), ("closest", &rays.bounce, false), ("any", &rays.shadow, true)]
     {
-        let mut ours = || match any {
-            false => rays.iter().filter(|ray| accel.closest(ray, |_| true).is_some()).count(),
-            true => rays.iter().filter(|ray| accel.occluded(ray, |_| true)).count(),
-        };
-        let theirs = |scene: &embree::Scene| match any {
-            false => rays
-                .iter()
-                .filter(|ray| {
-                    let mut hit = embree::RayHit::new(ray.origin, ray.direction, ray.t_max);
-                    scene.closest(&mut hit);
-                    hit.triangle != u32::MAX
-                })
-                .count(),
-            true => rays
-                .iter()
-                .filter(|ray| scene.occluded(&mut embree::Ray::new(ray.origin, ray.direction, ray.t_max)))
-                .count(),
-        };
-        let speed = |seconds: f64| format!("{:.2}", rays.len() as f64 / seconds * 1e-6);
-        let name = format!("rays.{kind}.{}.vs_embree", setting.name);
-        match &peers {
-            Ok([default, robust]) => {
-                check(kind, setting.name, &accel, robust, rays, any);
-                let timings = interleaved(
-                    Clock::Thread,
-                    ROUNDS,
-                    &mut [&mut || _ = black_box(ours()), &mut || _ = black_box(theirs(default)), &mut || {
-                        _ = black_box(theirs(robust))
-                    }],
-                );
-                let ratio = timings.ratio(1, 0);
-                let [low, high] = timings.quartiles(1, 0);
-                table.row([
-                    setting.name.into(),
-                    kind.into(),
-                    speed(timings.median(0)),
-                    speed(timings.median(1)),
-                    format!("{ratio:.2}"),
-                    format!("{low:.2}-{high:.2}"),
-                    format!("{:.2}", timings.ratio(2, 0)),
-                ]);
-                if is_headline(kind, setting.name) {
-                    figure(&name, ratio, "x");
-                }
+        measure_tracing(setting.name, kind, &accel, peers.as_ref().map_err(|reason| *reason), rays, any, table);
+    }
+}
+
+/// Number of rays that hit the scene, traced by the library.
+fn our_hits(accel: &Accel, rays: &[Ray], any: bool) -> usize {
+    match any {
+        false => rays.iter().filter(|ray| accel.closest(ray, |_| true).is_some()).count(),
+        true => rays.iter().filter(|ray| accel.occluded(ray, |_| true)).count(),
+    }
+}
+
+/// Number of rays that hit the scene, traced by Embree.
+fn embree_hits(scene: &embree::Scene, rays: &[Ray], any: bool) -> usize {
+    let is_hit = |ray: &Ray| match any {
+        false => {
+            let mut hit = embree::RayHit::new(ray.origin, ray.direction, ray.t_max);
+            scene.closest(&mut hit);
+            hit.triangle != u32::MAX
+        }
+        true => scene.occluded(&mut embree::Ray::new(ray.origin, ray.direction, ray.t_max)),
+    };
+    rays.iter().filter(|ray| is_hit(ray)).count()
+}
+
+/// Times the tracing of one kind of rays; `peers` are Embree's default scene and its robust one.
+fn measure_tracing(
+    scene: &str,
+    kind: &str,
+    accel: &Accel,
+    peers: Result<&[embree::Scene; 2], &String>,
+    rays: &[Ray],
+    any: bool,
+    table: &mut Table,
+) {
+    let mut ours = || our_hits(accel, rays, any);
+    let speed = |seconds: f64| format!("{:.2}", rays.len() as f64 / seconds * 1e-6);
+    let name = format!("rays.{kind}.{scene}.vs_embree");
+    match peers {
+        Ok([default, robust]) => {
+            check(kind, scene, accel, robust, rays, any);
+            let timings = interleaved(
+                Clock::Thread,
+                ROUNDS,
+                &mut [
+                    &mut || _ = black_box(ours()),
+                    &mut || _ = black_box(embree_hits(default, rays, any)),
+                    &mut || _ = black_box(embree_hits(robust, rays, any)),
+                ],
+            );
+            let ratio = timings.ratio(1, 0);
+            let [low, high] = timings.quartiles(1, 0);
+            table.row([
+                scene.into(),
+                kind.into(),
+                speed(timings.median(0)),
+                speed(timings.median(1)),
+                format!("{ratio:.2}"),
+                format!("{low:.2}-{high:.2}"),
+                format!("{:.2}", timings.ratio(2, 0)),
+            ]);
+            if is_headline(kind, scene) {
+                figure(&name, ratio, "x");
             }
-            Err(reason) => {
-                let (seconds, _) = time(Clock::Thread, &mut ours);
-                table.row([setting.name, kind, &speed(seconds), "-", "-", "-", "-"]);
-                if is_headline(kind, setting.name) {
-                    absent(&name, reason);
-                }
+        }
+        Err(reason) => {
+            let (seconds, _) = time(Clock::Thread, &mut ours);
+            table.row([scene, kind, &speed(seconds), "-", "-", "-", "-"]);
+            if is_headline(kind, scene) {
+                absent(&name, reason);
             }
         }
     }

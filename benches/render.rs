@@ -6,9 +6,9 @@
 //! of the mean pixel for pixels near black). The bench also checks that all renderers converge to the same picture: it
 //! prints mean values, and the difference of the means of blocks of pixels.
 //!
-//! "luxfer" gets the minimum error target that a mean number of paths per pixel allows (`relative_error`), and
-//! "luxfer, even" a fixed number in every pixel, like Mitsuba. Loading the scene, building acceleration structures and
-//! compiling kernels are not counted.
+//! "luxfer" distributes a given mean number of paths per pixel so as to minimise the relative error
+//! (`relative_error`); "luxfer, even" traces that number in every pixel, like Mitsuba. Loading the scene, building
+//! acceleration structures and compiling kernels are not counted.
 
 mod harness;
 

@@ -71,6 +71,9 @@ fn iou(a: &Image, b: &Image) -> f64 {
     both as f64 / pairs().filter(|(a, b)| *a || *b).count().max(1) as f64
 }
 
+/// Index of the lamps among the surfaces of a room, after its six faces.
+const LAMP: usize = 6;
+
 /// A room with lamps in its ceiling, whose walls are nearly the ceiling's colour; once with a stroke on every surface,
 /// once with strokes only on the ceiling, its lamps and one wall.
 fn room(seed: u64) -> [Case; 2] {
@@ -83,7 +86,6 @@ fn room(seed: u64) -> [Case; 2] {
     let faces = [(1, -1.3), (1, 1.3), (0, -2.2), (0, 2.4), (2, 5.0), (2, -2.0)];
     let paints =
         [[0.62, 0.6, 0.55], [0.2, 0.15, 0.1], [0.6, 0.57, 0.52], [0.45, 0.5, 0.48], [0.63, 0.6, 0.54], [0.5; 3]];
-    const LAMP: usize = 6;
     let seen = |x: usize, y: usize| {
         let toward = camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         let ray = axes.transpose() * toward;
@@ -114,23 +116,13 @@ fn room(seed: u64) -> [Case; 2] {
     let features = features::run(&input, &Default::default(), Monitor::default().job()).unwrap().image;
     let truth = Image::from_fn(width, height, |x, y| [f32::from(matches!(face_of[y * width + x], 0 | LAMP))]).unwrap();
 
-    // A straight stroke that stays on its surface: the longest of several random ones.
-    let stroke = |face: usize, turn: u64| {
-        let mut rng = Rng::new(seed, &[face as u64, turn, 7]);
-        let mut pick = || DVec2::new(rng.next_f64() * width as f64, rng.next_f64() * height as f64);
-        let on = |p: DVec2| face_of[(p.y as usize).min(height - 1) * width + (p.x as usize).min(width - 1)] == face;
-        let mut best: Option<[DVec2; 2]> = None;
-        for _ in 0..4000 {
-            let [a, b] = [pick(), pick()];
-            let longer = best.is_none_or(|[c, d]| a.distance(b) > c.distance(d));
-            let length = a.distance(b);
-            if longer && length < 350.0 && (0..=20).all(|k| on(a.lerp(b, f64::from(k) / 20.0))) {
-                best = Some([a, b]);
-            }
-        }
-        best.map(|line| Stroke::polyline(&line, 5.0, matches!(face, 0 | LAMP), width, height).unwrap())
+    let set = |faces: &[(usize, u64)]| {
+        let drawn = |&(face, turn): &(usize, u64)| {
+            let line = longest_line(&face_of, face, Rng::new(seed, &[face as u64, turn, 7]))?;
+            Some(Stroke::polyline(&line, 5.0, matches!(face, 0 | LAMP), width, height).unwrap())
+        };
+        faces.iter().filter_map(drawn).collect::<Vec<_>>()
     };
-    let set = |faces: &[(usize, u64)]| faces.iter().filter_map(|&(face, turn)| stroke(face, turn)).collect::<Vec<_>>();
     let everywhere = set(&[(0, 0), (0, 1), (LAMP, 0), (1, 0), (2, 0), (3, 0), (4, 0), (5, 0)]);
     let sparse = set(&[(0, 0), (0, 1), (LAMP, 0), (4, 0)]);
     [("a stroke on every surface", everywhere), ("strokes on one wall only", sparse)].map(|(how, strokes)| Case {
@@ -141,6 +133,23 @@ fn room(seed: u64) -> [Case; 2] {
         plane: None,
         truth: truth.clone(),
     })
+}
+
+/// The longest of several random lines that stay on a face; `face_of` is the face of each pixel.
+fn longest_line(face_of: &[usize], face: usize, mut rng: Rng) -> Option<[DVec2; 2]> {
+    let [width, height] = SIZE;
+    let mut pick = || DVec2::new(rng.next_f64() * width as f64, rng.next_f64() * height as f64);
+    let on = |p: DVec2| face_of[(p.y as usize).min(height - 1) * width + (p.x as usize).min(width - 1)] == face;
+    let mut best: Option<[DVec2; 2]> = None;
+    for _ in 0..4000 {
+        let [a, b] = [pick(), pick()];
+        let longer = best.is_none_or(|[c, d]| a.distance(b) > c.distance(d));
+        let length = a.distance(b);
+        if longer && length < 350.0 && (0..=20).all(|k| on(a.lerp(b, f64::from(k) / 20.0))) {
+            best = Some([a, b]);
+        }
+    }
+    best
 }
 
 /// Lights of real photos, with the strokes of the tests.
@@ -170,7 +179,8 @@ fn photos() -> Vec<Case> {
     names.iter().filter_map(case).collect()
 }
 
-/// Milliseconds of a run, and of a run with an additional stroke.
+/// Times a run, a run with an additional stroke, and a run with more strokes over the same pixels. Returns the
+/// milliseconds of the first.
 fn timing(case: &Case) -> f64 {
     let [width, height] = SIZE;
     let line = [DVec2::new(100.0, 700.0), DVec2::new(300.0, 760.0)];

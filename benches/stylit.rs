@@ -409,10 +409,15 @@ fn rivals(pair: &Pair, pool: &Pool) {
         figure("stylit.ebsynth.speedup", 2.0 * theirs / (before + after), "x");
     }
 
+    score(pair, pool, &made);
+}
+
+/// Prints the scores of pictures, each with its name and the seconds it took.
+fn score(pair: &Pair, pool: &Pool, made: &[(&str, Option<f64>, PathBuf)]) {
     let head =
         ["", "seconds", "coherence", "guide", "used %", "hf", "hf worst", "Eq. 3", "verbatim %", "at all offsets"];
     let mut table = Table::new(head);
-    for (name, seconds, file) in &made {
+    for (name, seconds, file) in made {
         let mut row = vec![name.to_string(), seconds.map_or("-".to_string(), |s| format!("{s:.2}"))];
         let line = judge(pair, file).unwrap_or_default();
         row.extend(JUDGED.map(|(_, before, _)| number(&line, before).unwrap_or("-").to_string()));

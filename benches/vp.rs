@@ -63,7 +63,6 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
         table.row([format!("{name}: {method}"), share(10.0), share(5.0), share(3.0), median, format!("{ms:.1}")]);
         100.0 * area(&angles, 10.0)
     };
-    let mut bound = Table::new(["set and directions", "labels", "AUC@10", "AUC@5", "AUC@3", "median deg"]);
     let mut headline = Vec::new();
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets) {
         let Some(set) = set else {
@@ -90,6 +89,16 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
         let auc = row("yud_dev", "default, its first three directions only", &set.first_three(), &Params::default());
         headline.push(("vp.yud_dev.auc10".into(), auc));
     }
+    table.print("From given segments, focal length unknown");
+    print_bounds(sets);
+    headline.iter().for_each(|(name, auc)| figure(name, *auc, "%"));
+    time_segments(sets);
+    plot_longest(sets);
+}
+
+/// Prints the lowest errors that the lines allow: the directions fitted to the labelled lines by a known camera.
+fn print_bounds(sets: &[Option<GivenSet>; 2]) {
+    let mut bound = Table::new(["set and directions", "labels", "AUC@10", "AUC@5", "AUC@3", "median deg"]);
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
         let bounds = set.from_labelled_lines();
         let angles = |from: usize, to: usize| {
@@ -105,10 +114,11 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
             bound.row([format!("{name}: {part}"), count, share(10.0), share(5.0), share(3.0), median]);
         }
     }
-    table.print("From given segments, focal length unknown");
-    bound.print("What lines can say at most: bounds which of them run along each labelled direction, the camera known");
-    headline.iter().for_each(|(name, auc)| figure(name, *auc, "%"));
+    bound.print("Lower bound of the error: directions fitted to the lines labelled with them, the camera known");
+}
 
+/// Times photos with `SEGMENTS` segments.
+fn time_segments(sets: &[Option<GivenSet>; 2]) {
     let Some(set) = &sets[0] else { return absent("vp.ms", "the labelled segments are not there") };
     let many: Vec<Vec<Segment>> =
         set.images.iter().filter(|(s, _)| s.len() >= SEGMENTS).take(TIMED).map(|(s, _)| longest(s, SEGMENTS)).collect();
@@ -127,8 +137,10 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     let ms: Vec<f64> = many.iter().map(|s| one(s)).collect();
     println!("\n{} segments: {:.1} to {:.1} ms", SEGMENTS, quantile(&ms, 0.0), quantile(&ms, 1.0));
     figure("vp.ms", quantile(&ms, 0.5), "ms");
+}
 
-    // Leave out the shortest lines.
+/// Plots error against time when the shortest lines are left out.
+fn plot_longest(sets: &[Option<GivenSet>; 2]) {
     let mut plot = Plot::new("Vanishing points from the longest segments", "seconds", "100 - AUC@10, %");
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
         for (method, params) in &methods()[..2] {

@@ -161,13 +161,83 @@ fn write(path: &Path, image: &Image) -> Result<(), String> {
         .map_err(|e| e.to_string())
 }
 
-fn run(pool: &Pool, source: &Image) -> Result<(), String> {
-    let folder: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("out/bench");
-    std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
-    let [image, out] = ["warp_image.bin", "warp_result.bin"].map(|name| folder.join(name));
-    let mut peer = Peer::start("segment", "warp.py")?;
-    write(&image, source)?;
+/// The process of the peer, and the files through which it gets the source and returns its results.
+struct Exchange {
+    peer: Peer,
+    image: PathBuf,
+    out: PathBuf,
+}
 
+impl Exchange {
+    fn new(source: &Image) -> Result<Self, String> {
+        let folder: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("out/bench");
+        std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
+        let [image, out] = ["warp_image.bin", "warp_result.bin"].map(|name| folder.join(name));
+        let peer = Peer::start("segment", "warp.py")?;
+        write(&image, source)?;
+        Ok(Self { peer, image, out })
+    }
+
+    /// A request to the peer as JSON.
+    fn request(&self, map: &Homography, interpolation: &str) -> String {
+        let half = DMat3::from_translation(DVec2::splat(0.5));
+        let matrix = half.inverse() * map.0 * half;
+        let rows: Vec<f64> = (0..9).map(|k| matrix.col(k % 3)[k / 3]).collect();
+        serde_json::json!({
+            "image": self.image, "width": SOURCE[0], "height": SOURCE[1], "map": rows, "out_width": OUT[0],
+            "out_height": OUT[1], "interpolation": interpolation, "out": self.out,
+        })
+        .to_string()
+    }
+
+    /// The peer's latest result.
+    fn result(&self) -> Result<Vec<f32>, String> {
+        let bytes = std::fs::read(&self.out).map_err(|e| e.to_string())?;
+        let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        Ok(bytes.chunks_exact(4).map(float).collect())
+    }
+}
+
+/// The library's warp of one map, followed by the peer's with each of `INTERPOLATIONS`.
+#[derive(Default)]
+struct Measured {
+    /// Wall-clock seconds of each round.
+    seconds: [Vec<f64>; 3],
+    /// Processor seconds of each round.
+    busy: [Vec<f64>; 3],
+    found: [Vec<f32>; 3],
+}
+
+/// Times the library and the peer in turns; the first round warms up.
+fn measure(pool: &Pool, source: &Image, map: &Homography, exchange: &mut Exchange) -> Result<Measured, String> {
+    let monitor = Monitor::default();
+    let mut measured = Measured::default();
+    let Measured { seconds, busy, found } = &mut measured;
+    for round in 0..=ROUNDS {
+        let warped = || warp(source, map, OUT[0], OUT[1], monitor.job()).unwrap();
+        let (on_processors, (taken, warped)) = pool.run(|| time(Clock::Process, || time(Clock::Wall, warped)));
+        seconds[0].push(taken);
+        busy[0].push(on_processors);
+        found[0] = warped.data;
+        for (k, interpolation) in INTERPOLATIONS.iter().enumerate() {
+            let request = exchange.request(map, interpolation);
+            let answer = exchange.peer.ask(&request)?;
+            for (name, to) in [("seconds", &mut *seconds), ("busy", &mut *busy)] {
+                to[k + 1].push(answer[name].as_f64().ok_or("no time in the answer")?);
+            }
+            if round == 0 {
+                found[k + 1] = exchange.result()?;
+            }
+        }
+        if round == 0 {
+            seconds.iter_mut().chain(&mut *busy).for_each(Vec::clear);
+        }
+    }
+    Ok(measured)
+}
+
+fn run(pool: &Pool, source: &Image) -> Result<(), String> {
+    let mut exchange = Exchange::new(source)?;
     let head = [
         "map and pixels",
         "ours dB",
@@ -184,40 +254,7 @@ fn run(pool: &Pool, source: &Image) -> Result<(), String> {
     let [mut ratios, mut busy_ratios] = [Vec::new(), Vec::new()];
     let mut gains = Vec::new();
     for (name, map) in maps() {
-        let half = DMat3::from_translation(DVec2::splat(0.5));
-        let matrix = half.inverse() * map.0 * half;
-        let rows: Vec<f64> = (0..9).map(|k| matrix.col(k % 3)[k / 3]).collect();
-        let job = |interpolation: &str| {
-            serde_json::json!({
-                "image": image, "width": SOURCE[0], "height": SOURCE[1], "map": rows, "out_width": OUT[0],
-                "out_height": OUT[1], "interpolation": interpolation, "out": out,
-            })
-            .to_string()
-        };
-        let monitor = Monitor::default();
-        let [mut seconds, mut busy]: [[Vec<f64>; 3]; 2] = Default::default();
-        let mut found: [Vec<f32>; 3] = Default::default();
-        for round in 0..=ROUNDS {
-            let warped = || warp(source, &map, OUT[0], OUT[1], monitor.job()).unwrap();
-            let (on_processors, (taken, warped)) = pool.run(|| time(Clock::Process, || time(Clock::Wall, warped)));
-            seconds[0].push(taken);
-            busy[0].push(on_processors);
-            found[0] = warped.data;
-            for (k, interpolation) in INTERPOLATIONS.iter().enumerate() {
-                let answer = peer.ask(&job(interpolation))?;
-                for (name, to) in [("seconds", &mut seconds), ("busy", &mut busy)] {
-                    to[k + 1].push(answer[name].as_f64().ok_or("no time in the answer")?);
-                }
-                if round == 0 {
-                    let bytes = std::fs::read(&out).map_err(|e| e.to_string())?;
-                    let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
-                    found[k + 1] = bytes.chunks_exact(4).map(float).collect();
-                }
-            }
-            if round == 0 {
-                seconds.iter_mut().chain(&mut busy).for_each(Vec::clear);
-            }
-        }
+        let Measured { seconds, busy, found } = measure(pool, source, &map, &mut exchange)?;
         let (truth, sizes) = (truth(&map), minifications(&map));
         let ms = seconds.iter().chain(&busy).map(|s| format!("{:.1}", 1e3 * median(s))).collect::<Vec<_>>();
         for (kind, admits) in
@@ -241,7 +278,7 @@ fn run(pool: &Pool, source: &Image) -> Result<(), String> {
         busy_ratios.push(ratio(&busy));
     }
     table.print("Warps of three channels, and their PSNR beside the exact picture");
-    for path in [image, out] {
+    for path in [exchange.image, exchange.out] {
         let _ = std::fs::remove_file(path);
     }
     println!("time of OpenCV's cubic over ours: {ratios:.2?}, of the processors {busy_ratios:.2?}");

@@ -24,8 +24,8 @@
 //! `f64`.
 //!
 //! References:
-//! - Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization; and for its last step the
-//!   adjoint light tracing of Lipp et al. 2024, which a linear solve replaces here.
+//! - Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization; and for its last step
+//!   the adjoint light tracing of Lipp et al. 2024, which a linear solve replaces here.
 //! - Fišer et al. 2016: StyLit, illumination-guided example-based stylization of 3D renderings.
 //! - Efros and Freeman 2001: Image quilting. Felzenszwalb and Huttenlocher 2012: Distance transforms of sampled
 //!   functions.

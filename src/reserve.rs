@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_small_is_refused_and_no_use() {
+    fn large_requests_are_refused_and_not_counted() {
         static RESERVE: Reserve = Reserve::new();
         assert!(RESERVE.take(layout(MAX_ALLOCATION + 1, 1)).is_null() && RESERVE.take(layout(1, 2 * PAGE)).is_null());
         assert_eq!(RESERVE.uses.load(Ordering::Relaxed), 0);
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn what_grows_keeps_what_it_holds() {
+    fn growing_an_allocation_keeps_its_contents() {
         static ALLOCATOR: Allocator = Allocator(Reserve::new());
         // SAFETY: the layouts are those of the preceding calls.
         unsafe {

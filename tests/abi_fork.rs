@@ -89,13 +89,13 @@ impl Objects {
         unsafe {
             vec![
                 luxfer_context_retain(self.context),
-                luxfer_image_create(self.context, &view, (made as *mut *mut c_void).cast()),
-                luxfer_render_create(self.context, (other as *mut *mut c_void).cast()),
+                luxfer_image_create(self.context, &view, std::ptr::from_mut(made).cast()),
+                luxfer_render_create(self.context, std::ptr::from_mut(other).cast()),
                 luxfer_image_retain(self.image),
                 luxfer_image_read(self.image, 0, &view),
                 trace(self.scene).0,
                 luxfer_render_set_scene(self.render, self.scene),
-                luxfer_render_start(self.render, null(), (job as *mut *mut c_void).cast()),
+                luxfer_render_start(self.render, null(), std::ptr::from_mut(job).cast()),
                 luxfer_job_poll(self.job, null_mut(), null_mut()),
                 luxfer_job_status(self.job),
                 luxfer_job_cancel(self.job),

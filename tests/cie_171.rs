@@ -216,8 +216,8 @@ fn case_5_8_internal_reflected_component() {
     }
 }
 
-/// 5.9, sky component under an unglazed roof opening, of a uniform sky: `π L` times the opening's configuration factor, on the
-/// floor and on walls.
+/// 5.9, sky component under an unglazed roof opening, of a uniform sky: `π L` times the opening's configuration
+/// factor, on the floor and on walls.
 #[test]
 fn case_5_9_sky_component_for_a_roof_opening() {
     let (low, high) = ([1.0f32, 1.5], [3.0f32, 2.5]);

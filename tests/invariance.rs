@@ -16,7 +16,8 @@ use luxfer::segment::{Stroke, StrokeSet};
 use luxfer::transfer::{Input, Params, Stage, Transfer};
 use std::sync::Arc;
 
-/// A closed room with a lamp in its ceiling, a lacquered box, a mirror and a point light; lengths are multiples of 1/16 m.
+/// A closed room with a lamp in its ceiling, a lacquered box, a mirror and a point light; lengths are multiples of
+/// 1/16 m.
 fn room() -> (Scene, Camera) {
     let size = vec3(4.0, 2.5, 5.0);
     let [x, y, z] = [Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z];

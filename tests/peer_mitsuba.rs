@@ -1,12 +1,12 @@
 //! A Cornell box of our own against Mitsuba 3, another unbiased path tracer, within the joint confidence interval.
 //!
-//! Both render independent images of the same GLB that differ in the seed alone. The image is cut into blocks; the scatter of
-//! a block's mean among the images gives the variance of the mean of all, whatever sampling does inside one. Each block and
-//! channel then is a Welch's t-test, at 0.1 % for all of them together (Šidák); one more is that of the image's mean. The
-//! seeds are fixed, so a pass is a pass every time.
+//! Both render independent images of the same GLB that differ in the seed alone. The image is cut into blocks; the
+//! scatter of a block's mean among the images gives the variance of the mean of all, whatever sampling does inside
+//! one. Each block and channel then is a Welch's t-test, at 0.1 % for all of them together (Šidák); one more is that
+//! of the image's mean. The seeds are fixed, so a pass is a pass every time.
 //!
-//! `make setup` installs Mitsuba from PyPI into target/peers. Without it there is nothing to compare with: the test says so,
-//! except in continuous integration (CI set), where it fails.
+//! `make setup` installs Mitsuba from PyPI into target/peers. Without it there is nothing to compare with: the test
+//! says so, except in continuous integration (CI set), where it fails.
 
 use glam::{Quat, Vec3};
 use luxfer::exec::Pool;

@@ -8,7 +8,8 @@ use luxfer::image::{Image, colour};
 use luxfer::job::Monitor;
 use std::path::PathBuf;
 
-/// The ceiling and the mask of its lights: the lamps it is known to have, or else whatever is brighter than `threshold`.
+/// The ceiling and the mask of its lights: the lamps it is known to have, or else whatever is brighter than
+/// `threshold`.
 fn ceiling(name: &str, threshold: f32) -> Option<(Image, Image)> {
     let root = std::env::var("LUXFER_TEST_DATA").unwrap_or_else(|_| "../shared/data".into());
     let folder = PathBuf::from(root).join("photo_truth/ceiling_ortho");

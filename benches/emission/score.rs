@@ -25,7 +25,8 @@ pub struct Score {
 }
 
 impl Score {
-    /// Scores a texture whose exemplar shows lamps of the given luminance at a share `filled` of the places.
+    /// Scores a texture whose exemplar shows lamps of the given luminance at the share `filled` of the places of the
+    /// design.
     pub fn of(result: &Emission, design: &Design, filled: f64, luminance_of_lamps: f64) -> Self {
         let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
         let lamps = photos::whole(result);

@@ -268,7 +268,7 @@ fn point(value: &Value) -> Option<DVec2> {
 
 fn matrix(value: &Value) -> Option<Homography> {
     let numbers: Option<Vec<f64>> =
-        value.as_array()?.iter().flat_map(|row| row.as_array()).flatten().map(Value::as_f64).collect();
+        value.as_array()?.iter().filter_map(|row| row.as_array()).flatten().map(Value::as_f64).collect();
     let numbers: [f64; 9] = numbers?.try_into().ok()?;
     Some(Homography(DMat3::from_cols_array(&numbers).transpose()))
 }

@@ -55,21 +55,33 @@ fn in_integers(features: &QuantisedImage, pairs: &[[usize; 2]]) -> Vec<u32> {
     pairs.iter().map(|&[a, b]| kernel.distance(patch(a), patch(b), RUN, PATCH, u32::MAX)).collect()
 }
 
+/// Four channels of a picture: waves with grain.
+fn image(first: u64) -> Image {
+    Image::from_fn(SIDE, SIDE, |x, y| -> [f32; 4] {
+        std::array::from_fn(|c| {
+            let wave = 0.5 + 0.4 * (0.05 * (x * (c + 1)) as f32 + 0.03 * (first as f32 + 1.0) * y as f32).sin();
+            wave + 0.02 * Rng::new(first, &[x as u64, y as u64, c as u64]).next_f32()
+        })
+    })
+    .expect("an image")
+}
+
+/// Pairs of random patches, each given by the index of its first sample.
+fn random_pairs() -> Vec<[usize; 2]> {
+    let mut rng = Rng::new(6, &[]);
+    let mut place = || {
+        let mut side = || (rng.next_f64() * (SIDE - PATCH) as f64) as usize;
+        (side() * SIDE + side()) * CHANNELS
+    };
+    (0..PAIRS).map(|_| [place(), place()]).collect()
+}
+
 pub fn measure(study: &mut Study) {
     #[cfg(target_arch = "x86_64")]
     if !(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("f16c")) {
         println!("# distances of patches: this processor has no AVX2");
         return;
     }
-    let image = |first: u64| {
-        Image::from_fn(SIDE, SIDE, |x, y| -> [f32; 4] {
-            std::array::from_fn(|c| {
-                let wave = 0.5 + 0.4 * (0.05 * (x * (c + 1)) as f32 + 0.03 * (first as f32 + 1.0) * y as f32).sin();
-                wave + 0.02 * Rng::new(first, &[x as u64, y as u64, c as u64]).next_f32()
-            })
-        })
-        .expect("an image")
-    };
     // Matched images come from 8-bit files or renderings; here their values are exact in f32.
     let images: Vec<Image> = (0..CHANNELS as u64 / 4).map(image).collect();
     let weights = [1.0; CHANNELS];
@@ -82,13 +94,7 @@ pub fn measure(study: &mut Study) {
     let narrow: Vec<f32> = (0..SIDE * SIDE).flat_map(samples).collect();
     let halves: Vec<f16> = narrow.iter().map(|&v| f16::from_f32(v)).collect();
 
-    let mut rng = Rng::new(6, &[]);
-    let mut place = || {
-        let mut side = || (rng.next_f64() * (SIDE - PATCH) as f64) as usize;
-        (side() * SIDE + side()) * CHANNELS
-    };
-    let pairs: Vec<[usize; 2]> = (0..PAIRS).map(|_| [place(), place()]).collect();
-
+    let pairs = random_pairs();
     let exact = |[a, b]: [usize; 2]| {
         let row = |r: usize| (0..RUN).map(move |i| r * SIDE * CHANNELS + i);
         (0..PATCH).flat_map(row).map(|i| (f64::from(narrow[a + i]) - f64::from(narrow[b + i])).powi(2)).sum::<f64>()

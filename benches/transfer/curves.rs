@@ -27,17 +27,7 @@ const ROUNDS: u64 = 3;
 pub fn draw() {
     let photo =
         office_photo(&photo::Params { width: PHOTO[0], height: PHOTO[1], samples: 16, ..photo::Params::default() });
-    let (seconds, truth) = time(Clock::Wall, || {
-        let mut fine = defaults();
-        fine.max_texels *= 2;
-        fine.relight.target_error *= 0.1;
-        fine.render.samples *= 100;
-        (fine.relight.seed, fine.render.seed) = (1001, 1002);
-        let mut transfer = transfer(photo.clone(), fine);
-        run(&mut transfer, Stage::View, Stage::Render);
-        picture(&transfer)
-    });
-    println!("# the reference took {seconds:.1} s");
+    let truth = reference(&photo);
 
     // The stages before the light, run once for all curves that do not change them.
     let mut lit = transfer(photo.clone(), defaults());
@@ -87,6 +77,22 @@ pub fn draw() {
     });
     study.table.print("a whole transfer against one of a hundred times as many paths, 2 threads");
     study.plot.write("transfer").expect("out/bench can be written to");
+}
+
+/// The picture of a transfer with more paths, a finer texture and a more accurate strength.
+fn reference(photo: &Image) -> Image {
+    let (seconds, truth) = time(Clock::Wall, || {
+        let mut fine = defaults();
+        fine.max_texels *= 2;
+        fine.relight.target_error *= 0.1;
+        fine.render.samples *= 100;
+        (fine.relight.seed, fine.render.seed) = (1001, 1002);
+        let mut transfer = transfer(photo.clone(), fine);
+        run(&mut transfer, Stage::View, Stage::Render);
+        picture(&transfer)
+    });
+    println!("# the reference took {seconds:.1} s");
+    truth
 }
 
 /// The defaults of the library for a small picture.

@@ -75,7 +75,7 @@ fn stage() -> Builder {
     b
 }
 
-/// Glossy red.
+/// Adds the glossy red paint of the objects.
 fn paint(b: &mut Builder) -> usize {
     let red = b.paint("Red", Vec3::new(0.62, 0.035, 0.03), 0.22);
     b.scene.materials[red].ior = 1.6;

@@ -4,12 +4,11 @@
 //! unwarped photo + light + valid ─▶ exemplar ─▶ lattice ─▶ quilt ─▶ lamps ─▶ compose ─▶ agreement
 //! ```
 //! 1. [`exemplar`]: the usable part of the photo, its lights (connected components) and their roles, and a reduced
-//! size to work at.
+//!    size to work at.
 //! 2. [`lattice`]: the lattice the lamps lie on, from the autocorrelation of the mask, and its sites that the border
-//! cuts.
+//!    cuts.
 //! 3. [`quilt`]: metadata (confidence, signed x and y distance to the nearest light), and quilting over colour and
-//! metadata with
-//!    minimum-error seams, held to the lattice, the light in balance.
+//!    metadata with minimum-error seams, held to the lattice, the light in balance.
 //! 4. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it. Outlines, kinds, colours.
 //! 5. [`compose`]: the composition of positions, and full detail from the photo; the lamps as a list.
 //! 6. [`agreement`]: how far the texture's statistics are from the exemplar's, and how far by sampling alone.

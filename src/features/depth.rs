@@ -76,7 +76,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     Ok(surface)
 }
 
-/// Known inverse depths at regular intervals among all known ones, enough for quantiles to a thousandth.
+/// Samples the known inverse depths at regular intervals: enough to estimate quantiles to a thousandth.
 fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + Sync, job: Job) -> Result<Vec<f32>> {
     let (width, height) = (depth.width, depth.height);
     let at = |x: usize, y: usize| inverse_at(x, y, depth.data[y * width + x]);

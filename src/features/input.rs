@@ -86,7 +86,7 @@ pub enum DepthSource {
     Caller,
     /// A network supplied by the caller.
     Network,
-    /// The box room of [`Features::layout`].
+    /// The box room of [`Features::layout`](super::Features::layout).
     Layout,
     /// The prior that uses no information from the photo.
     Neutral,

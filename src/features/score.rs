@@ -30,7 +30,7 @@ const ELSEWHERE: f64 = 1.0;
 /// Sums run in lanes, whose order is independent of the processor.
 const LANES: usize = 8;
 
-/// A segment, which is consistent with some faces and not with others.
+/// A segment and the room axis that it runs along, which decides which faces can contain it.
 struct RoomSegment {
     axis: usize,
     /// Ray through its midpoint, in room axes.
@@ -55,7 +55,8 @@ struct Points {
 pub struct Quadrant {
     /// Sample points for each axis.
     points: [Points; 3],
-    /// Absolute coordinates of the rays of stroke samples, and the weight of each if it lies on the plane's face.
+    /// For each stroke sample the absolute coordinates of its ray, and its weight in the score of the face that it
+    /// hits.
     stroke_samples: Vec<(DVec3, f64)>,
 }
 

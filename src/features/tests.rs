@@ -101,7 +101,7 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
             for x in 0..width {
                 let p = features.image.pixel(x, y);
                 let (z, face) = truth(&camera, &sides, x, y);
-                // Include creases: there the window moves to one side.
+                // Include pixels at creases, where the fit uses a window on one side.
                 let off = Vec3::from_slice(&p[7..10]).angle_between(normals[face]);
                 all += 1;
                 exact += usize::from(off < 1e-3);

@@ -74,7 +74,7 @@ fn pairs_share_their_exposure() {
 }
 
 #[test]
-fn motion_is_that_of_the_camera_and_knows_what_was_hidden() {
+fn motion_follows_the_camera_and_marks_occlusions() {
     let at = |shift: f32| {
         let mut scene = demo::sphere_on_table().unwrap();
         let camera = &mut scene.cameras[0];

@@ -11,7 +11,7 @@ const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(0.180_480_788_401_834_3, 0.072_192_315_360_733_7, 0.950_532_152_249_660_5),
 );
 
-/// Decodes one sRGB value; extended to negative values by symmetry, and linear in scale beyond 1.
+/// Decodes one sRGB value. The curve continues above 1, and it is odd: negative values mirror positive ones.
 pub fn srgb_to_linear(v: f32) -> f32 {
     let a = v.abs();
     let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };

@@ -1,4 +1,4 @@
-//! The parts that picture files are made of, found without decoding them: slices of the file, never more.
+//! Segments and chunks of picture files, found without decoding. Each is a slice of the file.
 
 /// Payloads of the segments of a JPEG before its pixels, with their markers.
 pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
@@ -7,7 +7,7 @@ pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
         // Markers begin with any number of 0xff.
         let at = rest.iter().position(|&b| b != 0xff)?;
         let (&marker, after) = rest.get(at..)?.split_first()?;
-        // At the start of a scan, or of what is none of a marker, the segments end.
+        // The segments end at the start of a scan, or at bytes that are not a marker.
         if at == 0 || matches!(marker, 0x00 | 0xd8..=0xda) {
             return None;
         }
@@ -18,27 +18,27 @@ pub fn jpeg_segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
     })
 }
 
-/// Chunks of a PNG: name, length as it is said to be, and content as far as the file has it.
+/// Chunks of a PNG: name, stated length, and content, which ends with the file if the file is truncated.
 pub fn png_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], usize, &[u8])> {
     let mut rest = bytes.get(8..).unwrap_or_default();
     std::iter::from_fn(move || {
         let (&[a, b, c, d, ..], _) = rest.split_first_chunk::<8>()?;
         let (name, content) = rest[4..].split_first_chunk()?;
         let length = u32::from_be_bytes([a, b, c, d]) as usize;
-        // Beyond its content lie four bytes of a checksum.
+        // A checksum of four bytes follows the content.
         rest = content.get(length.saturating_add(4)..).unwrap_or_default();
         Some((name, length, &content[..length.min(content.len())]))
     })
 }
 
-/// Chunks of a RIFF file such as WebP: name, and content as far as the file has it.
+/// Chunks of a RIFF file such as WebP: name and content, which ends with the file if the file is truncated.
 pub fn riff_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
     let mut rest = bytes.get(12..).unwrap_or_default();
     std::iter::from_fn(move || {
         let (name, after) = rest.split_first_chunk()?;
         let (length, content) = after.split_first_chunk()?;
         let length = u32::from_le_bytes(*length) as usize;
-        // Chunks begin at even places.
+        // Chunks begin at even offsets.
         rest = content.get(length.saturating_add(length % 2)..).unwrap_or_default();
         Some((name, &content[..length.min(content.len())]))
     })
@@ -47,11 +47,11 @@ pub fn riff_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
 /// Left, top, width and height of the first frame of a GIF within its screen.
 pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
-    // The screen and its colours.
+    // Skip the logical screen descriptor and the global colour table.
     let mut rest = bytes.get(13 + table(*bytes.get(10)?)..)?;
     loop {
         match rest {
-            // An extension: a label, then blocks with their lengths, the last of which is empty.
+            // An extension: a label, then sub-blocks that begin with their length; an empty sub-block ends it.
             [0x21, _, blocks @ ..] => {
                 let mut blocks = blocks;
                 while let (&length @ 1.., after) = blocks.split_first()? {
@@ -68,7 +68,7 @@ pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     }
 }
 
-/// Sub-blocks of the first application extension of a GIF with this name, one after the other; None if it has none.
+/// Contents of the sub-blocks of the first application extension with this name in a GIF; `None` without one.
 pub fn gif_extension<'a>(bytes: &'a [u8], name: &[u8; 11]) -> Option<impl Iterator<Item = &'a [u8]> + use<'a>> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
     let mut rest = bytes.strip_prefix(b"GIF8")?.get(9 + table(*bytes.get(10)?)..)?;
@@ -85,7 +85,7 @@ pub fn gif_extension<'a>(bytes: &'a [u8], name: &[u8; 11]) -> Option<impl Iterat
     None
 }
 
-/// Sub-blocks of a GIF up to the empty one: how many bytes each takes with its length, and its content.
+/// Sub-blocks of a GIF up to the empty one: the bytes of each including its length, and its content.
 fn sub_blocks(mut rest: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     std::iter::from_fn(move || {
         let (&length @ 1.., after) = rest.split_first()? else { return None };
@@ -95,7 +95,7 @@ fn sub_blocks(mut rest: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     })
 }
 
-/// The kind of colour space in the header of a BMP, of version 4 or later, and the profile that is embedded in it.
+/// The type of the colour space in the header of a BMP of version 4 or later, and the embedded profile.
 pub fn bmp_space(bytes: &[u8]) -> Option<([u8; 4], Option<&[u8]>)> {
     const HEADER: usize = 14;
     let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(HEADER + at..)?.first_chunk()?));
@@ -123,7 +123,7 @@ mod tests {
         for cut in 0..file.len() {
             assert!(jpeg_segments(&file[..cut]).count() <= 2);
         }
-        // A length below its own two bytes.
+        // A segment whose length is less than the two bytes of the length itself.
         file[5] = 1;
         assert_eq!(jpeg_segments(&file).count(), 0);
     }

@@ -43,9 +43,9 @@ pub struct Target {
 }
 
 enum Way {
-    /// A new file, with all links followed.
+    /// The path of a new file, with all symbolic links resolved.
     Create(PathBuf),
-    /// An existing regular file, with all links followed.
+    /// The path of an existing regular file, with all symbolic links resolved.
     Replace(PathBuf, Metadata),
     InPlace,
 }

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn truncated_and_lying_files_are_errors() {
+    fn truncated_and_inconsistent_files_are_errors() {
         let image = picture();
         let png = encode_png(&image, 1.0).unwrap();
         let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }], &[]).unwrap();

@@ -1,4 +1,4 @@
-//! The interpretation of a file's samples, and the limits of its header.
+//! The interpretation of a file's samples, and limits of the sizes that its header states.
 
 use super::MAX_SIDE;
 use crate::error::{Error, ErrorKind, Result};
@@ -6,8 +6,8 @@ use crate::error::{Error, ErrorKind, Result};
 /// Maximum number of pixels of a file: 2^28, a 16 k square.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
-/// Upper bound of the compression ratio of OpenEXR and TIFF files (deflate: 1032, and PXR24 drops a quarter before;
-/// LZW: 1330).
+/// Upper bound of the compression ratio of OpenEXR and TIFF files (deflate: 1032, or 1376 after PXR24 has dropped a
+/// quarter of the bytes; LZW: 1330).
 pub(super) const MAX_COMPRESSION: usize = 1400;
 
 /// Interpretation of the samples of a file.

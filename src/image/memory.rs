@@ -40,7 +40,7 @@ pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usi
         // a row of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
-        // The frame, if it is narrower than the screen, and LZW.
+        // The frame, if it is narrower than the screen, and the tables of the LZW decoder.
         ImageFormat::Gif => 5 * width * height + (1 << 20),
         _ => 16 * width * pixel_bytes + (1 << 20),
     }
@@ -63,8 +63,8 @@ fn webp(file: &[u8], width: usize, height: usize) -> usize {
     if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {
         return lossy;
     }
-    // RGBA, twice for animations; transforms, and the choice of codes for blocks of 4 x 4 pixels; code tables: the
-    // shortest codes take 12 bytes of the file and have a table of 4 KiB.
+    // Per pixel: RGBA, twice for animations; the transforms; and for each block of 4 x 4 pixels the index of its code
+    // tables. Per byte of the file: code tables, of which the shortest take 12 bytes in the file and 4 KiB in memory.
     11 * width * height + 400 * file.len() + lossy
 }
 
@@ -138,7 +138,7 @@ pub(super) fn layer(headers: &[Header]) -> usize {
     let [block_width, block_height] = block_size(header);
     let channels = &header.channels;
     let transform = match header.compression {
-        // 768 bytes for 8 x 8 pixels.
+        // DWA works on blocks of 8 x 8 pixels, which take 768 bytes per channel.
         Compression::DWAA(_) | Compression::DWAB(_) => 13 * channels.list.len(),
         _ => 0,
     };
@@ -156,8 +156,8 @@ fn tiles(width: usize, height: usize) -> usize {
     width.div_ceil(TILE) * height.div_ceil(TILE)
 }
 
-/// Checks the memory for writing an OpenEXR file, in addition to the bytes of [`max_file_bytes`]: blocks in compression,
-/// and their list.
+/// Checks the memory for writing an OpenEXR file, in addition to the bytes of [`max_file_bytes`]: blocks in
+/// compression, and their list.
 pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
 }

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn doubles_come_back_to_the_bit_and_anyone_sees_the_picture() {
+    fn doubles_are_lossless_and_other_readers_see_the_picture() {
         let (head, picture, bytes) = file();
         let mut seen = 0;
         decode(&bytes, &head, |at, numbers| {
@@ -219,7 +219,7 @@ mod tests {
         }
         let other = Head { numbers: 4, ..head.clone() };
         assert_eq!(decode(&bytes, &other, |_, _| ()).unwrap_err().kind, ErrorKind::Format);
-        // A picture of another kind.
+        // OpenEXR files without numbers, and with a layer.
         let layer = super::super::io::Layer { name: "", image: &picture, channels: &["R", "G", "B"] };
         let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
         assert_eq!(Head::of(&headers(&plain).unwrap()).unwrap().numbers, 0);

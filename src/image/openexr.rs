@@ -21,7 +21,7 @@ pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Primaries with which R, G and B are CIE X, Y and Z [convention].
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
-/// Maximum size in bytes of a tile that any file may have; larger ones must be justified by the picture.
+/// Maximum size in bytes of a tile in a short file; larger tiles need a file of corresponding length.
 const MAX_TILE_BYTES: usize = 64 << 20;
 
 pub(super) fn broken(e: exr::error::Error) -> Error {
@@ -49,7 +49,7 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
         {
             return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
         }
-        // Tiles may be larger than the picture; memory is limited by the stored size of the tile.
+        // A tile may be larger than the picture, and the decoder allocates all of it.
         let tile = memory::block_bytes(header);
         if tile > bytes.len().saturating_mul(MAX_COMPRESSION).max(MAX_TILE_BYTES) {
             return Err(Error::format(format!(
@@ -177,7 +177,7 @@ fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32
         None if neutral.is_some() => Chromaticities::REC709,
         None => return Space::Unstated,
     };
-    // CIE XYZ describes colours, not a scene: its white is the equal-energy white of its equations.
+    // Take D65 as the white of a picture in CIE XYZ: (1/3, 1/3) only defines the coordinates.
     let is_xyz = chromaticities.primaries == XYZ;
     let white = if is_xyz { Chromaticities::REC709.white } else { chromaticities.white };
     let white = neutral.map_or(white, point);
@@ -327,7 +327,7 @@ mod tests {
             let data = decode_photo(&bytes, Encoding::Linear).unwrap();
             assert_eq!((data.image.pixel(0, 0), data.metadata.colour), (&[1.0, 0.0, 0.0][..], FileColour::Data));
         }
-        // XYZ is colorimetry under D65, with or without a stated neutral: check X.
+        // The white of a picture in XYZ is D65, with or without a stated neutral: check X.
         for neutral in [None, Some(point(0.3127, 0.3290))] {
             let xyz = colourful([0, 0], [1, 1], ([0, 0], [1, 1]), |f| {
                 f.attributes.chromaticities = Some(attribute::Chromaticities {

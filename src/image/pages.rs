@@ -8,7 +8,7 @@ use std::mem::MaybeUninit;
 /// Bytes of a huge page.
 pub(crate) const HUGE: usize = 2 << 20;
 
-/// Requests huge pages for the whole ones inside a part of a buffer; a hint, on Linux only.
+/// Requests huge pages for all of a buffer except the ends that do not fill one; a hint, on Linux only.
 pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
     #[cfg(all(target_os = "linux", not(miri)))]
     {

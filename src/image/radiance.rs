@@ -69,12 +69,13 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Number and length of the scan lines and their orientation, from a line such as `-Y 480 +X 640`: the direction from
-/// one scan line to the next, and along one.
+/// Number and length of the scan lines, and their orientation, from a header line such as `-Y 480 +X 640`. The line
+/// states the direction from one scan line to the next and its number of lines, then the direction along a scan line
+/// and its length.
 fn resolution(line: &[u8]) -> Result<[usize; 3]> {
     let text = String::from_utf8_lossy(line);
     let wrong =
-        || Error::format(format!("the Radiance file's resolution is {:.40}; it must be like -Y 480 +X 640", text));
+        || Error::format(format!("the Radiance file's resolution is {text:.40}; it must be like -Y 480 +X 640"));
     let parts: Vec<&str> = text.split_whitespace().take(5).collect();
     let [across, rows, along, columns] = parts[..] else { return Err(wrong()) };
     // The orientation as EXIF numbers it.
@@ -267,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_told_from_other_formats() {
+    fn damaged_files_are_distinguished_from_other_formats() {
         let kind = |bytes: &[u8]| decode_photo(bytes, Encoding::Srgb).unwrap_err().kind;
         let whole = file("", "-Y 2 +X 3");
         for cut in 0..whole.len() {

@@ -48,8 +48,8 @@ fn decoder(bytes: &[u8], format: ImageFormat) -> Result<impl ImageDecoder + '_> 
     Ok(decoder)
 }
 
-/// The decoder assumes that a PNG's palette holds whole colours, and allocates any memory for other chunks and for a
-/// row.
+/// Checks the chunks of a PNG for its decoder, which assumes that the palette has three bytes per colour, and which
+/// allocates without limit for other chunks and for a row.
 fn check_chunks(bytes: &[u8]) -> Result<()> {
     for (name, length, content) in png_chunks(bytes) {
         if name == b"IHDR"
@@ -67,7 +67,8 @@ fn check_chunks(bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// The decoder allocates memory for a frame of any size, however small its screen.
+/// Checks the frame of a GIF for its decoder, which allocates memory for a frame of any size, however small the
+/// screen.
 fn check_frame(bytes: &[u8]) -> Result<()> {
     let screen = |at: usize| Some(usize::from(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?)));
     let sizes = gif_frame(bytes).zip(screen(6)).zip(screen(8));
@@ -250,7 +251,7 @@ mod tests {
             for cut in 0..needed {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "{name} cut at {cut}");
             }
-            // A changed byte may change the picture, and must not do more.
+            // A changed byte may cause an error or change the picture, but must not cause a panic.
             for at in 0..file.len().min(200) {
                 for value in [0, 1, 127, 255] {
                     let mut bad = file.clone();

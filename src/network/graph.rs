@@ -64,7 +64,7 @@ impl Network {
         let output = values.find(output_name)?;
 
         let mut network = Self { nodes, constants: values.constants, input, output, input_shape };
-        network.keep_what_counts();
+        network.drop_unused_nodes();
         Ok(network)
     }
 
@@ -74,7 +74,7 @@ impl Network {
     }
 
     /// Drops nodes that the output does not depend on, and records the last use of each value.
-    fn keep_what_counts(&mut self) {
+    fn drop_unused_nodes(&mut self) {
         let mut is_needed = vec![false; self.constants.len()];
         is_needed[self.output] = true;
         let mut kept = Vec::new();

@@ -6,9 +6,10 @@
 //! ```
 //!
 //! Files are not trusted. Shapes are checked where they are used, the output of a node is charged to a
-//! [`MemoryBudget`] before it is allocated, and a value is dropped after its last use; a file cannot make a run take
-//! more memory than [`MAX_BYTES`] in addition to its own weights. All loops work in units that do not depend on the
-//! number of threads: equal input yields equal bits. A cancel request is answered within one row of the largest layer.
+//! [`MemoryBudget`](tensor::MemoryBudget) before it is allocated, and a value is dropped after its last use; a file
+//! cannot make a run take more memory than [`MAX_BYTES`] in addition to its own weights. All loops work in units that
+//! do not depend on the number of threads: equal input yields equal bits. A cancel request is answered within one row
+//! of the largest layer.
 //!
 //! Existing runtimes are not used because they are unsuitable for a host's process: they keep threads of their own for
 //! good, print, abort the process when memory runs out, or cannot be cancelled.

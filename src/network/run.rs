@@ -6,8 +6,8 @@ use super::tensor::{MemoryBudget, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
-/// Maximum number of bytes of all values at a time, in addition to the network's own weights; temporary memory of a
-/// node may take the same again.
+/// Maximum number of bytes of all values at a time, in addition to the network's own weights; the temporary memory of
+/// a node may take as much again.
 pub const MAX_BYTES: usize = 1 << 30;
 
 impl Network {

@@ -111,7 +111,8 @@ fn products_of_stacks_of_matrices() {
         let (x, w) = (x.as_floats().unwrap(), w.as_floats().unwrap());
         close(&got, &out, |i| {
             let (matrix, row, column) = (i / columns / rows, i / columns % rows, i % columns);
-            // Matrices of the stacks: a's repeat along its axis of size 1, b's over the outermost.
+            // Broadcasting of the stacks: the matrices of `a` repeat along its axis of size 1, those of `b` along the
+            // outermost axis.
             let (m, n) = match a.len() {
                 4 if a[1] == 1 => (matrix / 3, matrix % 3),
                 _ => (matrix, 0),
@@ -134,7 +135,7 @@ fn products_of_stacks_of_matrices() {
 }
 
 #[test]
-fn what_goes_item_by_item_is_spread_as_in_numpy() {
+fn element_wise_operators_broadcast_as_in_numpy() {
     let x = noise(1, &[2, 3, 4]);
     let values = x.as_floats().unwrap().to_vec();
     for (shape, at) in
@@ -172,13 +173,14 @@ fn what_goes_item_by_item_is_spread_as_in_numpy() {
     }
 }
 
+fn expect(got: Tensor, shape: &[usize], values: &[f32]) {
+    assert_eq!((got.shape.as_slice(), got.as_floats().unwrap()), (shape, values));
+}
+
 #[test]
-fn items_are_put_where_they_belong() {
+fn items_are_rearranged_broadcast_padded_and_reduced() {
     let x = Tensor::floats(vec![2, 3], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     let ints = |values: &[i64]| Tensor::integers(vec![values.len()], values.to_vec());
-    let expect = |got: Tensor, shape: &[usize], values: &[f32]| {
-        assert_eq!((got.shape.as_slice(), got.as_floats().unwrap()), (shape, values));
-    };
     expect(node("Transpose", &x, &[], &[]), &[3, 2], &[0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
     expect(
         node(
@@ -216,6 +218,11 @@ fn items_are_put_where_they_belong() {
     expect(node("Reshape", &x, &[("s", &ints(&[0, -1, 1]))], &[]), &[2, 3, 1], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     expect(node("ReduceMean", &x, &[], &[Is("axes", &[0]), I("keepdims", 0)]), &[3], &[1.5, 2.5, 3.5]);
     expect(node("ReduceMax", &x, &[], &[Is("axes", &[-1])]), &[2, 1], &[2.0, 5.0]);
+}
+
+#[test]
+fn images_are_rearranged_resized_and_pooled() {
+    let ints = |values: &[i64]| Tensor::integers(vec![values.len()], values.to_vec());
     let depth = Tensor::floats(vec![1, 4, 1, 2], (0..8).map(|v| v as f32).collect());
     expect(
         node("DepthToSpace", &depth, &[], &[I("blocksize", 2)]),

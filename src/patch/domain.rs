@@ -17,8 +17,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// All patches of width `patch` of an image of `width × height` pixels whose pixels all lie in the mask, or, with
-    /// `any`, at least one of whose pixels does.
+    /// The patches of width `patch` in an image of `width × height` pixels that lie inside the mask; with `any`, also
+    /// the patches that only overlap it.
     pub fn new(width: usize, height: usize, patch: usize, mask: Option<&[bool]>, any: bool) -> Result<Self> {
         let (w, h) = (width + 1 - patch, height + 1 - patch);
         let mut member = try_vec(w * h, true)?;

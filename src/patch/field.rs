@@ -28,7 +28,7 @@ impl Field {
         Ok(Self { at: copy(&self.at)?, error: copy(&self.error)?, ..*self })
     }
 
-    /// Hints at the same relative position in an image with `base` patches.
+    /// A field of hints: each patch points to the same relative position among the patches of `base`.
     pub fn proportional(width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {
@@ -37,9 +37,9 @@ impl Field {
         Ok(field)
     }
 
-    /// The field at twice the resolution, as hints: twice the coarse match plus the parity of the pixel, clamped to
-    /// `base`. At the border, where the finer image has more patches than twice the coarse one, it extends the nearest
-    /// entry.
+    /// The field at twice the resolution; its matches are hints: twice the coarse match plus the parity of the pixel,
+    /// clamped to `base`. At the border, where the finer image has more patches than twice the coarse one, it extends
+    /// the nearest entry.
     pub fn upsample(&self, width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {

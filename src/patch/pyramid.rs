@@ -19,7 +19,7 @@ pub fn halve(image: &Image, job: Job) -> Result<Image> {
     pyramid::resize(image, level_size(image.width, 1), level_size(image.height, 1), job)
 }
 
-/// Halves a mask: a pixel is set if all pixels under it are, or, with `any`, at least one.
+/// Halves a mask: a pixel is set if all pixels that it covers are set; with `any`, if at least one of them is set.
 pub fn halve_mask(mask: &[bool], width: usize, height: usize, any: bool) -> Result<Vec<bool>> {
     let (w, h) = (level_size(width, 1), level_size(height, 1));
     let span = |i: usize, n: usize, of: usize| i * of / n..((i + 1) * of).div_ceil(n);

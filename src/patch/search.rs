@@ -295,7 +295,8 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Tries uniformly random positions if there is no match yet, then positions around the best one, at falling radii.
+    /// Tries uniformly random positions if there is no match yet, then positions around the best one, at falling
+    /// radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
         if self.error == u32::MAX {
@@ -352,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn joining_mends_strays_lowers_its_cost_and_leaves_what_fits() {
+    fn joining_corrects_outliers_lowers_the_cost_and_keeps_good_matches() {
         let (query, base) = (noise(70, 60), noise(70, 60));
         let allowed = Domain::new(70, 60, 5, None, false).unwrap();
         let search = Search {

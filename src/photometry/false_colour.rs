@@ -302,8 +302,7 @@ mod tests {
         assert_eq!([0.0, 0.5, 1500.0, 2e7, 1e-5].map(text), ["0", "0.5", "1500", "2e7", "1e-5"]);
     }
 
-    /// The bar is drawn beside the image, dark at the bottom and light at the top, with labels; images of any size
-    /// have one.
+    /// The bar is drawn beside images of any size, dark at the bottom and light at the top, with labels.
     #[test]
     fn the_bar_is_drawn() {
         let image = Image::from_fn(200, 300, |x, y| [(x * y) as f32]).unwrap();

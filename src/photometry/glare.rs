@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_glares_in_the_dark_and_bad_images_are_refused() {
+    fn dark_images_have_no_source_and_bad_images_are_refused() {
         let dark = rate(&Image::new(8, 8, 3).unwrap(), &Params { fov_y: 1.0, threshold: 0.0 }).unwrap();
         assert!(dark.ugr == f64::NEG_INFINITY && dark.sources.is_empty());
         let even = rate(&Image::from_fn(8, 8, |_, _| [50.0]).unwrap(), &Params { fov_y: 1.0, threshold: 0.0 }).unwrap();

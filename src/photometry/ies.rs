@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_files_are_read_back() {
         for l in [Luminaire::lambertian("panel", 3500.0, [0.6, 0.6, 0.0]), read(QUARTER.as_bytes()).unwrap()] {
             let again = read(write(&l).unwrap().as_bytes()).unwrap();
             assert_eq!(again, l);

@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn written_files_are_read_back() {
         let uneven = Luminaire {
             planes: vec![0.0, 30.0, 200.0],
             candela: [vec![1.0; 37], vec![2.0; 37], vec![3.0; 37]].concat(),

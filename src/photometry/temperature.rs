@@ -8,7 +8,7 @@
 use crate::image::colour;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-/// Range of temperatures in kelvin [convention].
+/// Range of temperatures in kelvin \[convention\].
 pub const MIN_KELVIN: f64 = 1000.0;
 pub const MAX_KELVIN: f64 = 20_000.0;
 
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blackbody_is_found_through_the_transport() {
+    fn a_blackbody_is_fitted_through_light_transport() {
         let (response, background) = (DVec3::new(0.3, 0.2, 0.1), DVec3::new(5.0, 4.0, 3.0));
         let target = background + response * blackbody(3500.0) * 800.0;
         let fit = fit(response, background, target).unwrap();

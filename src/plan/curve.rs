@@ -8,9 +8,9 @@ pub(super) struct Curve {
     /// Minimum and maximum time in seconds that it can use; 0 < minimum <= maximum.
     pub min_seconds: f64,
     pub max_seconds: f64,
-    /// Ascending times in seconds with the squared errors after them. Between them the squared error falls as a power
-    /// of the time, clamped to [`POWERS`]; beyond them as between the last two, but with at most the power
-    /// [`MAX_EXTRAPOLATED`].
+    /// Ascending times in seconds, each with the squared error after it. Between two of them the squared error falls
+    /// as a power of the time, whose exponent is clamped to [`POWERS`]. After the last one the exponent of the last
+    /// interval continues, but is at most [`MAX_EXTRAPOLATED`].
     pub points: [[f64; 2]; 3],
 }
 
@@ -38,7 +38,7 @@ impl Curve {
             return b.max(0.0);
         }
         let power = ((a / b).ln() / (t / s).ln()).clamp(POWERS[0], POWERS[1]);
-        // Both pieces are anchored at the middle point.
+        // Evaluate the power law from the middle point, and its continuation from the last point.
         let [known, beyond] = [seconds.min(last[0]), seconds.max(last[0])];
         middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_pass_through_what_is_known_of_them() {
+    fn curves_pass_through_their_points() {
         let curve = Curve { min_seconds: 1.0, max_seconds: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
         for ([seconds, square], expected) in curve.points.iter().map(|p| (*p, p[1])) {
             assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");

@@ -70,8 +70,8 @@ impl Picture {
         nets(paths).map(f64::from).map(|points| points * points * square(points)).sum::<f64>().sqrt() / f64::from(paths)
     }
 
-    /// The factor by which adaptive sampling reduces the number of paths for an error. The ideal saving, which the
-    /// pilot measures, is the square of the saving that doubling tiles one by one achieves.
+    /// The factor by which adaptive sampling reduces the number of paths for an error. The pilot measures the ideal
+    /// saving; doubling the paths of tiles one by one achieves its square root.
     fn saved(&self) -> f64 {
         self.pilot.adaptive_gain.sqrt()
     }

@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_rung_that_serves_the_goal_is_chosen() {
+    fn the_settings_that_reach_the_goal_are_chosen() {
         let rungs =
             [(1.0, 0.4), (2.0, 0.3), (4.0, 0.31), (8.0, 0.2)].map(|(seconds, error)| Expected { seconds, error });
         for (goal, expected) in [

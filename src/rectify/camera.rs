@@ -18,7 +18,7 @@ pub struct Oriented {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
-    /// The focal length before the lines were looked at.
+    /// The prior of the focal length.
     pub expected: Expected,
     /// For each input point, the index of the axis it became, if any.
     pub axis_of: Vec<Option<usize>>,

@@ -60,14 +60,14 @@ struct LineEstimate {
     corner: f64,
     /// Inverse variance of the estimate.
     weight: f64,
-    /// (d / R)².
-    place: f64,
+    /// Squared distance of the line from the centre: (d / R)².
+    squared_offset: f64,
 }
 
 impl LineEstimate {
     /// The estimate of k with the quadratic term evaluated at an approximate k.
     fn at_corner(&self, nearly: f64) -> f64 {
-        self.corner * (1.0 - 3.0 * nearly * self.place)
+        self.corner * (1.0 - 3.0 * nearly * self.squared_offset)
     }
 
     fn by(gradients: &Gradients, segment: &Segment, centre: DVec2, diagonal: f64) -> Option<Self> {
@@ -77,8 +77,8 @@ impl LineEstimate {
         let (bend, variance) = parabola(&places)?;
         let leverage = distance / (diagonal * diagonal);
         let weight = leverage * leverage / variance;
-        let place = (distance / diagonal).powi(2);
-        (weight > 0.0).then_some(Self { corner: bend / leverage, weight, place })
+        let squared_offset = (distance / diagonal).powi(2);
+        (weight > 0.0).then_some(Self { corner: bend / leverage, weight, squared_offset })
     }
 }
 
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn little_is_said_of_pictures_without_lines() {
+    fn pictures_without_lines_give_no_estimate() {
         let noise = |x: usize, y: usize| [Rng::new(3, &[x as u64, y as u64]).next_f32(); 3];
         let noise = Image::from_fn(200, 200, noise).unwrap();
         assert_eq!(measured(&noise), None);

@@ -25,7 +25,7 @@ impl Expected {
         }
     }
 
-    /// Longer by the given number of standard deviations.
+    /// The prior with a focal length that is longer by the given number of standard deviations.
     pub fn moved(self, deviations: f64) -> Self {
         Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
     }

@@ -7,8 +7,8 @@ use glam::{Vec4, Vec4Swizzles};
 /// Taps along each side of a pixel, and pixels in a register.
 pub const TAPS: usize = 4;
 
-/// Maximum number of samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after them that fill
-/// the register.
+/// Maximum number of samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after
+/// them that fill the register.
 pub const MAX_READ: usize = 16;
 
 /// Four neighbouring pixels with one channel or three.

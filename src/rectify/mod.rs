@@ -85,7 +85,7 @@ pub struct View {
     /// Distortion of straight lines by the lens; absent if the photo has too few lines, or if only segments were
     /// given.
     pub distortion: Option<Distortion>,
-    /// The focal length that was expected before the lines were looked at.
+    /// The prior of the focal length: from the metadata, or from photos in general.
     pub expected_focal: Expected,
 }
 

@@ -41,7 +41,8 @@ pub struct Params {
     /// Focal length in pixels, if known; > 0.
     pub focal: Option<f64>,
     /// Focal length in pixels that the photo's metadata gives, and its standard deviation; > 0. It counts as one more
-    /// observation beside the lines, if `focal` is absent. Without it the prior is 0.85 of the width, with a wide spread.
+    /// observation beside the lines, if `focal` is absent. Without it the prior is 0.85 of the width, with a wide
+    /// spread.
     pub expected_focal: Option<[f64; 2]>,
     /// Principal point in pixels: the point where the optical axis meets the image plane; the image centre if absent.
     /// In cropped photos and photos by shifted lenses it lies elsewhere, possibly outside the image.

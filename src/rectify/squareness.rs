@@ -36,8 +36,8 @@ impl Pair {
         Self { beside, cosine, slope, variance: along(a, q) + along(b, p) }
     }
 
-    /// The pair's constraint on the focal length if its angle is a right angle: the information, and the information
-    /// times the required change of the logarithm of the focal length.
+    /// The constraint that a right angle of the pair sets on the logarithm of the focal length: its information
+    /// (inverse variance), and the information times the required change.
     fn focal_constraint(&self) -> [f64; 2] {
         let weight = 1.0 / self.variance.max(1e-24);
         [weight * self.slope * self.slope, -weight * self.cosine * self.slope]

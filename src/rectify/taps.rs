@@ -33,8 +33,9 @@ pub struct Taps {
     pub column: [[i32; RUN]; TAPS],
     /// Offset of each row's first sample in the image data; valid if the row lies inside the image.
     pub start: [[usize; RUN]; TAPS],
-    /// Weights of the rows (`down`) and of the columns (`across`), which are equal for all rows. If `is_sheared`,
-    /// `across` alone counts: it holds the weights of each row's columns, and all of them together sum to 1.
+    /// The filter weights. Without shear the filter is separable: `down` holds the weights of the rows, and `across`
+    /// those of the columns, equal for all rows. If `is_sheared`, `across` holds the weights of all 16 taps, row by
+    /// row, and `down` is not used.
     pub down: [[f32; TAPS]; RUN],
     pub across: [[[f32; TAPS]; RUN]; TAPS],
     /// Whether the pixel is visible and all its taps lie inside the source.

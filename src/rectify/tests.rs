@@ -215,7 +215,7 @@ fn sets_without_a_vanishing_point_are_refused() {
 }
 
 #[test]
-fn segments_through_their_point_repeated_ones_and_worthless_ones_do_no_harm() {
+fn segments_through_the_point_repeated_or_degenerate_segments_are_harmless() {
     // All segments pass through one point; a third of them have their midpoint there.
     let point = DVec2::new(310.0, 240.0);
     let through = |i: usize| {
@@ -482,7 +482,7 @@ fn skewed(truth: &Perspective, skew: f64, tall: f64, noise: f64, seed: u64) -> V
 }
 
 #[test]
-fn right_angles_are_found_right_within_what_is_stated() {
+fn right_angles_are_measured_within_the_stated_error() {
     // Without a given focal length, the stated errors are conservative: an error of one direction changes its angle
     // and the focal length that the others imply in the same sense, which the estimate ignores.
     for (focal, range) in [(Some(700.0), 0.6..1.4), (None, 0.2..1.4)] {

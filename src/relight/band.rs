@@ -115,7 +115,7 @@ mod tests {
     use crate::rng::Rng;
 
     #[test]
-    fn slopes_are_central_differences_and_splines_keep_what_they_can() {
+    fn derivatives_equal_central_differences_and_splines_keep_constants() {
         let mut rng = Rng::new(1, &[]);
         let texel = |x: usize, y: usize| {
             let mut rng = Rng::new(2, &[x as u64, y as u64]);

@@ -1,7 +1,6 @@
 //! Statistics of independent batches: means, confidence intervals, and intervals of derived quantities.
 
-/// Number of batches of an estimate. With 32, Student's t is within 4 % of the normal quantile.
-/// [convention]
+/// Number of batches of an estimate. With 32, Student's t is within 4 % of the normal quantile. \[convention\]
 pub const BATCHES: usize = 32;
 
 /// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom. [convention]

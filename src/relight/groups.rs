@@ -1,9 +1,9 @@
 //! Powers of groups of lamps that best meet several goals, within bounds.
 //!
 //! Radiance is linear in the powers `x`. The best powers minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and
-//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which decides what
-//! the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without it). With one
-//! group and one goal this is the closed form of [`super::run`].
+//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which decides
+//! what the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without it). With
+//! one group and one goal this is the closed form of [`super::run`].
 //!
 //! A goal may be a limit, which counts only where it is violated ([`Sense`]).
 //!
@@ -24,7 +24,7 @@ use glam::DVec3;
 /// Luminance of linear RGB ([`crate::image::colour::luminance`]).
 pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
 
-/// Largest number of dimming levels. [convention]
+/// Largest number of dimming levels. \[convention\]
 pub const MAX_LEVELS: usize = 4096;
 
 /// Which changes of a group are allowed.
@@ -209,7 +209,7 @@ impl Equations {
         let equal = sided::common_power(&together, &self.right, &self.senses);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
         let Self { matrix, right, senses, .. } = self;
-        Problem { matrix, right, senses, regularisation: regularisation, preferred: &preferred, upper }.solve()
+        Problem { matrix, right, senses, regularisation, preferred: &preferred, upper }.solve()
     }
 }
 

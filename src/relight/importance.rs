@@ -2,8 +2,8 @@
 //!
 //! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`. Paths from the
 //! target, in a scene with uniform emission on the surface, estimate the integrals of `I` over the cells of the
-//! surface's texture coordinates once. After that, any texture at any scale, rotation and offset costs one dot product,
-//! without tracing.
+//! surface's texture coordinates once. After that, any texture at any scale, rotation and offset costs one dot
+//! product, without tracing.
 //!
 //! Cells limit the bandwidth: within a cell, `I` is taken as constant. In matt surroundings `I` is smooth, and the
 //! error is proportional to the squared size of a cell; [`Importance::respond`] estimates it.
@@ -75,8 +75,8 @@ pub(super) struct Cells {
 /// Largest number of cells along each side: such a map takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells if that is less; at most 64. With
-/// too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
+/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells if that is less; at most
+/// 64. With too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
 /// [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
@@ -167,8 +167,8 @@ impl Importance {
     }
 
     /// The response of the target to a texture on the surface, in the unit of its values. `placement` transforms the
-    /// surface's texture coordinates to those of the texture (as `KHR_texture_transform`), which wraps according to its
-    /// mode.
+    /// surface's texture coordinates to those of the texture (as `KHR_texture_transform`), which wraps according to
+    /// its mode.
     ///
     /// # Errors
     /// A placement that is not finite; cancelled.

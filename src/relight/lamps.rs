@@ -202,8 +202,8 @@ impl Lamps {
         (groups, group as usize + 1)
     }
 
-    /// Groups lamps by type: surfaces of about equal area; punctual lights of one kind; luminaires of one distribution.
-    /// Groups are numbered from the smallest lamps on.
+    /// Groups lamps by type: surfaces of about equal area; punctual lights of one kind; luminaires of one
+    /// distribution. Groups are numbered from the smallest lamps on.
     pub fn types(&self) -> (Vec<u32>, usize) {
         let gap = if self.division == Division::Lights { 0.0 } else { TYPE_GAP };
         self.chained(|i| self.sizes[i], |a, b| b > a * (1.0 + gap))

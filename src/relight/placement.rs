@@ -32,8 +32,8 @@ pub enum Aim {
     Darkest,
 }
 
-/// The placement of a texture: the surface's texture coordinates are scaled and then rotated about the centre `(½, ½)`,
-/// and offset, to those of the texture.
+/// The placement of a texture: the surface's texture coordinates are scaled and then rotated about the centre `(½,
+/// ½)`, and offset, to those of the texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     pub offset: DVec2,

@@ -9,7 +9,7 @@ use crate::error::{Error, Result, check_range};
 use crate::image::colour;
 use glam::DVec3;
 
-/// Largest number of primaries of a luminaire. [convention]
+/// Largest number of primaries of a luminaire. \[convention\]
 pub const MAX_PRIMARIES: usize = 64;
 
 /// Weight of squared drives beside the colour error: only large enough to select among equal mixtures. [origin not
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_reach_is_told_with_the_nearest() {
+    fn unreachable_colours_return_the_nearest_colour() {
         // Warm and cold white span a plane: the error of the nearest colour to green is orthogonal to both.
         let (warm, cold) = (DVec3::new(1.0, 0.7, 0.4), DVec3::new(0.8, 1.0, 1.2));
         let mixture = mix_primaries(&[warm, cold], FREE, DVec3::Y).unwrap();
@@ -108,7 +108,7 @@ mod tests {
         let mixture = mix_primaries(&[warm, cold], FREE, DVec3::Z).unwrap();
         let alone = cold.z / cold.length_squared();
         assert!(mixture.drives[0] == 0.0 && (mixture.drives[1] - alone).abs() < 1e-6, "{mixture:?}, expected {alone}");
-        // Bounded drives: as bright as possible.
+        // With bounded drives, the mixture of a colour that is too bright is as bright as possible.
         let bounded = mix_primaries(&[warm, cold], 1.0, (warm + cold) * 10.0).unwrap();
         assert_eq!((bounded.drives, bounded.reached), (vec![1.0; 2], false));
         // No mixture on a fine grid is nearer.

@@ -86,9 +86,9 @@ struct PerGoal {
     background: Vec<DVec3>,
 }
 
-/// Traces the responses of goals to the lamps of an emission at its current strength. The stopping conditions are those
-/// of [`super::run`], for the response of each goal to all lamps together; the responses to single lamps have larger
-/// errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
+/// Traces the responses of goals to the lamps of an emission at its current strength. The stopping conditions are
+/// those of [`super::run`], for the response of each goal to all lamps together; the responses to single lamps have
+/// larger errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
 ///
 /// # Errors
 /// Parameters out of range; goals that do not exist or have no area; cancelled.

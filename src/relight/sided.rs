@@ -195,7 +195,7 @@ mod tests {
     /// The third unknown jumps from its upper bound to 0 in one step; the method must not stop there, as the function
     /// still decreases.
     #[test]
-    fn a_leap_from_bound_to_bound_is_no_end() {
+    fn a_jump_from_bound_to_bound_does_not_end_the_search() {
         let (a, b) = ([0.64, 0.44, 0.37], [0.06, 0.92, 0.2]);
         let (matrix, right) = ([a, a, a, b, b].concat(), [1.07, 0.0, 0.59, 0.81, 1.11]);
         let senses = [AtLeast, AtMost, AtLeast, AtMost, AtLeast];

@@ -1,9 +1,9 @@
 //! Rounding of powers to dimming levels.
 //!
 //! Rounding each group separately adds up: lamps of equal power are all rounded to the same side. Instead, coordinate
-//! descent chooses for each group in turn the level that minimises the sum of squares of the goals, given the levels of
-//! the others, until none changes. It runs from two starting points and keeps the better result. Along one group the
-//! sum is convex, so its best level is found by stepping through the levels while the sum decreases.
+//! descent chooses for each group in turn the level that minimises the sum of squares of the goals, given the levels
+//! of the others, until none changes. It runs from two starting points and keeps the better result. Along one group
+//! the sum is convex, so its best level is found by stepping through the levels while the sum decreases.
 
 use super::bounded::dot;
 use super::sided::Sense;
@@ -29,7 +29,8 @@ struct State {
 }
 
 impl Terms<'_> {
-    /// Rounds the powers `x` to levels (ascending, not empty), none of them above its bound unless the lowest level is.
+    /// Rounds the powers `x` to levels (ascending, not empty), none of them above its bound unless the lowest level
+    /// is.
     pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
         let max_level: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
         let nearest = |j: usize| {
@@ -38,7 +39,8 @@ impl Terms<'_> {
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
-        // Start from the nearest levels of all groups, and from unrounded powers, which the first round rounds in turn.
+        // Start from the nearest levels of all groups, and from unrounded powers, which the first round rounds in
+        // turn.
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));
@@ -99,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn lamps_that_are_alike_share_the_rounding() {
+    fn equal_lamps_share_the_rounding() {
         // Ten lamps at 0.24, which can only be on or off: two or three of them must be on.
         let terms = Terms { matrix: &[1.0; 10], right: &[2.4], senses: &[Sense::Exactly] };
         let on = terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>();

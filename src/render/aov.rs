@@ -1,10 +1,10 @@
 //! Arbitrary output variables: surface attributes (distance, position, orientation, colour, index) of the first hit
 //! along each camera ray.
 //!
-//! Clear panes and mirrors count as surfaces. Colours and coverage are means over all samples, so that they add up like
-//! light; distances, positions and normals are means over the samples that hit a surface. An index cannot be averaged:
-//! it is the index that more than half of the hits have, or, without such a majority, the index of one of the hits (the
-//! majority vote of Boyer and Moore 1981, in one pass with one counter).
+//! Clear panes and mirrors count as surfaces. Colours and coverage are means over all samples, so that they add up
+//! like light; distances, positions and normals are means over the samples that hit a surface. An index cannot be
+//! averaged: it is the index that more than half of the hits have, or, without such a majority, the index of one of
+//! the hits (the majority vote of Boyer and Moore 1981, in one pass with one counter).
 
 use super::ballot;
 use super::path::PrimaryHit;

@@ -2,9 +2,9 @@
 //!
 //! A Lambertian layer below a GGX layer; below a roughness of 1/1000 the top layer is a mirror. The share
 //! `transmission` of the light that passes the top layer continues straight, as through a thin pane
-//! (`KHR_materials_transmission` without volume). Appendix B mixes the layers by the Fresnel factor of the half vector,
-//! which reflects up to twice the incident light at grazing angles. Here the diffuse layer is attenuated by the albedo
-//! of the top layer for both directions instead. An index of refraction of 1 has no top layer.
+//! (`KHR_materials_transmission` without volume). Appendix B mixes the layers by the Fresnel factor of the half
+//! vector, which reflects up to twice the incident light at grazing angles. Here the diffuse layer is attenuated by
+//! the albedo of the top layer for both directions instead. An index of refraction of 1 has no top layer.
 //!
 //! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
 
@@ -15,8 +15,8 @@ use std::f32::consts::FRAC_1_PI;
 /// Below this perceptual roughness a surface is a perfect mirror. [convention]
 pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
-/// Smallest perceptual roughness at which a vertex is shared among neighbouring pixels, which look from nearly the same
-/// place. [origin not recorded]
+/// Smallest perceptual roughness at which a vertex is shared among neighbouring pixels, which look from nearly the
+/// same place. [origin not recorded]
 const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
 /// The material parameters at one point.
@@ -107,8 +107,8 @@ pub enum ScatterKind {
 }
 
 impl<'a> Bsdf<'a> {
-    /// `wo` points to the viewer; both normals are flipped to face it. Reflection is two-sided for all materials: rooms
-    /// are often modelled with outward-facing walls. `layered` must be true if the material may have more than a
+    /// `wo` points to the viewer; both normals are flipped to face it. Reflection is two-sided for all materials:
+    /// rooms are often modelled with outward-facing walls. `layered` must be true if the material may have more than a
     /// diffuse layer. `table` may be `None` if no material of the scene has a top layer.
     #[inline]
     pub fn new(
@@ -130,7 +130,8 @@ impl<'a> Bsdf<'a> {
         Self { diffuse, normal, geometric, layers: Some(layers) }
     }
 
-    /// A receiver of irradiance: its response to radiance from the hemisphere is irradiance.
+    /// A diffuse BSDF of albedo π for light meters: the radiance that it reflects equals the irradiance that it
+    /// receives.
     pub fn receiver(normal: Vec3) -> Self {
         Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: None }
     }

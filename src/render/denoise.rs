@@ -3,16 +3,16 @@
 //! The edge-avoiding à-trous filter of Dammertz et al. (2010, "Edge-avoiding à-trous wavelet transform for fast global
 //! illumination filtering") with the variance-guided range weights of Schied et al. (2017, "Spatiotemporal
 //! variance-guided filtering"). Colours are divided by the albedo of the surface, which preserves textures. At each
-//! level, a pixel is averaged with neighbours at growing distances, weighed by whether they lie in the same plane, have
-//! the same normal, and differ by no more than their errors explain. The variance of the average is propagated to the
-//! next level. With zero variance, the filter leaves the image unchanged.
+//! level, a pixel is averaged with neighbours at growing distances, weighed by whether they lie in the same plane,
+//! have the same normal, and differ by no more than their errors explain. The variance of the average is propagated to
+//! the next level. With zero variance, the filter leaves the image unchanged.
 //!
-//! The filter is biased: features that the guides do not show, such as soft shadows, are blurred by about the height of
-//! their error. [`Output::bias`] estimates this bias; final images are rendered without the filter. To measure it, two
-//! halves of the paths are filtered separately (as by Rousselle et al. 2012, "Adaptive rendering with non-local means
-//! filtering", for a different purpose), and the preview is their mean. The filter changes each half by its bias plus
-//! noise, and the noises of the halves are independent: the mean product of the two changes is the squared bias, for
-//! any weights.
+//! The filter is biased: features that the guides do not show, such as soft shadows, are blurred by about the height
+//! of their error. [`Output::bias`] estimates this bias; final images are rendered without the filter. To measure it,
+//! two halves of the paths are filtered separately (as by Rousselle et al. 2012, "Adaptive rendering with non-local
+//! means filtering", for a different purpose), and the preview is their mean. The filter changes each half by its bias
+//! plus noise, and the noises of the halves are independent: the mean product of the two changes is the squared bias,
+//! for any weights.
 //!
 //! Not modelled: motion; reflections, which are smoothed like light on the mirror; textures seen in mirrors.
 
@@ -52,8 +52,8 @@ pub struct Input<'a> {
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// Estimated bias of the preview: root mean square over squares of 8 × 8 pixels, relative to the mean of the image.
-    /// The square of the estimate is unbiased; it misses blur within a square.
+    /// Estimated bias of the preview: root mean square over squares of 8 × 8 pixels, relative to the mean of the
+    /// image. The square of the estimate is unbiased; it misses blur within a square.
     pub bias: f64,
 }
 
@@ -66,12 +66,12 @@ const HALF: f32 = 2.0;
 /// Squared difference in luminance, relative to the sum of both variances, that lowers a weight by a factor e at
 /// strength 1. [origin not recorded]
 const RANGE: f32 = 12.0;
-/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by e. [origin not
+/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by a factor e. [origin not
 /// recorded]
 const PLANE: f32 = 0.01;
-/// 1 - cosine of the angle between normals that lowers a weight by e. [origin not recorded]
+/// 1 - cosine of the angle between normals that lowers a weight by a factor e. [origin not recorded]
 const FACING: f32 = 0.02;
-/// Squared difference in albedo that lowers a weight by e. [origin not recorded]
+/// Squared difference in albedo that lowers a weight by a factor e. [origin not recorded]
 const COLOUR: f32 = 0.02;
 /// Smallest albedo to divide by, so that lamps and black surfaces keep their light. [origin not recorded]
 const MIN_ALBEDO: f32 = 0.02;

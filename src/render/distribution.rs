@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_guide_finds_what_a_search_of_the_whole_table_finds() {
+    fn the_guide_table_agrees_with_a_search_of_the_whole_table() {
         let mut rng = crate::rng::Rng::new(1, &[]);
         for len in [1, 2, 7, 1000] {
             let table =
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_come_in_proportion_and_none_without_weight() {
+    fn entries_are_sampled_in_proportion_to_their_weight() {
         let weights = [0.0, 3.0, 0.0, 1.0, 4.0, 0.0];
         let table = Distribution::new(weights.into_iter()).unwrap();
         let mut counts = [0; 6];

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_come_with_the_density_that_is_stated() {
+    fn sampled_directions_follow_the_stated_pdf() {
         for image in images() {
             let environment = Environment::Image(image);
             let (sampler, _) = EnvironmentSampler::build(&environment).unwrap().unwrap();
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_are_chosen_as_often_as_their_density_says() {
+    fn sampled_pixels_follow_the_stated_pdf() {
         for image in images() {
             let (width, height) = (image.width, image.height);
             let (sampler, _) = EnvironmentSampler::build(&Environment::Image(image)).unwrap().unwrap();
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_to_a_direction_has_a_way_back() {
+    fn sampling_a_direction_can_be_inverted() {
         let mut rng = Rng::new(35, &[]);
         for image in images() {
             let (sampler, _) = EnvironmentSampler::build(&Environment::Image(image)).unwrap().unwrap();

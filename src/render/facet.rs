@@ -94,12 +94,13 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
     [a, b, c].iter().all(|n| (*n - side).abs().max_element() < 1e-6)
 }
 
-/// The origin of world coordinates: the middle of the scene, rounded to a grid so coarse that the translation is exact.
+/// The origin of world coordinates: the middle of the scene, rounded to a grid so coarse that the translation is
+/// exact.
 ///
-/// Coordinates in f32 far from the origin are multiples of a step that grows with the distance. A grid of a power of
-/// two no smaller than the scene is a multiple of that step wherever the scene lies at least a grid cell from the
-/// origin, so that differences to grid points are exact. Scenes nearer to the origin stay in place: a translation would
-/// gain next to nothing.
+/// The spacing of f32 numbers grows with the distance from the origin, in powers of two. The cell of the grid is a
+/// power of two no smaller than the scene. If the scene lies at least one cell from the origin, the grid points are
+/// multiples of the spacing there, so the differences of the coordinates from a grid point are exact. A scene nearer
+/// to the origin stays in place: a translation would gain next to nothing.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {
@@ -129,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn moving_to_the_centre_rounds_nothing() {
+    fn the_translation_to_the_centre_is_exact() {
         let mut rng = Rng::new(31, &[]);
         for _ in 0..2000 {
             let exponent = |rng: &mut Rng, range: f32| (rng.next_f32() * 2.0 * range - range).exp2();

@@ -1,12 +1,13 @@
-//! The GGX microfacet distribution (Walter et al. 2007) with height-correlated Smith masking (Heitz 2014), its sampling
-//! by visible normals (Heitz 2018), and its directional albedo.
+//! The GGX microfacet distribution (Walter et al. 2007) with height-correlated Smith masking (Heitz 2014), its
+//! sampling by visible normals (Heitz 2018), and its directional albedo.
 //!
 //! Directions are in a frame whose third axis is the normal; `alpha` is the squared roughness.
 
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, PI};
 
-/// Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and grazing (`f90`) incidence.
+/// Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and grazing (`f90`)
+/// incidence.
 #[inline]
 pub fn schlick(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
     let m = (1.0 - cosine).clamp(0.0, 1.0);
@@ -58,7 +59,7 @@ impl Lobe {
 }
 
 /// A point uniform in the unit disc, and its squared distance from the centre, by the concentric map (Shirley and Chiu
-/// 1997), which preserves neighbourhoods. Sine and cosine of up to 45 degrees by their series.
+/// 1997), which preserves neighbourhoods. Their series give sine and cosine of up to 45 degrees.
 #[inline]
 pub fn disc(u: Vec2) -> (Vec2, f32) {
     let p = u * 2.0 - 1.0;
@@ -184,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_to_the_disc_and_back_is_the_identity() {
+    fn the_concentric_map_and_its_inverse_are_the_identity() {
         let n = 257;
         for i in 0..n * n {
             let u = Vec2::new((i % n) as f32, (i / n) as f32) / n as f32;
@@ -196,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_areas_of_the_square_become_equal_areas_of_the_disc() {
+    fn the_concentric_map_preserves_areas() {
         // By central differences: the determinant of the map is the ratio of the areas, pi.
         let h = 1.0 / 1024.0;
         for i in 0..64 * 64 {
@@ -219,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn facets_are_chosen_as_often_as_they_are_seen_at_any_roughness() {
+    fn sampled_facets_follow_the_visible_normal_pdf_at_any_roughness() {
         let (side, n, fine) = (10usize, 20_000, 16);
         let mut rng = crate::rng::Rng::new(14, &[]);
         let cases: Vec<(f32, f32)> =
@@ -254,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_to_a_facet_has_a_way_back() {
+    fn sampling_a_facet_can_be_inverted() {
         for roughness in [0.03f32, 0.3, 1.0] {
             for cosine in [0.9, 0.3] {
                 let (alpha, wo) = (roughness * roughness, view(cosine));

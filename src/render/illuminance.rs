@@ -37,12 +37,12 @@ impl Default for Params {
 /// Where to compute illuminance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// A parallelogram with a corner and two edges. Its points are the centres of `columns × rows` cells, columns along
-    /// `across` and rows along `down`. They gather light on the side of `normal`, which need not be perpendicular to
-    /// the edges.
+    /// A parallelogram with a corner and two edges. Its points are the centres of `columns × rows` cells, columns
+    /// along `across` and rows along `down`. They gather light on the side of `normal`, which need not be
+    /// perpendicular to the edges.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
-    /// A mesh, mapped by its first set of texture coordinates; `(0, 0)` is the outer corner of the first texel. `front`
-    /// selects the side that the winding of its triangles faces.
+    /// A mesh, mapped by its first set of texture coordinates; `(0, 0)` is the outer corner of the first texel.
+    /// `front` selects the side that the winding of its triangles faces.
     Mesh { mesh: usize, front: bool },
 }
 

@@ -39,8 +39,8 @@ impl Outputs {
     /// Adds a light path expression.
     ///
     /// # Errors
-    /// A name that is empty, too long, taken, or contains characters that file formats interpret (dots, quotes, control
-    /// characters); an invalid expression.
+    /// A name that is empty, too long, taken, or contains characters that file formats interpret (dots, quotes,
+    /// control characters); an invalid expression.
     pub fn add(&mut self, name: &str, expression: &str) -> Result<()> {
         let unfit = |c: char| c == '.' || c == '"' || c.is_control();
         if name.is_empty() || name.len() > MAX_NAME_BYTES || name.contains(unfit) {
@@ -271,8 +271,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// Adds the current sums of a pixel to totals in f64: three numbers per expression, the number of primary hits, and
-    /// [`Aov::summed`] numbers per surface attribute.
+    /// Adds the current sums of a pixel to totals in f64: three numbers per expression, the number of primary hits,
+    /// and [`Aov::summed`] numbers per surface attribute.
     pub fn add_to(&mut self, totals: &mut [f64]) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());

@@ -3,8 +3,8 @@
 //! 3.2).
 //!
 //! [`World`] prepares a scene for tracing; [`run`] renders the view of a camera; [`irradiance`] samples the light that
-//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target. A seed
-//! gives the same bits on any number of threads.
+//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target. A
+//! seed gives the same bits on any number of threads.
 //!
 //! A sample passes through these files: `sampler` draws its random numbers → `path` traces it (`vertex` describes a
 //! hit, `bsdf` and `ggx` scatter, `light` samples one of the lights of `emissive` and `environment`) → a [`PathSink`]
@@ -75,8 +75,8 @@ pub struct SurfacePoint {
     pub front: bool,
 }
 
-/// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample and `seed` selects
-/// an independent sequence. The samples of one seed are stratified: their mean converges faster than that of
+/// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample and `seed`
+/// selects an independent sequence. The samples of one seed are stratified: their mean converges faster than that of
 /// independent samples, best at powers of two. A point outside the scene's surfaces or on a degenerate triangle adds
 /// nothing.
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
@@ -115,7 +115,8 @@ pub fn irradiance_in_air<S: PathSink>(
 /// `film::adaptive`).
 ///
 /// # Errors
-/// Parameters out of range; a degenerate camera; no memory; cancelled. After a cancel the last published film is valid.
+/// Parameters out of range; a degenerate camera; no memory; cancelled. After a cancel the last published film is
+/// valid.
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     params.check()?;
     check_camera(camera)?;

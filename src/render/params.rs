@@ -16,21 +16,21 @@ pub struct Params {
     /// Stop when [`super::Film::error`] falls to this value, with paths allocated to minimise it; 0 = never.
     pub target_error: f32,
     /// Stop when each tile of 8 × 8 pixels reaches this error: the root mean square over its pixels of the half-width
-    /// of the 95 % interval of the luminance, relative to that luminance. 0.1 means "within 10 % of the value, 19 times
-    /// out of 20". Pixels darker than a tenth of the image's mean luminance are measured against that tenth. A tile
-    /// gets at most 64 times `samples` paths per pixel, though it may miss the target. 0 = never. If several targets
-    /// are set, all of them are met.
+    /// of the 95 % interval of the luminance, relative to that luminance. 0.1 means "within 10 % of the value, 19
+    /// times out of 20". Pixels darker than a tenth of the image's mean luminance are measured against that tenth. A
+    /// tile gets at most 64 times `samples` paths per pixel, though it may miss the target. 0 = never. If several
+    /// targets are set, all of them are met.
     pub pixel_error: f32,
     /// Stop when [`super::Film::relative_error`] falls to this value, with paths allocated to minimise it; 0 = never.
     pub relative_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
     /// End every path when its remaining bounces carry at most this share of all scattered light, in `[0, 1)`
-    /// ([`super::Requirements::bounces`]); the image is too dark by up to that share. 0 = never: only Russian roulette ends
-    /// paths.
+    /// ([`super::Requirements::bounces`]); the image is too dark by up to that share. 0 = never: only Russian roulette
+    /// ends paths.
     pub bounce_error: f32,
-    /// Strength of the filter that makes [`super::Film::preview`] (`denoise`), in `[0, 10]`, usually 1; 0 = no preview, for
-    /// final images.
+    /// Strength of the filter that makes [`super::Film::preview`] (`denoise`), in `[0, 10]`, usually 1; 0 = no
+    /// preview, for final images.
     pub preview: f32,
     pub seed: u64,
     /// Images to render beside the main image.

@@ -18,15 +18,16 @@ use glam::{Vec2, Vec3};
 
 /// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
-/// Paths whose expected contribution is at least this share of the mean survive with certainty, up to [`MAX_SURVIVAL`].
-/// Measured on rooms, the product of time and variance is smallest near this value. [judged on rooms]
+/// Paths whose expected contribution is at least this share of the mean survive with certainty, up to
+/// [`MAX_SURVIVAL`]. Measured on rooms, the product of time and variance is smallest near this value. [judged on
+/// rooms]
 const CERTAIN_SHARE: f32 = 0.5;
 /// Largest survival probability: a path between white walls must end eventually. Walls of an albedo above its square
 /// root make the variance infinite. [origin not recorded]
 const MAX_SURVIVAL: f32 = 0.998;
 
-/// Largest number of bounces. It only guards against endless paths: at [`MAX_SURVIVAL`] one path in ten million gets so
-/// far.
+/// Largest number of bounces. It only guards against endless paths: at [`MAX_SURVIVAL`] one path in ten million gets
+/// so far.
 pub const MAX_BOUNCES: u32 = 8192;
 
 /// Observes a path. Only observers of light path expressions and AOVs implement more than [`Observer::add`]; the empty
@@ -99,8 +100,8 @@ pub(super) struct Leg {
     /// The triangle at its origin.
     pub from: u32,
     pub throughput: Vec3,
-    /// The competing strategy for MIS: the point at which a light was sampled last, and the solid-angle pdf of the BSDF
-    /// sample drawn there. `None` after the eye or a mirror, where no light sample competes.
+    /// The competing strategy for MIS: the point at which a light was sampled last, and the solid-angle pdf of the
+    /// BSDF sample drawn there. `None` after the eye or a mirror, where no light sample competes.
     pub mis: Option<(Receiver, f32)>,
     /// Uniform in the unit square: selects the light sample at the next vertex.
     pub light_u: (f64, f32),
@@ -199,8 +200,8 @@ pub(super) fn continue_path<O: Observer>(
     if bounce == length.max_bounces {
         return None;
     }
-    // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
-    // splitting in light transport simulation", with a single value for the radiance yet to be found).
+    // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette
+    // and splitting in light transport simulation", with a single value for the radiance yet to be found).
     let mut throughput = leg.throughput;
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight

@@ -1,5 +1,5 @@
-//! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and how much light
-//! a bounce can leave.
+//! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and the largest
+//! share of light that a bounce can leave.
 //!
 //! Values range over the material factors times the texels of their textures; only materials of meshes with triangles
 //! count. Tracing skips whatever cannot occur, which changes no estimate. The number of bounces that matter is
@@ -51,9 +51,9 @@ impl Requirements {
     /// `None` if the albedos set no bound or `error` is not positive.
     ///
     /// No surface reflects or transmits more than the share `a`, the largest channel of `albedo`. Each bounce carries
-    /// at most `a` times the flux of the previous one; less in open scenes. The relative sum over more than `n` bounces
-    /// is largest if all ratios equal `a`: it is then a^n. This bounds the flux in the scene, and images of an average
-    /// part of it; a pixel that only shows light of many bounces may miss more.
+    /// at most `a` times the flux of the previous one; less in open scenes. The relative sum over more than `n`
+    /// bounces is largest if all ratios equal `a`: it is then a^n. This bounds the loss of flux in the whole scene. An
+    /// image of a part of it may lose more, such as an image that only shows light of many bounces.
     pub fn bounces(&self, error: f32) -> Option<u32> {
         let a = f64::from(self.albedo.max_element());
         if !(error > 0.0 && a < 1.0) {
@@ -65,7 +65,7 @@ impl Requirements {
         Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
     }
 
-    /// The omissions of tracing, one sentence each.
+    /// The contents of the scene that the renderer does not model, one sentence each.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {
@@ -122,7 +122,7 @@ impl Range {
         self.low == self.high
     }
 
-    /// The products of values of both ranges, the other of which is not negative.
+    /// The range of the products of a value of each range.
     fn times(&self, other: &Self) -> Self {
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         Self {
@@ -142,9 +142,9 @@ impl Range {
 pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
-    // Materials that a ray can meet, and materials that can emit: on triangles with an area.
+    // Mark the materials that a ray can hit, and the materials that can emit because a triangle has an area.
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
-    // Colours of the vertices that each material is multiplied by.
+    // The range of the vertex colours by which each material is multiplied.
     let none = Range { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
     let mut tints = vec![none; scene.materials.len()];
     for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {
@@ -179,7 +179,7 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     (needed, compiled_materials)
 }
 
-/// Whether any triangle of a mesh has an area. Triangles without one are no lights.
+/// Whether any triangle of a mesh has an area. A triangle without an area cannot emit.
 fn has_area(mesh: &Mesh) -> bool {
     (0..mesh.triangles.len()).any(|triangle| {
         let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());

@@ -34,8 +34,8 @@ pub trait ReplayObserver: Observer {
     /// Continues the path along a recorded subpath, with this importance at its start.
     fn replay(&mut self, tape: &Self::Tape, importance: Vec3);
 
-    /// Returns to the eye, scatters at the primary vertex (of a mesh, with these lobes), and continues along a recorded
-    /// subpath with this importance at its start.
+    /// Returns to the eye, scatters at the primary vertex (of a mesh, with these lobes), and continues along a
+    /// recorded subpath with this importance at its start.
     fn replay_from(&mut self, mesh: u32, lobes: Lobes, tape: &Self::Tape, importance: Vec3);
 }
 
@@ -201,8 +201,8 @@ fn trace_primary<'w, W: ReplayObserver>(
     Some(PrimaryVertex { vertex, bsdf, roulette_weight, continuation })
 }
 
-/// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary surface,
-/// and all light of a secondary vertex that cannot be shared.
+/// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary
+/// surface, and all light of a secondary vertex that cannot be shared.
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,

@@ -46,7 +46,7 @@ impl<'w> TextureContext<'w> {
         compiled_material::substance(material, base, metallic, roughness)
     }
 
-    /// The colour between the vertices, 1 without colours.
+    /// The interpolated colour of the vertices; 1 if the mesh has none.
     fn vertex_colour(&self) -> Vec4 {
         let colours = &self.mesh.colours;
         if colours.is_empty() {

@@ -6,8 +6,8 @@
 //! the corners, at the midpoints of the sides, and two more that determine the orientation of the sheet. Six marks
 //! suffice.
 //!
-//! `page` lays out the page, [`print`] draws it, `detect` finds marks in a photo, `fit` identifies them, and [`align`]
-//! resamples the photo and removes uneven illumination by the white of the marks.
+//! `page` lays out the page, [`print()`] draws it, `detect` finds marks in a photo, `fit` identifies them, and
+//! [`align`] resamples the photo and removes uneven illumination by the white of the marks.
 //!
 //! Not modelled: curved paper and lens distortion; `Aligned::residual` reveals both.
 

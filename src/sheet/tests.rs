@@ -113,7 +113,7 @@ fn the_stated_error_is_about_the_true_one_and_a_scan_is_exact() {
 }
 
 #[test]
-fn what_is_no_sheet_is_an_error_that_says_so() {
+fn photos_without_a_sheet_are_an_error() {
     let job = Monitor::default();
     let noise = Image::from_fn(300, 200, |x, y| [Rng::new(3, &[x as u64, y as u64]).next_f32(); 3]).unwrap();
     for photo in [noise, Image::new(300, 200, 3).unwrap(), Image::new(1, 1, 3).unwrap()] {

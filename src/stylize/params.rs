@@ -16,8 +16,8 @@ pub enum Mode {
     Nearest,
     /// One pass in scan order, by best or by most coherent match (Hertzmann et al. 2001).
     Greedy,
-    /// Each pixel takes the exemplar pixel with the nearest guides; with normals as the guide, the Lit Sphere (Sloan et
-    /// al. 2001).
+    /// Each pixel takes the exemplar pixel with the nearest guides; with normals as the guide, the Lit Sphere (Sloan
+    /// et al. 2001).
     LitSphere,
     /// Each target patch takes its nearest exemplar patch, with a penalty for frequently used ones (Kaspar et al.
     /// 2015): see `Params::occurrence`. Single-threaded, and with PatchMatch only.

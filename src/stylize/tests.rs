@@ -391,7 +391,7 @@ fn a_cancel_is_answered_soon_wherever_it_comes() {
 }
 
 #[test]
-fn only_patches_over_pixels_that_changed_are_looked_at_again() {
+fn only_patches_over_changed_pixels_are_rematched() {
     let a = scene(40, 30, 20.0, 15.0, 10.0);
     let mut picture = artwork(&a);
     let guides = [guide(&a, &a)];
@@ -459,7 +459,7 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
 }
 
 #[test]
-fn paint_moves_along_with_what_it_is_on_as_far_as_it_is_to() {
+fn paint_follows_its_object_in_proportion_to_the_coherence() {
     let a = scene(80, 60, 40.0, 30.0, 18.0);
     let (now, next) = (scene(90, 70, 40.0, 36.0, 18.0), scene(90, 70, 46.0, 33.0, 18.0));
     let art = artwork(&a);

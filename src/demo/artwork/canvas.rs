@@ -7,7 +7,7 @@ use crate::image::{Image, try_vec};
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
 
-/// A sheet; colours are as displayed.
+/// A sheet; its colours are sRGB-encoded.
 pub struct Canvas {
     pub width: usize,
     pub height: usize,

@@ -24,7 +24,7 @@ struct Set {
     ink: Vec3,
 }
 
-/// Darkness below a tone; full where it is a quarter below.
+/// Drawing weight of places darker than `tone`: 0 at `tone`, 1 at a quarter below it.
 fn below(appearance: &Appearance, tone: f32) -> f32 {
     // Leave highlights blank, whatever surrounds them.
     if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }

@@ -63,7 +63,7 @@ pub fn place(
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);
         let is_here = |site: &&Site| off(site).abs().cmple(site.lamps[0].size * OVERLAP).all();
-        match kept.iter().find(|site| is_here(&**site)) {
+        match kept.iter().find(|site| is_here(site)) {
             Some(site) if is_always_taken(site) => {}
             Some(site) => instances.push(Instance { shift: instance.shift - off(site), ..instance }),
             None => instances.push(instance),

@@ -131,7 +131,8 @@ mod tests {
             Chromaticities::of_code(9).unwrap().to_rec709().unwrap(),
             [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]],
         );
-        // XYZ with its own white, and as the colorimetry of a picture under D65.
+        // CIE XYZ: its own white (1, 1, 1) maps to white; for a picture whose white is D65, compare the published
+        // matrix.
         let xyz = Chromaticities::of_code(10).unwrap();
         assert!((xyz.to_rec709().unwrap() * DVec3::ONE - DVec3::ONE).abs().max_element() < 1e-9);
         assert_near(

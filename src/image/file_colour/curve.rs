@@ -5,14 +5,14 @@ use crate::image::colour::{linear_to_srgb, srgb_to_linear};
 use crate::image::try_collect;
 use std::sync::Arc;
 
-/// Number of nodes of a curve: one for each 16-bit code; each 8-bit code is a node too, with a distance of 257 nodes.
+/// Number of nodes of a curve: one for each 16-bit code. The 8-bit codes are every 257th node.
 const NODES: usize = 65_536;
 
 /// Maximum difference of a curve from that of sRGB at which it counts as sRGB. [rounding]: profiles store the curve in
 /// tables of 1024 values of 16 bits, with errors of 1e-4 near black.
 const SAME: f32 = 4e-4;
 
-/// A curve on `[0, 1]`, continued linearly above, and odd.
+/// A curve on `[0, 1]`, continued linearly above 1 and as an odd function below 0.
 #[derive(Clone)]
 pub struct Curve(Arc<Vec<f32>>);
 

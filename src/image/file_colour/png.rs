@@ -71,13 +71,13 @@ fn number(chunk: &[u8], index: usize) -> Option<f64> {
     numbers.get(index).map(|&bytes| f64::from(u32::from_be_bytes(bytes)) / UNIT)
 }
 
-/// White, red, green and blue.
+/// The chromaticities in `cHRM`: white, red, green and blue.
 fn chromaticities(chunk: &[u8]) -> Option<Chromaticities> {
     let point = |index: usize| Some([number(chunk, 2 * index)?, number(chunk, 2 * index + 1)?]);
     Some(Chromaticities { white: point(0)?, primaries: [point(1)?, point(2)?, point(3)?] })
 }
 
-/// The space by its exponent and chromaticities; a missing one is that of sRGB.
+/// The space with this exponent and these chromaticities; sRGB supplies a missing value.
 fn by_numbers(exponent: Option<f64>, chromaticities: Option<Chromaticities>) -> Result<Space> {
     let Some(matrix) = chromaticities.unwrap_or(Chromaticities::REC709).to_rec709() else { return Ok(Space::Unusable) };
     let curve = match exponent {

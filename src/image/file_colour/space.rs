@@ -1,4 +1,4 @@
-//! The colour space that a file states, and what became of it.
+//! The colour space that a file states, and how the reader handled it.
 
 use super::chromaticities::{Chromaticities, is_identity};
 use super::conversion::Conversion;
@@ -6,7 +6,7 @@ use super::curve::Curve;
 use crate::error::Result;
 use glam::DMat3;
 
-/// How the colours of a picture were understood.
+/// How the colours of a picture were interpreted.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FileColour {
@@ -21,7 +21,7 @@ pub enum FileColour {
     Converted = 3,
     /// The file states a space that cannot be converted. It was read as if it stated none.
     Unconverted = 4,
-    /// The caller asked for the numbers as they are.
+    /// The caller requested the stored numbers without conversion.
     Data = 5,
 }
 
@@ -31,7 +31,7 @@ pub(in crate::image) enum Space {
     /// sRGB for integers, linear Rec.709 for floating-point numbers.
     Native,
     Other(Conversion),
-    /// One that cannot be converted.
+    /// A space that cannot be converted.
     Unusable,
 }
 
@@ -42,7 +42,7 @@ impl Space {
     }
 }
 
-/// The colour space by the EXIF notes.
+/// The colour space that the EXIF data state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExifColour {
     #[default]
@@ -52,7 +52,7 @@ pub enum ExifColour {
 }
 
 impl ExifColour {
-    /// The space that the notes state.
+    /// The space that the EXIF data state.
     pub(super) fn space(self) -> Result<Space> {
         match self {
             Self::Unstated => Ok(Space::Unstated),

@@ -80,7 +80,7 @@ fn display_p3_is_converted_in_every_format() {
     assert_near(&load(&png(2, &wide, 16, &[iccp(&display_p3())])).0, wanted, 3e-4);
     let green = load(&png(2, &[0, 255, 0], 8, &[iccp(&display_p3())])).0;
     assert_near(&green, [0.0, 1.042_057, 0.0], 5e-4);
-    // The other formats, as data and as textures unchanged.
+    // The other formats: colours are converted in photos, and unchanged in data and textures.
     for (name, file) in [
         ("JPEG", jpeg(&display_p3())),
         ("WebP", webp(&display_p3())),
@@ -142,7 +142,7 @@ fn bmp(kind: &[u8; 4], profile: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn a_bmp_says_how_its_colours_are_understood() {
+fn a_bmp_reports_the_interpretation_of_its_colours() {
     assert_eq!(load(&bmp(b"sRGB", &[])).1, FileColour::Stated);
     assert_eq!(load(&bmp(b"Win ", &[])).1, FileColour::Assumed);
     for (kind, profile) in [(b"LINK", &b"a.icc"[..]), (b"MBED", b"no profile")] {
@@ -178,7 +178,7 @@ fn tiff(profile: &[u8], codes: [u16; 3]) -> Vec<u8> {
             (34_675, 7, profile.to_vec()),
         ],
     );
-    // The fifth entry says where the pixel is.
+    // The fifth entry holds the offset of the pixel.
     let at = u32::from_le_bytes([file[4], file[5], file[6], file[7]]) as usize + 2 + 4 * 12 + 8;
     let end = (file.len() as u32).to_le_bytes();
     file[at..at + 4].copy_from_slice(&end);
@@ -258,7 +258,7 @@ fn profiles_for_greys_convert_greys_only() {
     let (rgb, colour) = load(&png(2, &[128; 3], 8, &[iccp(&profile)]));
     assert!((rgb.pixel(0, 0)[0] - srgb_to_linear(128.0 / 255.0)).abs() < 1e-6);
     assert_eq!(colour, FileColour::Unconverted);
-    // A profile for colours says which curve greys have.
+    // The tone curve of an RGB profile also applies to greys.
     let (grey, colour) = load(&png(0, &[128], 8, &[iccp(&display_p3())]));
     assert!((grey.pixel(0, 0)[0] - srgb_to_linear(128.0 / 255.0)).abs() < 1e-4);
     assert_eq!(colour, FileColour::Converted);
@@ -273,7 +273,7 @@ fn a_plain_srgb_profile_changes_no_bit() {
 }
 
 #[test]
-fn damaged_profiles_change_nothing_and_bombs_are_not_unpacked() {
+fn damaged_profiles_are_ignored_and_bombs_are_not_unpacked() {
     let profile = display_p3();
     let plain = load(&png(2, &[153, 102, 51], 8, &[])).0;
     for cut in (0..profile.len()).step_by(7) {
@@ -288,12 +288,12 @@ fn damaged_profiles_change_nothing_and_bombs_are_not_unpacked() {
             assert!(image.data.iter().all(|v| !(*v < 0.0)), "{at} = {value}: {:?}", image.data);
         }
     }
-    // A profile that says it is as long as it is, but too long.
+    // A profile that states its true length, which exceeds the limit.
     let mut bomb = vec![0; MAX_BYTES + 1];
     bomb[..4].copy_from_slice(&(MAX_BYTES as u32 + 1).to_be_bytes());
     let (_, chunk) = iccp(&bomb);
     assert!(chunk.len() < 5000 && of_chunk(&chunk).unwrap().is_none());
-    // One whose tags share its data a thousand times.
+    // A profile with a thousand tags that share the same data.
     let mut shared = vec![0; 128];
     shared.extend(1000u32.to_be_bytes());
     shared.extend([b"A2B0", &128u32.to_be_bytes()[..], &12_132u32.to_be_bytes()].concat().repeat(1000));
@@ -303,7 +303,7 @@ fn damaged_profiles_change_nothing_and_bombs_are_not_unpacked() {
 
 #[test]
 fn adobe_rgb_is_known_by_its_exif_notes() {
-    // A TIFF structure whose notes lie at a fixed place: EXIF at 26, interoperability at 44.
+    // A TIFF structure with directories at fixed offsets: EXIF at 26, interoperability at 44.
     let entry = |tag: u16, kind: u16, count: u32, value: [u8; 4]| {
         [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &count.to_le_bytes(), &value].concat()
     };
@@ -323,7 +323,7 @@ fn adobe_rgb_is_known_by_its_exif_notes() {
     };
     let jpeg = |notes: &[u8]| {
         let file = jpeg(&display_p3());
-        // Without the two pieces of the profile.
+        // Cut out the two pieces of the profile.
         let pieces = display_p3().len() + 2 * 18;
         let length = (2 + 6 + notes.len()) as u16;
         [&file[..2], &[0xff, 0xe1], &length.to_be_bytes(), b"Exif\0\0", notes, &file[2 + pieces..]].concat()

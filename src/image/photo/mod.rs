@@ -24,7 +24,8 @@ const AGREEMENT: f64 = 0.1;
 /// cropped. Sides are whole numbers, and resizing rounds them. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
-/// Saturation-based speed is 78 lx s over the focal-plane exposure that just saturates [convention: ISO 12232:2019, 6.2].
+/// Saturation-based speed is 78 lx s over the focal-plane exposure that just saturates [convention: ISO 12232:2019,
+/// 6.2].
 const SATURATION: f64 = 78.0;
 
 /// Focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis
@@ -61,7 +62,8 @@ pub struct Luminance {
 }
 
 impl PhotoMetadata {
-    /// For a photo with these sides, before or after turning it upright.
+    /// Converts the metadata of a file to those of its photo, whose sides may be given before or after turning it
+    /// upright.
     pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {
             orientation: exif.orientation,

@@ -45,7 +45,7 @@ pub struct Upright {
 }
 
 impl Upright {
-    /// For a stored picture with these numbers of columns and rows.
+    /// Allocates the upright image of a stored picture with these numbers of columns and rows.
     pub fn new(width: usize, height: usize, channels: usize, orientation: Orientation) -> Result<Self> {
         let is_transposed = orientation.is_transposed();
         let image =

@@ -150,7 +150,7 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let by_film = 26.0 * 50.0 / FILM_DIAGONAL;
     assert!(near(metadata(&[film.clone()]).focal, by_film));
     assert!(near(metadata(&[&recorded[..], &[film.clone()]].concat()).focal, by_film));
-    // A sensor of 7 x 5.25 mm behind a lens of 4.3 mm: 576 pixels of 4032 a millimetre.
+    // A sensor of 7 x 5.25 mm behind a lens of 4.3 mm: 576 pixels per millimetre, 4032 in a row.
     let sensor = [
         rational(big, 0x920a, 43, 10),
         rational(big, 0xa20e, 5760, 1),
@@ -160,10 +160,10 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let all = [&recorded[..], &sensor].concat();
     let by_sensor = 4.3 * 576.0 * 40.0 / 4032.0;
     assert!(near(metadata(&all).focal, by_sensor), "{:?}", metadata(&all));
-    // Both within 10 %: the estimate of the sensor; otherwise the equivalent one.
+    // If the two estimates agree within 10 %, the one from the sensor is used, otherwise the 35 mm equivalent.
     assert!(near(metadata(&[&all[..], &[short(big, 0xa405, 21)]].concat()).focal, by_sensor));
     assert!(near(metadata(&[&all[..], &[film.clone()]].concat()).focal, by_film));
-    // Cropped to another shape; zero; and no lens at all.
+    // No focal length: a photo cropped to another shape; an equivalent of zero; a focal length with denominator 0.
     assert_eq!(metadata(&[short(big, 0xa002, 4032), short(big, 0xa003, 2268), film]).focal, None);
     assert_eq!(metadata(&[short(big, 0xa405, 0)]).focal, None);
     assert_eq!(metadata(&[rational(big, 0x920a, 43, 0)]).focal, None);
@@ -201,7 +201,7 @@ fn the_luminance_of_white_follows_from_the_exposure() {
 }
 
 #[test]
-fn notes_that_make_no_sense_are_as_good_as_none() {
+fn implausible_metadata_count_as_absent() {
     let order = Order::Little;
     let camera = [short(order, 0xa405, 26), rational(order, 0x829a, 1, 60)];
     let whole = notes(order, &[short(order, 0x112, 6)], &camera);

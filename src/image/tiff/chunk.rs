@@ -18,8 +18,7 @@ pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result
         }
         Compression::PackBits => packbits(stored, out),
         Compression::Lzw => lzw(stored, out),
-        // On an error, use the bytes that were unpacked before it: they are all of the chunk if more is stored than
-        // needed.
+        // On an error, use the bytes unpacked so far: if the file stores more than needed, they fill the chunk.
         Compression::Deflate => match decompress_slice_iter_to_slice(out, std::iter::once(stored), true, true) {
             Ok(written) => written,
             Err(miniz_oxide::inflate::TINFLStatus::HasMoreOutput) => needed,

@@ -271,7 +271,7 @@ pub mod tests {
     }
 
     #[test]
-    fn what_leads_out_of_the_file_is_absent() {
+    fn values_outside_the_file_are_absent() {
         let order = Order::Little;
         let (_, u16, u32) = writers(order);
         let bytes =

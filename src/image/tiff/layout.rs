@@ -135,7 +135,7 @@ impl<'a> Layout<'a> {
     /// Reads and checks the tags of a directory in a file of `file_bytes` bytes.
     pub fn new(directory: Directory<'a>, file_bytes: usize) -> Result<Self> {
         check_is_picture(&directory)?;
-        let required = |tag, name| integer(&directory, tag, name)?.ok_or_else(|| missing(name));
+        let required = |tag, name| required(&directory, tag, name);
         let or = |tag, name, default| Ok::<u64, Error>(integer(&directory, tag, name)?.unwrap_or(default));
         let (width, height) = (required(tag::WIDTH, "ImageWidth")?, required(tag::HEIGHT, "ImageLength")?);
         check_size(width, height)?;
@@ -161,21 +161,7 @@ impl<'a> Layout<'a> {
             return Err(unsupported("CMYK in separate planes"));
         }
 
-        // Strips are chunks as wide as the picture.
-        let is_tiled = directory.field(tag::TILE_OFFSETS).is_some();
-        let (chunk, offsets, sizes) = if is_tiled {
-            let size = [required(tag::TILE_WIDTH, "TileWidth")?, required(tag::TILE_HEIGHT, "TileLength")?];
-            (size, tag::TILE_OFFSETS, tag::TILE_SIZES)
-        } else {
-            let rows = or(tag::ROWS_PER_STRIP, "RowsPerStrip", height as u64)?.min(height as u64);
-            ([width as u64, rows], tag::STRIP_OFFSETS, tag::STRIP_SIZES)
-        };
-        if chunk.contains(&0) || chunk[0] > width.max(MAX_TILE) as u64 {
-            return Err(Error::format(format!(
-                "the TIFF is stored in pieces of {} x {} pixels; they must not be empty, nor wider than the picture",
-                chunk[0], chunk[1]
-            )));
-        }
+        let Chunks { size, offsets, bytes } = Chunks::new(&directory, width, height)?;
         let layout = Self {
             width,
             height,
@@ -186,9 +172,9 @@ impl<'a> Layout<'a> {
             predictor,
             samples: if is_planar { 1 } else { samples },
             planes: if is_planar { samples } else { 1 },
-            chunk: [chunk[0] as usize, chunk[1].min(height as u64) as usize],
+            chunk: size,
             offsets: directory.field(offsets).ok_or_else(|| missing("StripOffsets"))?,
-            sizes: directory.field(sizes).ok_or_else(|| missing("StripByteCounts"))?,
+            sizes: directory.field(bytes).ok_or_else(|| missing("StripByteCounts"))?,
             directory,
         };
         layout.check_memory(file_bytes)?;
@@ -285,6 +271,40 @@ pub fn unsupported(what: impl std::fmt::Display) -> Error {
             "the TIFF has {what}, which is not read: save it as 8, 16 or 32-bit RGB without compression, or with LZW"
         ),
     )
+}
+
+/// The tags of the chunks: strips, which are as wide as the picture, or tiles.
+struct Chunks {
+    /// Width and height of a chunk as stored.
+    size: [usize; 2],
+    /// The tag of the offsets of the chunks, and the tag of their sizes in bytes.
+    offsets: u16,
+    bytes: u16,
+}
+
+impl Chunks {
+    fn new(directory: &Directory, width: usize, height: usize) -> Result<Self> {
+        let is_tiled = directory.field(tag::TILE_OFFSETS).is_some();
+        let (size, offsets, bytes) = if is_tiled {
+            let width = required(directory, tag::TILE_WIDTH, "TileWidth")?;
+            ([width, required(directory, tag::TILE_HEIGHT, "TileLength")?], tag::TILE_OFFSETS, tag::TILE_SIZES)
+        } else {
+            let rows = integer(directory, tag::ROWS_PER_STRIP, "RowsPerStrip")?.unwrap_or(height as u64);
+            ([width as u64, rows.min(height as u64)], tag::STRIP_OFFSETS, tag::STRIP_SIZES)
+        };
+        if size.contains(&0) || size[0] > width.max(MAX_TILE) as u64 {
+            return Err(Error::format(format!(
+                "the TIFF is stored in pieces of {} x {} pixels; they must not be empty, nor wider than the picture",
+                size[0], size[1]
+            )));
+        }
+        Ok(Self { size: [size[0] as usize, size[1].min(height as u64) as usize], offsets, bytes })
+    }
+}
+
+/// The first value of a tag; an error without it.
+fn required(directory: &Directory, tag: u16, name: &str) -> Result<u64> {
+    integer(directory, tag, name)?.ok_or_else(|| missing(name))
 }
 
 /// The first value of a tag; an error if the tag is present but unreadable.

@@ -68,7 +68,7 @@ pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation)
         }
     }
     let mut image = out.image;
-    finish(&mut image, &layout, encoding);
+    decode_colours(&mut image, &layout, encoding);
     Ok(image)
 }
 
@@ -114,7 +114,7 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
 }
 
 /// Decodes the colours after all are in place; divides them by alpha first if they were multiplied by it.
-fn finish(image: &mut Image, layout: &Layout, encoding: Encoding) {
+fn decode_colours(image: &mut Image, layout: &Layout, encoding: Encoding) {
     let is_curved = encoding == Encoding::Srgb && !layout.depth.is_float();
     let is_associated = layout.alpha == Some(Alpha::Associated);
     // An 8-bit colour has 256 values: use a table.

@@ -220,7 +220,7 @@ fn every_depth_compression_predictor_and_layout_gives_its_samples_back() {
                         [(None, 2, false), (None, 9, true), (Some([16, 16]), 0, false), (Some([3, 4]), 0, true)]
                     {
                         let plain = Picture::new(3, depth.0, depth.1, 2);
-                        Picture { order, compression, predictor, tile, strip, is_planar, ..plain }.check(3, sample);
+                        Picture { order, compression, predictor, is_planar, strip, tile, ..plain }.check(3, sample);
                     }
                 }
             }
@@ -229,7 +229,7 @@ fn every_depth_compression_predictor_and_layout_gives_its_samples_back() {
 }
 
 #[test]
-fn grey_bits_palettes_and_cmyk_become_what_they_mean() {
+fn grey_bits_palettes_and_cmyk_are_converted() {
     for bits in [1, 2, 4, 8, 16] {
         Picture::new(1, bits, 1, 1).check(1, sample);
         Picture::new(1, bits, 1, 0).check(1, |p, x, y, s| 1.0 - sample(p, x, y, s));
@@ -286,7 +286,7 @@ fn integers_are_decoded_as_srgb_and_floating_point_is_linear() {
 }
 
 #[test]
-fn truncated_and_lying_files_are_errors() {
+fn truncated_and_inconsistent_files_are_errors() {
     for compression in [1, 5, 8, 32_773] {
         let file = Picture { compression, ..Picture::new(3, 16, 1, 2) }.file();
         for cut in 0..file.len() {
@@ -320,7 +320,7 @@ fn truncated_and_lying_files_are_errors() {
 }
 
 #[test]
-fn what_is_not_read_is_named() {
+fn unsupported_features_are_named() {
     let plain = Picture::new(3, 8, 1, 2);
     let bytes = |v: u16| v.to_le_bytes().to_vec();
     for (picture, name) in [

@@ -6,8 +6,8 @@ use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// The items of a tensor of the same rank with index `index(axis, i)` along each axis, and `fill` where that is
-/// `None`.
+/// A tensor of the same rank with the given shape. The item at position `i` along an axis is the item of `x` at
+/// position `index(axis, i)`, or `fill` where that is `None` for some axis.
 fn picked(
     x: &Tensor,
     shape: Vec<usize>,

@@ -125,7 +125,8 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(shape, out))
 }
 
-/// Pairs the matrices of two stacks by broadcasting: the shape of the result, and the index of each matrix in its stack.
+/// Pairs the matrices of two stacks by broadcasting: the shape of the result, and the index of each matrix in its
+/// stack.
 fn pairs(a: &[usize], b: &[usize], call: &Call) -> Result<(Vec<usize>, [Vec<i64>; 2])> {
     let numbered = |shape: &[usize]| -> Result<Tensor> {
         Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))

@@ -47,7 +47,7 @@ fn mean_of_drawing(map: &Homography, x: usize, y: usize, sub: usize) -> f32 {
 }
 
 #[test]
-fn warps_are_means_over_what_pixels_cover() {
+fn warps_are_means_over_the_footprints_of_pixels() {
     let monitor = Monitor::default();
     let identity = Homography(DMat3::IDENTITY);
     let source = Image::from_fn(512, 512, |x, y| [mean_of_drawing(&identity, x, y, 6)]).unwrap();
@@ -86,7 +86,7 @@ fn warps_are_means_over_what_pixels_cover() {
 }
 
 #[test]
-fn channels_are_warped_alike_whatever_their_number_and_at_the_border() {
+fn channels_are_warped_equally_for_any_number_and_at_the_border() {
     let monitor = Monitor::default();
     let value = |x: usize, y: usize, c: u64| Rng::new(4, &[x as u64, y as u64, c]).next_f32();
     let [one, two, three, six] = [1usize, 2, 3, 6].map(|n| {
@@ -154,7 +154,7 @@ fn warps_are_the_same_to_the_bit_at_every_level_of_instructions_and_on_any_numbe
 }
 
 #[test]
-fn warps_of_the_smallest_sources_and_of_the_least_and_largest_quads_show_what_is_there() {
+fn warps_of_tiny_sources_and_of_extreme_quadrilaterals_are_correct() {
     let monitor = Monitor::default();
     for (width, height) in [(1, 1), (1, 9), (9, 1), (3, 3), (4, 4), (5, 4), (6, 4), (2, 300)] {
         for channels in [1, 3, 4] {

@@ -1,4 +1,4 @@
-//! Each warning about a camera or a plane that deserves it, and no warning about a good one.
+//! Every warning about a camera and a plane is raised by its defect, and good ones raise no warning.
 
 use super::*;
 use crate::geometry::{Homography, Perspective, Segment};
@@ -54,7 +54,7 @@ fn a_room_seen_along_its_axis_leaves_the_focal_length_open() {
     // The stated spread is that of photos in general.
     assert!((warnings[0].severity / USUAL_SPREAD - 1.0).abs() < 0.1, "{:?}", warnings[0]);
     assert!(warnings[0].severity > warnings[0].limit);
-    // A focal length of the caller's is believed.
+    // A focal length that the caller gives raises no warning.
     let mut given = view.clone();
     given.perspective.focal_source = FocalSource::Given;
     assert_eq!(codes(&given.warnings()), []);
@@ -81,7 +81,7 @@ fn uncertain_axes_bent_lines_and_oblique_walls_raise_warnings() {
     assert_eq!(codes(&skewed(0.1, 0.05).warnings()), []);
 }
 
-/// A plane of 100 x 80 pixels that the photo shows by a map.
+/// An unwarped plane of 100 x 80 pixels with the given map to the photo.
 fn unwarped(to_photo: DMat3) -> Unwarped {
     Unwarped {
         image: Image::new(100, 80, 3).unwrap(),
@@ -111,7 +111,7 @@ fn a_footprint_has_the_magnification_and_the_angle_to_the_plane() {
     let footprint = unwarped(DMat3::from_scale(DVec2::new(0.5, 0.125))).footprint(DVec2::new(30.0, 20.0));
     assert!(footprint.place.abs_diff_eq(DVec2::new(15.0, 2.5), 1e-9));
     assert!((footprint.magnification - 4.0).abs() < 1e-9 && (footprint.incidence - 0.25).abs() < 1e-9);
-    // A turn changes neither.
+    // Rotations change neither the magnification nor the incidence.
     let turned = DMat3::from_angle(0.7) * DMat3::from_scale(DVec2::new(0.5, 0.125)) * DMat3::from_angle(-0.3);
     let footprint = unwarped(turned).footprint(DVec2::new(30.0, 20.0));
     assert!((footprint.magnification - 4.0).abs() < 1e-9 && (footprint.incidence - 0.25).abs() < 1e-9);

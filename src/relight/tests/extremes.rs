@@ -109,7 +109,7 @@ fn a_white_closed_room_and_rooms_of_any_size() {
 
 /// A convex vault in empty space sees nothing of itself: no light of its lamps returns to it, and the result says so.
 #[test]
-fn a_convex_ceiling_that_sees_nothing_is_dark() {
+fn a_convex_ceiling_receives_no_light_of_its_own() {
     let (apex, ring) = (Vec3::Y, |i: u32| Vec3::new((i as f32 * 0.785).cos(), 0.0, (i as f32 * 0.785).sin()) * 2.0);
     let cap = |from: u32, to: u32, material: usize| Mesh {
         material,

@@ -87,7 +87,7 @@ fn one_group_is_the_closed_form_and_bounds_hold() {
 /// Identical groups get equal powers, groups of very different strength cause no problems, and darkness is a valid
 /// goal.
 #[test]
-fn groups_that_are_alike_unlike_or_dark() {
+fn groups_of_equal_or_very_different_strength_and_dark_goals() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 3], [3, 12], [12, 12]], &[1.0, 1.0, 1.0, 1e-12]);
     let goals = [goal(Place::Surface(FLOOR), Vec3::splat(20.0))];
     let responses = respond(&world, &lamps, &goals);
@@ -159,7 +159,7 @@ fn other_light_that_is_too_bright_is_named() {
 
 /// Each reason for missed goals is reported in its own case.
 #[test]
-fn every_reason_is_told() {
+fn every_reason_for_a_missed_goal_is_reported() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
     let reason_for = |world: &World, goals: &[Goal], params: &GroupParams| {
         let responses = respond(world, &lamps, goals);

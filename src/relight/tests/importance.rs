@@ -49,7 +49,7 @@ fn lamps() -> Texture {
 /// The map times a texture equals tracing the textured room, within the joint interval, for any placement of the
 /// texture.
 #[test]
-fn a_dot_product_stands_for_tracing() {
+fn a_dot_product_with_the_map_equals_tracing() {
     let scene = coloured_room();
     let map = map(&scene, 32, 0.004);
     let turned =
@@ -77,10 +77,10 @@ fn a_dot_product_stands_for_tracing() {
     }
 }
 
-/// Reciprocity: the light per area that the floor gets from a uniform ceiling equals that which the ceiling gets from a
-/// uniform floor, all reflections included.
+/// Reciprocity: the light per area that the floor gets from a uniform ceiling equals that which the ceiling gets from
+/// a uniform floor, all reflections included.
 #[test]
-fn light_takes_the_same_ways_back() {
+fn light_transport_is_reciprocal() {
     let mean = |emitter: usize, target: usize| {
         let mut scene = coloured_room();
         // Give the floor a material of its own, so that either surface can emit.

@@ -102,7 +102,7 @@ fn a_known_emitter_is_recovered_under_other_light() {
 }
 
 #[test]
-fn what_cannot_be_met_is_said() {
+fn unreachable_targets_are_reported() {
     let params = Params { paths: 1 << 14, ..Params::default() };
     let unreachable = |scene: &Scene, target: Vec3, reason: &str| {
         let error = solve(scene, target, &params).unwrap_err();
@@ -167,7 +167,7 @@ fn a_limit_binds_only_where_it_is_broken() {
 }
 
 #[test]
-fn a_target_of_nothing_needs_no_light() {
+fn a_black_target_needs_no_light() {
     let scene = room(Vec3::ONE, Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);
     let solution = solve(&scene, Vec3::ZERO, &Params { paths: 1 << 14, ..Params::default() }).unwrap();
     assert_eq!(solution.scale, DVec3::ZERO);

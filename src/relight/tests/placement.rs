@@ -60,7 +60,7 @@ fn place(texture: &Image, params: &PlaceParams) -> Placement {
 /// A single lamp moves to the centre of the surface, where the importance is largest, from anywhere in its texture; or
 /// to the corner, where it is smallest.
 #[test]
-fn a_lamp_comes_to_where_it_means_most_or_least() {
+fn a_lamp_moves_to_the_largest_or_smallest_importance() {
     for (x, y) in [(10, 40), (50, 3)] {
         let at = DVec2::new(x as f64 + 4.0, y as f64 + 4.0) / 64.0;
         for (aim, where_to) in [(Aim::Brightest, DVec2::splat(0.5)), (Aim::Darkest, DVec2::ZERO)] {

@@ -17,7 +17,7 @@ fn solution(status: [TargetStatus; 3], sense: [Sense; 3]) -> Solution {
 }
 
 #[test]
-fn channels_that_are_met_raise_nothing() {
+fn channels_that_meet_their_target_raise_no_warning() {
     assert_eq!(solution([TargetStatus::Met; 3], [Sense::Exactly; 3]).warnings(), []);
     assert_eq!(solution([TargetStatus::Met; 3], [Sense::AtMost; 3]).warnings(), []);
 }

@@ -47,7 +47,7 @@ fn direction(cosine: f32, angle: f32) -> Vec3 {
 }
 
 #[test]
-fn directions_come_with_the_density_that_is_stated() {
+fn sampled_directions_follow_the_stated_pdf() {
     const ROWS: usize = 10;
     const COLUMNS: usize = 16;
     const VIEWS: [f32; 3] = [0.95, 0.6, 0.15];
@@ -96,7 +96,7 @@ fn directions_come_with_the_density_that_is_stated() {
 }
 
 #[test]
-fn light_goes_both_ways_alike() {
+fn the_bsdf_is_reciprocal() {
     let table = AlbedoTable::new();
     let mut rng = Rng::new(12, &[]);
     for substance in substances() {
@@ -126,7 +126,7 @@ fn albedo(substance: &Substance, view: f32, table: &AlbedoTable) -> (f64, f64) {
 }
 
 #[test]
-fn a_white_dielectric_sends_back_all_but_what_its_facets_lose() {
+fn a_white_dielectric_loses_energy_only_between_its_facets() {
     // Kelemen and Szirmay-Kalos: the diffuse layer compensates the mean albedo of the top layer.
     let table = AlbedoTable::new();
     for roughness in [0.0, 0.0005, 0.05, 0.2, 0.6, 1.0] {

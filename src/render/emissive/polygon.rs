@@ -126,7 +126,7 @@ mod tests {
     use crate::rng::Rng;
 
     #[test]
-    fn the_way_to_the_triangle_and_back_is_the_identity() {
+    fn sampling_a_triangle_and_its_inverse_are_the_identity() {
         for i in 1..256 * 256 {
             let v = Vec2::new((i % 256) as f32, (i / 256) as f32) / 256.0;
             let b = uniform_in_triangle(v);

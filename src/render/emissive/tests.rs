@@ -84,7 +84,7 @@ fn points_are_as_dense_as_the_light_they_emit() {
 }
 
 #[test]
-fn chosen_points_fall_as_often_as_the_density_says() {
+fn sampled_points_follow_the_stated_pdf() {
     // Count the samples in bins of barycentric coordinates; integrate the pdf over each bin by fine quadrature.
     let (bins, fine, samples) = (12, 40, 200_000);
     let mut rng = Rng::new(24, &[]);
@@ -172,7 +172,7 @@ fn densities_of_a_piece_integrate_to_one() {
 }
 
 #[test]
-fn triangles_on_one_texel_are_as_bright_as_it_and_dark_ones_are_no_lights() {
+fn triangles_on_one_texel_have_its_emission_and_dark_ones_are_no_lights() {
     let at = |x: f32, y: f32| [Vec2::new(x, y) / 9.0; 3].map(|uv| uv * Vec2::new(1.0, 9.0 / 5.0));
     for (uvs, lit) in [(at(0.5, 0.5), true), (at(2.5, 0.5), false)] {
         let scene = scene(9, uvs, Wrap::Repeat);

@@ -13,7 +13,8 @@ use glam::{DMat2, DVec2, Vec2};
 /// Side of a tile in texels.
 pub const SIDE: usize = 8;
 
-/// Largest number of texels (or four times that of the texture, if more) of a triangle that is divided. [convention]: bounds memory.
+/// Largest number of texels (or four times that of the texture, if more) of a triangle that is divided. [convention]:
+/// bounds memory.
 const MAX_TEXELS: f64 = (1 << 26) as f64;
 /// Texture coordinates beyond this many texels cannot separate neighbouring texels in single precision. [rounding]
 const MAX_TEXEL_COORDINATE: f64 = 8e6;

@@ -29,7 +29,8 @@ pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Largest number of paths per pixel in a tile, relative to `samples`. Without a limit, light that few paths find (a
 /// caustic, the glossy reflection of a small lamp) would take all paths. [origin not recorded]
 const MAX_TILE_RATIO: u32 = 64;
-/// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [convention: the target error is defined with it]
+/// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [convention: the
+/// target error is defined with it]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
 
 /// Chooses the passes of a render.

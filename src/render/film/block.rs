@@ -1,7 +1,7 @@
 //! Blocks of pixels whose paths share secondary vertices (`shared`).
 //!
-//! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its pixels
-//! do not show as blocks. The blocks depend on the position in the image alone.
+//! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its
+//! pixels do not show as blocks. The blocks depend on the position in the image alone.
 
 use super::eye::Eye;
 use super::grid::{AREA, TILE};
@@ -74,8 +74,8 @@ impl<'a> BlockTracer<'a> {
     }
 
     /// Sums of the radiance of each pixel's paths, for a range of path indices of one replication. Each recorder
-    /// records the paths of its pixel. Paths with a radiance that is not finite are dropped; `discarded` is called with
-    /// the index of their pixel in `members`.
+    /// records the paths of its pixel. Paths with a radiance that is not finite are dropped; `discarded` is called
+    /// with the index of their pixel in `members`.
     pub fn paths(
         &mut self,
         world: &World,

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_heed_those_beside_them_and_no_others() {
+    fn the_need_of_a_tile_depends_on_its_neighbours_only() {
         let grid = Grid { width: 4 * TILE, height: 3 * TILE };
         let mut values = vec![0.0; grid.tiles()];
         values[0] = 12.0;

@@ -2,10 +2,10 @@
 //!
 //! `eye` makes the camera paths. `tile` traces the paths of a tile of the `canvas`, `block` those of pixels that share
 //! secondary vertices; `pixel` holds the sums of a pixel. Between passes, `statistics` gives the errors, `adaptive`
-//! allocates the paths of the next `pass`, and `roulette` sets the weights for Russian roulette. `develop` assembles the
-//! images of a film, `interval` and `pooling` give confidence intervals. A pass extends the paths of each pixel up to a
-//! count, so that an interrupted pass leaves a valid image with fewer paths in some pixels. The counts follow from the
-//! pixels of the pass before: they are the same for any number of threads.
+//! allocates the paths of the next `pass`, and `roulette` sets the weights for Russian roulette. `develop` assembles
+//! the images of a film, `interval` and `pooling` give confidence intervals. A pass extends the paths of each pixel up
+//! to a count, so that an interrupted pass leaves a valid image with fewer paths in some pixels. The counts follow
+//! from the pixels of the pass before: they are the same for any number of threads.
 //!
 //! For renders in parts, `sums` adds up the paths of some pixels independently of all others, with roulette weights
 //! from a `prepass` instead of previous passes. `pilot` predicts the cost and the error of an image from a few of its

@@ -27,8 +27,8 @@ impl Pass {
         self.stride == 1
     }
 
-    /// Whether the pass covers no pixel of the tile with this corner; a coarse pass covers at most the first pixel of a
-    /// tile.
+    /// Whether the pass covers no pixel of the tile with this corner; a coarse pass covers at most the first pixel of
+    /// a tile.
     pub fn passes_over(&self, (left, top): (usize, usize)) -> bool {
         self.stride >= TILE && (left | top) & (self.stride - 1) != 0
     }

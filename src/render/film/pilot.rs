@@ -72,7 +72,7 @@ struct PilotTile {
     weight: f64,
     /// Number of selected tiles it represents in the last pass; 0 if it is not part of that pass.
     deep_weight: f64,
-    /// Its mean in the first look.
+    /// Its mean radiance in the first look.
     expected: f64,
     pixels: [Pixel; AREA],
     /// Paths of each pixel, and the time they took in seconds.
@@ -174,8 +174,8 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Time per path of the image, from the time that all pilot tiles took together: corrected for the difference between the
-/// selected tiles and all tiles of the image.
+/// Time per path of the image, from the time that all pilot tiles took together: corrected for the difference between
+/// the selected tiles and all tiles of the image.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
@@ -269,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_chosen_stands_for_all() {
+    fn systematic_samples_estimate_totals_without_bias() {
         // The estimate of any sum is unbiased, and the sum of the chances is exact.
         let chances = [0.1, 3.0, 0.0, 0.4, 1.5, 0.2, 7.0];
         let values = [5.0, 1.0, 0.0, 2.0, 4.0, 3.0, 9.0];

@@ -3,8 +3,8 @@
 //! Owen scrambling makes the points of one sequence dependent: their variance does not give the error of their mean,
 //! but the variance among independent scramblings does (Owen 1997). The paths of a pixel are dealt in turn to four
 //! independently scrambled replications. Each replication continues from pass to pass, which preserves its
-//! stratification at every power of two. Fewer replications would preserve more stratification; more of them would make
-//! the variance of a single pixel more accurate. `interval` averages the variance over neighbouring pixels.
+//! stratification at every power of two. Fewer replications would preserve more stratification; more of them would
+//! make the variance of a single pixel more accurate. `interval` averages the variance over neighbouring pixels.
 
 use glam::{DVec3, Vec3};
 
@@ -95,7 +95,8 @@ impl Pixel {
         for (replication, sum) in (0..REPLICATIONS).zip(&self.sums) {
             let paths = paths_of_replication(self.count, replication);
             if paths > 0 {
-                // Weight by the number of paths, as if the variance of a replication were inversely proportional to it.
+                // Weight by the number of paths, as if the variance of a replication were inversely proportional to
+                // it.
                 let distance = sum.as_dvec3() / f64::from(paths) - mean;
                 squares += distance * distance * f64::from(paths);
                 used += 1;

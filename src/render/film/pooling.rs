@@ -52,7 +52,7 @@ mod tests {
     use crate::job::Monitor;
 
     #[test]
-    fn pooling_keeps_what_is_even_and_forgives_what_is_unknown() {
+    fn pooling_keeps_constants_and_skips_infinite_variances() {
         let monitor = Monitor::default();
         let even = Image::from_fn(9, 5, |x, y| if (x, y) == (4, 2) { [f32::INFINITY, 2.0] } else { [3.0, 2.0] });
         let pooled = pooled(&even.unwrap(), monitor.job()).unwrap();

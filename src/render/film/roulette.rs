@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn light_is_worth_more_in_the_shade_and_what_it_is_where_nothing_is_known() {
+    fn roulette_weights_are_larger_in_the_shade_and_one_without_paths() {
         let job = Monitor::default();
         let unseen = vec![Pixel::default(); 3 * AREA];
         assert!(median_radiance(&unseen, job.job()).unwrap().is_none());

@@ -13,7 +13,8 @@ use crate::job::Job;
 use glam::DVec3;
 
 /// Smallest radiance, relative to the mean of the image, to which the error of a pixel is related in the error of the
-/// whole image. It may be lower than for errors of single pixels: a dark pixel does not hold up the others. [convention: the relative error is defined with it]
+/// whole image. It may be lower than for errors of single pixels: a dark pixel does not hold up the others.
+/// [convention: the relative error is defined with it]
 const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
 /// Sums over the pixels of a tile or of the image.

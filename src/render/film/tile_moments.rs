@@ -31,7 +31,8 @@ pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileM
 }
 
 impl TileMoments {
-    /// One path in each of `along` by `along` squares of the tile, at a different position in each row of squares.
+    /// Traces one path in each of `along` by `along` squares of a tile, at a different position in each row of
+    /// squares.
     fn of(prepass: &Prepass, grid: Grid, tile: usize, along: usize) -> Self {
         let (left, top) = grid.corner(tile);
         let (mut sum, mut squares) = (0.0, 0.0);

@@ -25,15 +25,16 @@ use tree::LightTree;
 pub struct Lights {
     pub emitters: Emitters,
     punctual: Vec<Punctual>,
-    /// Selects among the pieces of emitters, followed by the near punctual lights.
+    /// Selects among the lights at a finite distance: first the pieces of the emitters, then the points, spots and
+    /// luminaires.
     tree: LightTree,
     pieces: usize,
-    /// The punctual lights at the leaves after the pieces.
+    /// For each light of the tree after the pieces, its index among the punctual lights.
     near: Vec<u32>,
-    /// Selects among all punctual lights; the near ones have zero weight, because `tree` selects them.
+    /// Selects among the directional lights; all other punctual lights have zero weight.
     directional: Distribution,
     environment: Option<EnvironmentSampler>,
-    /// Selection probabilities of the groups: near lights, directional lights, environment.
+    /// Selection probabilities of the groups: lights at a finite distance, directional lights, environment.
     groups: [f64; 3],
 }
 
@@ -47,7 +48,8 @@ pub struct LightSample {
     /// Radiance in cd/m², intensity in cd, or illuminance in lux, depending on the light.
     pub emission: Vec3,
     /// Emission / pdf estimates the illuminance of a surface perpendicular to the light: the solid-angle pdf for
-    /// surfaces and the environment, pmf × squared distance for near punctual lights, the pmf for directional ones.
+    /// surfaces and the environment, pmf × squared distance for punctual lights at a finite distance, the pmf for
+    /// directional lights.
     pub pdf: f32,
     /// Solid-angle pdf for MIS against BSDF samples; `None` for punctual lights, which no BSDF sample can hit.
     pub mis_pdf: Option<f32>,

@@ -53,7 +53,7 @@ fn tree(lights: &[(Bounds, [Vec3; 3])]) -> LightTree {
 }
 
 #[test]
-fn lights_are_chosen_as_often_as_the_tree_states() {
+fn sampled_lights_follow_the_pmf_of_the_tree() {
     let mut rng = Rng::new(41, &[]);
     let n = 40_000;
     for count in [1, 2, 8, 9, 300] {
@@ -85,7 +85,7 @@ fn lights_are_chosen_as_often_as_the_tree_states() {
 }
 
 #[test]
-fn the_way_down_the_tree_has_a_way_back() {
+fn sampling_the_tree_can_be_inverted() {
     // The random numbers that select a light form an interval of the length of its pmf; the remainder is the position
     // in it.
     let mut rng = Rng::new(44, &[]);
@@ -104,9 +104,8 @@ fn the_way_down_the_tree_has_a_way_back() {
     }
 }
 
-#[test]
-fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
-    // The pdf of a punctual light is its pmf × the squared distance.
+/// A floor under an emissive square, six punctual lights of all kinds, and an environment.
+fn every_light() -> Scene {
     let mut scene =
         over_floor(vec![Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)], vec![matt(0.0, 3.0)]);
     let intensity = |i: usize| Vec3::splat(1.0 + i as f32);
@@ -133,7 +132,12 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
         .collect();
     scene.distributions = vec![Arc::new(Luminaire::lambertian("panel", 4.0, [0.0; 3]))];
     scene.environment = Some(Environment::Constant(Vec3::splat(0.5)));
-    let world = world(scene);
+    scene
+}
+
+#[test]
+fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
+    let world = world(every_light());
     let receiver = Receiver { position: Vec3::new(0.1, 0.0, 0.0), normal: Vec3::Y };
     // Count the punctual lights, the surface, the environment, and samples without a light.
     let (mut counts, mut stated) = ([0.0; 9], [0.0; 9]);
@@ -147,6 +151,7 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
         };
         match sample.source {
             LightSource::Punctual(index) => {
+                // The pdf of a punctual light is its pmf × the squared distance.
                 let distance2 = match sample.end {
                     Some(LightEnd::Point(p)) => p.distance_squared(receiver.position),
                     _ => 1.0,
@@ -505,7 +510,7 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
 }
 
 #[test]
-fn light_goes_from_one_surface_to_another_as_it_comes_back() {
+fn light_transport_between_two_surfaces_is_reciprocal() {
     // Reciprocity between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
     let quads = || {
         vec![

@@ -22,8 +22,8 @@ const NONE: u32 = u32::MAX;
 const LIGHT: u32 = 1 << 31;
 
 pub struct LightTree {
-    /// Pmf of few lights whose importance does not depend on the receiver: a single light, or lights in one box such as
-    /// the two triangles of a rectangle. All positive; at most as many as a node has children. The tree then has no
+    /// Pmf of few lights whose importance does not depend on the receiver: a single light, or lights in one box such
+    /// as the two triangles of a rectangle. All positive; at most as many as a node has children. The tree then has no
     /// nodes.
     fixed: Vec<f64>,
     nodes: Vec<Node>,
@@ -56,7 +56,8 @@ struct Item {
 struct Cluster {
     /// Cost of the cluster before the split.
     cost: f32,
-    /// Indices of the two parts in the list; for a part of a single light the index of the light with the flag `LIGHT`.
+    /// Indices of the two parts in the list; for a part of a single light the index of the light with the flag
+    /// `LIGHT`.
     parts: [u32; 2],
 }
 
@@ -175,8 +176,8 @@ impl LightTree {
     }
 }
 
-/// Divides a cluster down to its lights, in parallel; returns its index in the list. `clusters` is the part of the list
-/// from index `first` on.
+/// Divides a cluster down to its lights, in parallel; returns its index in the list. `clusters` is the part of the
+/// list from index `first` on.
 fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;

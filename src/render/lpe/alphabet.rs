@@ -26,7 +26,7 @@ pub struct Alphabet {
     pub lights: Vec<Event>,
     /// Class of each mesh; also the index of its light event.
     class_of_mesh: Vec<u32>,
-    /// For meshes whose lamps are distinguished.
+    /// The lamps of each mesh, if an expression distinguishes them.
     lamps: Vec<Option<Lamps>>,
     punctual: Vec<u32>,
     environment: u32,

@@ -2,8 +2,8 @@
 //! Scott 1959; minimised by partition refinement, Moore 1956).
 //!
 //! A path of camera, scattering events and a light moves through it with one look-up per event. All states from which
-//! no light can complete an expression are merged into [`DEAD`]; a share of a path in that state is dropped. Equivalent
-//! states are merged, so that a path has as few components as the expressions allow.
+//! no light can complete an expression are merged into [`DEAD`]; a share of a path in that state is dropped.
+//! Equivalent states are merged, so that a path has as few components as the expressions allow.
 
 use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, Node, kind};

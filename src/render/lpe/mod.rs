@@ -1,11 +1,10 @@
-//! Light path expressions: images of the light that took certain paths (Heckbert 1990, "Adaptive radiosity textures for
-//! bidirectional ray tracing"; StyLit, section 3.2; Open Shading Language, "OSL Light Path Expressions").
+//! Light path expressions: images of the light that took certain paths (Heckbert 1990, "Adaptive radiosity textures
+//! for bidirectional ray tracing"; StyLit, section 3.2; Open Shading Language, "OSL Light Path Expressions").
 //!
 //! An expression is a regular expression over the events of a path, in one of two orders:
 //!
 //! * Light first, as in the papers, from a light `L` to the eye `E`: `LDE`, `LSE`, `LD{1,2}E`, `L.*DDE`, `LS*DE`. `L`
-//!   is any light
-//! and `S` is any event that is not diffuse: Heckbert has no other classes.
+//!   is any light and `S` is any event that is not diffuse: Heckbert has no other classes.
 //! * Camera first, as in Open Shading Language, from the camera `C`: `C<RD>L`, `C[GS]+.*<L.'Lamp'>`.
 //!
 //! | event | |
@@ -76,9 +75,9 @@ impl Expression {
     }
 }
 
-/// Names of expressions, after Arnold's built-in ones. "direct" is light from any source, including the environment and
-/// emissive surfaces; "specular" is glossy and mirror reflection. With every [`EmitterAs`], `emission`, `background`,
-/// and the direct and indirect light of each kind add up to the whole image.
+/// Names of expressions, after Arnold's built-in ones. "direct" is light from any source, including the environment
+/// and emissive surfaces; "specular" is glossy and mirror reflection. With every [`EmitterAs`], `emission`,
+/// `background`, and the direct and indirect light of each kind add up to the whole image.
 pub const BUILT_IN: &[(&str, &str)] = &[
     ("RGBA", "C.*"),
     ("beauty", "C.*"),

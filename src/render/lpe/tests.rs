@@ -118,7 +118,7 @@ const CAMERA_FIRST: &[Row] = &[
 ];
 
 #[test]
-fn expressions_accept_the_paths_they_say_and_no_others() {
+fn expressions_accept_exactly_their_paths() {
     let mut rows = 0;
     for &(expression, yes, no) in LIGHT_FIRST.iter().chain(CAMERA_FIRST) {
         let automaton = automaton(&[expression], EmitterAs::Both);
@@ -195,7 +195,7 @@ fn built_in_kinds_of_light_add_up_to_the_whole() {
 }
 
 #[test]
-fn what_leads_nowhere_is_dropped_at_once() {
+fn paths_that_no_expression_can_accept_are_dropped_at_once() {
     let automaton = automaton(&["LDE", "LSE"], EmitterAs::Both);
     let class = automaton.class(0);
     let [diffuse, ..] = *automaton.next(automaton.start(), class);
@@ -204,7 +204,7 @@ fn what_leads_nowhere_is_dropped_at_once() {
 }
 
 #[test]
-fn what_is_no_expression_is_refused_where_it_ceases_to_be_one() {
+fn syntax_errors_state_their_column() {
     let rows: &[(&str, usize, &str)] = &[
         ("", 1, "expected an event"),
         ("LDXE", 3, "found 'X'"),
@@ -253,7 +253,7 @@ fn refused(text: &str) -> Error {
 }
 
 #[test]
-fn what_needs_too_many_states_is_refused() {
+fn expressions_with_too_many_states_are_refused() {
     // The automaton must remember the last 12 of any number of scatterings, in at least 2^12 states.
     automaton(&["C.*D.{8}L"], EmitterAs::Both);
     for text in ["C.*D.{12}L", "L(DD|....+.(DD|....+...S?){8}E?){6}E"] {
@@ -263,7 +263,7 @@ fn what_needs_too_many_states_is_refused() {
 }
 
 #[test]
-fn what_no_path_can_match_is_refused_with_the_scene() {
+fn expressions_that_no_path_can_match_are_refused() {
     for text in ["C", "CD", "CVL", "CLD", "CCL", "LED", "C<RD'Floor''Ball'>L"] {
         assert!(refused(text).message.contains("matches no path"), "{text}");
     }

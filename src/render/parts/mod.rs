@@ -4,11 +4,11 @@
 //! image. Path number n of a pixel is the same in every partition. The merged image therefore equals a render in a
 //! single part up to the rounding of sums in f64 (`film::sums`), for any partition and order.
 //!
-//! Pixels outside a part whose block it cuts are traced with the part, for their secondary vertices; parts at multiples
-//! of 8 pixels avoid this cost. Apart from that, a part does not know the results of others. All parts therefore have a
-//! fixed number of paths, without error targets or a time budget. The roulette weights come from a prepass
-//! (`film::prepass`) instead of the previous passes of [`super::run`]. Both are unbiased, but their images differ
-//! within their errors.
+//! If the border of a part cuts a block of pixels that share vertices, the part also traces the pixels of the block
+//! outside of it, for their secondary vertices; borders at multiples of 8 pixels avoid this cost. A part does not
+//! depend on the results of other parts. All parts therefore have a fixed number of paths, without error targets or a
+//! time budget. The roulette weights come from a prepass (`film::prepass`) instead of the previous passes of
+//! [`super::run`]. Both are unbiased, but their images differ within their errors.
 //!
 //! `cover` checks that the parts are complete; `identity` checks that they belong to one render.
 

@@ -5,8 +5,8 @@ const MIN_EXPECTED: f64 = 10.0;
 /// Probability that at least one of all tests of a routine fails by chance. [convention]
 const CHANCE: f64 = 1e-3;
 
-/// Asserts that counts follow their expectation, as one of `tests` tests whose joint probability of a chance failure is
-/// 1/1000 (Šidák 1967). Both must cover the whole sample space: their sums are equal up to quadrature errors.
+/// Asserts that counts follow their expectation, as one of `tests` tests whose joint probability of a chance failure
+/// is 1/1000 (Šidák 1967). Both must cover the whole sample space: their sums are equal up to quadrature errors.
 pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], tests: usize, what: &str) {
     let bins = pooled(expected, observed);
     let (total, seen) = bins.iter().fold((0.0, 0.0), |(e, o), bin| (e + bin.0, o + bin.1));
@@ -68,7 +68,7 @@ fn bins_are_taken_together_and_none_is_lost() {
 
 #[test]
 #[should_panic(expected = "chi-squared is")]
-fn what_is_a_few_percent_off_is_found() {
+fn deviations_of_a_few_percent_are_detected() {
     let observed: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1050.0 } else { 950.0 }).collect();
     assert_follows(&[1000.0; 100], &observed, 1, "a comb");
 }

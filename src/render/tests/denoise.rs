@@ -72,7 +72,7 @@ fn squares(image: &Image) -> Vec<f64> {
 }
 
 #[test]
-fn a_preview_has_a_fraction_of_the_error_and_says_how_far_off_its_mean_is() {
+fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     const RENDERS: usize = 24;
     let (world, camera) = room();
     let size = Params { width: 72, height: 48, ..Params::default() };
@@ -113,7 +113,7 @@ fn a_preview_has_a_fraction_of_the_error_and_says_how_far_off_its_mean_is() {
 }
 
 #[test]
-fn a_render_makes_its_own_preview_and_shows_only_what_was_asked_for() {
+fn a_render_adds_a_preview_and_only_the_requested_layers() {
     let (world, camera) = room();
     let outputs = Outputs { aovs: vec![Aov::Normal, Aov::Depth], ..Outputs::default() };
     let params = Params { width: 40, height: 30, samples: 8, preview: 1.0, outputs, ..Params::default() };
@@ -142,7 +142,7 @@ fn a_render_makes_its_own_preview_and_shows_only_what_was_asked_for() {
 }
 
 #[test]
-fn without_variance_the_image_comes_out_as_it_is() {
+fn without_variance_the_image_is_unchanged() {
     let (world, camera) = room();
     let params = Params { width: 40, height: 30, samples: 8, ..Params::default() };
     let mut sure = halves(&world, &camera, &params);

@@ -116,7 +116,7 @@ fn one_pixel_and_very_wide_and_very_high_images() {
 }
 
 #[test]
-fn nothing_at_all_is_black_or_the_sky() {
+fn an_empty_scene_is_black_or_shows_the_sky() {
     let camera = Camera::look_at(Vec3::ZERO, Vec3::X, 1.0);
     let params = Params { width: 1, height: 1, samples: 1, ..Params::default() };
     let film = render(&world(Scene::default()), &camera, &params);

@@ -127,7 +127,7 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
 }
 
 #[test]
-fn pixels_are_as_sure_as_was_asked() {
+fn pixels_reach_the_requested_error() {
     let world = world(everything());
     let params = Params { width: 32, height: 32, samples: 1 << 14, pixel_error: 0.3, ..Params::default() };
     let film = render(&world, &viewer(), &params);
@@ -217,7 +217,7 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
 }
 
 #[test]
-fn what_is_no_number_is_left_out_and_counted() {
+fn paths_that_are_not_finite_are_dropped_and_counted() {
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.9, f32::MAX)], ..Scene::default() };
     let params = Params { width: 4, height: 4, samples: 16, ..Params::default() };
     let film = render(&world(scene), &Camera::look_at(Vec3::ZERO, Vec3::X, 1.0), &params);

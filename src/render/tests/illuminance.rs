@@ -20,8 +20,8 @@ fn lit_floor() -> Scene {
     }
 }
 
-/// The error of a point comes from 16 batches: its deviation follows Student's t with 15 degrees of freedom. Any of the
-/// 45 points below exceeds this value with a probability of 1/1000 in total (Šidák: 2.2e-5 for each).
+/// The error of a point comes from 16 batches: its deviation follows Student's t with 15 degrees of freedom. Any of
+/// the 45 points below exceeds this value with a probability of 1/1000 in total (Šidák: 2.2e-5 for each).
 const T15: f64 = 6.02;
 
 #[test]

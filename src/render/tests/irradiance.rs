@@ -141,7 +141,7 @@ fn skies_light_a_floor_by_their_integral() {
 }
 
 #[test]
-fn scattering_alone_finds_the_same_light_as_the_weighed_strategies() {
+fn bsdf_sampling_alone_agrees_with_mis() {
     let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     let lamp = Mesh::parallelogram(Vec3::new(-0.7, 0.8, -0.5), Vec3::X, Vec3::new(0.0, 0.3, 1.5), 1);
     let shade = Mesh::parallelogram(Vec3::new(-0.2, 0.4, -0.3), Vec3::X * 0.5, Vec3::Z * 0.5, 2);

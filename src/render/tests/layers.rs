@@ -188,7 +188,7 @@ fn direct_diffuse_light_is_the_form_factor_whatever_the_walls_add() {
 }
 
 #[test]
-fn layers_of_a_paint_are_told_apart_under_a_lamp() {
+fn the_layers_of_a_paint_are_separated() {
     // With one floor and one punctual light, the image is LDE + LSE; each is a layer of the BSDF.
     let paint = Material { base_color: Vec3::new(0.6, 0.4, 0.2), metallic: 0.0, roughness: 0.5, ..Material::default() };
     let scene = Scene {
@@ -264,7 +264,7 @@ impl Params {
 }
 
 #[test]
-fn objects_are_lights_by_the_letter_asked_for() {
+fn emissive_objects_match_the_requested_light_letters() {
     let world = world(open());
     let params = Params { width: 12, height: 8, samples: 8, ..Params::default() };
     let letters = [("L", "C.*L"), ("O", "C.*O"), ("B", "C.*B")];

@@ -30,7 +30,7 @@ const FLOOR: [Vec3; 4] = [Vec3::new(-2.0, 0.0, -2.0), Vec3::new(4.0, 0.0, 0.0), 
 
 /// A luminaire of uniform intensity equals a point light; one of cosine intensity lights a plane by `I cos⁴ / h²`.
 #[test]
-fn even_and_matt_luminaires_light_a_plane_by_closed_forms() {
+fn uniform_and_lambertian_luminaires_agree_with_closed_forms() {
     let even = b"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n250 250\n";
     let even = ies::read(even).unwrap();
     let matt = Luminaire::lambertian("panel", 1000.0, [0.6, 0.6, 0.0]);
@@ -51,7 +51,7 @@ fn even_and_matt_luminaires_light_a_plane_by_closed_forms() {
 
 /// Each quarter of the circle receives the intensity of its C plane, for any orientation of the luminaire.
 #[test]
-fn planes_lie_where_the_axes_say() {
+fn c_planes_follow_the_axes_of_the_luminaire() {
     let quarters = Luminaire {
         gammas: vec![0.0, 180.0],
         planes: vec![0.0, 90.0, 180.0, 270.0],

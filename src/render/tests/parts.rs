@@ -132,7 +132,7 @@ fn a_merged_image_has_the_mean_and_the_error_of_one_rendered_at_once() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_refused_by_name() {
+fn parts_that_do_not_belong_together_are_refused_by_name() {
     let (scene, folder) = (everything(), Folder::new("refused"));
     let world = world(scene.clone());
     let params = Params { width: 16, height: 12, samples: 8, ..Params::default() };

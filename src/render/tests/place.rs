@@ -35,7 +35,7 @@ fn room(at: Vec3) -> (Scene, Camera) {
 }
 
 #[test]
-fn a_room_a_million_metres_away_looks_as_it_does_at_home() {
+fn a_room_a_million_metres_away_looks_the_same_as_at_the_origin() {
     let outputs = Outputs { aovs: vec![Aov::Depth, Aov::Position], ..Outputs::default() };
     let params = Params { width: 32, height: 24, samples: 16, outputs, ..Params::default() };
     let film = |at: Vec3| {

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn what_cannot_be_rendered_is_refused_by_name() {
+fn invalid_scenes_and_parameters_are_refused_by_name() {
     let valid = everything();
     let refused = |change: &dyn Fn(&mut Scene), word: &str| {
         let mut scene = valid.clone();

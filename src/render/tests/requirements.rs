@@ -15,7 +15,7 @@ fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
 }
 
 #[test]
-fn leaving_out_what_is_not_required_changes_nothing() {
+fn omitting_features_that_a_scene_does_not_require_changes_nothing() {
     let rooms = || {
         let mut room = inward_sphere(2.0, 0);
         room.normals = room.positions.iter().map(|p| -p.normalize()).collect();
@@ -35,7 +35,7 @@ fn leaving_out_what_is_not_required_changes_nothing() {
 }
 
 #[test]
-fn what_can_occur_is_found_and_what_cannot_is_named() {
+fn required_features_are_found_and_unsupported_ones_are_named() {
     let all = world(everything());
     let r = all.requirements();
     assert!(r.diffuse && r.glossy && r.mirror && r.glass && r.alpha && r.normal_maps);
@@ -91,10 +91,9 @@ fn what_can_occur_is_found_and_what_cannot_is_named() {
     assert_eq!((textured(0.75).textures, textured(0.75).albedo), (1, Vec3::splat(0.375)));
 }
 
-/// A glass ball would show the world upside down, and a pane shows it as it is: the report says which of them a scene
-/// has.
+/// A solid glass ball refracts and a thin pane does not: the report lists the solids.
 #[test]
-fn glass_that_would_bend_light_is_named() {
+fn glass_that_refracts_is_reported() {
     let glass = Material { transmission: 1.0, metallic: 0.0, roughness: 0.0, ..Material::default() };
     let mut pane = Mesh::parallelogram(Vec3::ZERO, Vec3::X, Vec3::Y, 1);
     let named = |glass: &Material, meshes: &[&Mesh]| {
@@ -149,7 +148,7 @@ fn bounces_follow_from_the_albedo() {
 
 /// A room of uniform albedo is the worst case: the truncated light reaches the bound.
 #[test]
-fn truncation_takes_no_more_than_it_says() {
+fn truncation_stays_within_its_bound() {
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 3.0)], ..Scene::default() };
     let world = world(scene);
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);

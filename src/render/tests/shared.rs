@@ -7,8 +7,8 @@ use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
 use crate::render::tape::Sum as Light;
 use crate::scene::accel::Ray;
 
-/// A room with every case that decides about sharing: matt, glossy, metal, mirror and glass, a smooth ball, leaves with
-/// alpha, a pane in front of a corner, and a pane outside the view.
+/// A room with every case that decides about sharing: matt, glossy, metal, mirror and glass, a smooth ball, leaves
+/// with alpha, a pane in front of a corner, and a pane outside the view.
 fn room() -> Scene {
     let mut scene = everything();
     let materials = scene.materials.len();

@@ -121,7 +121,7 @@ struct Open {
     area: f32,
     /// The parent node, and the lane of this child.
     parent: Option<(usize, usize)>,
-    /// Stack entries waiting when it is visited.
+    /// Number of entries on the stack when a ray visits it.
     waiting: usize,
 }
 
@@ -130,7 +130,7 @@ struct Left {
     at: Place,
     node: usize,
     lane: usize,
-    /// Stack entries waiting when it is visited.
+    /// Number of entries on the stack when a ray visits it.
     waiting: usize,
 }
 

@@ -59,7 +59,7 @@ impl Branch {
         Self { shape, content, count: node.prim_count, area, surface: area, cost: [area * PACKET_COST; 7] }
     }
 
-    /// Estimated number of lines of memory: packets are rarely full, and nodes add a tenth.
+    /// Estimated number of cache lines: packets are rarely full, and nodes add a tenth.
     pub fn lines(&self) -> usize {
         self.count as usize * 5 / 4 + 8
     }

@@ -23,7 +23,7 @@ const BITS: u32 = 21;
 const MIN_EXTENT: f64 = 1e-9;
 
 pub(super) struct Leaves {
-    /// Each holds one or two triangles, starting at its first index. Boxes are scaled by `scale`.
+    /// The leaves. Each holds one or two triangles, starting at `first_index`. Boxes are scaled by `scale`.
     pub list: Vec<Bvh2Node>,
     /// Morton codes of the centres with their indices in the list, sorted.
     pub order: Vec<(u64, u32)>,

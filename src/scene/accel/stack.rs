@@ -6,7 +6,8 @@ use super::lanes::{Lanes, Row, take_lowest};
 use super::node::Child;
 use std::mem::MaybeUninit;
 
-/// A child with the bits of its entry distance above it: non-negative distances sort as their bits do.
+/// A child in the low 32 bits, and the bits of its entry distance in the high 32 bits: non-negative distances sort as
+/// their bits do.
 pub(super) type Waiting = u64;
 
 /// Entries beyond those in use that may be overwritten.

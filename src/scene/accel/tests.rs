@@ -139,7 +139,7 @@ fn coincident_triangles_give_the_lowest_index_and_refused_hits_are_passed_over()
 }
 
 #[test]
-fn nothing_needles_and_nonsense_are_survived() {
+fn empty_scenes_needles_and_invalid_triangles_are_handled() {
     let ray = Ray::new(Vec3::ZERO, Vec3::Z);
     assert!(build(&[]).closest(&ray, |_| true).is_none());
     let nan = [Vec3::NAN, Vec3::X, Vec3::Y];
@@ -262,7 +262,7 @@ fn few_triangles_among_broken_ones_are_found_at_every_scale() {
 }
 
 #[test]
-fn rays_of_any_numbers_are_survived() {
+fn rays_of_any_bit_patterns_are_handled() {
     let extremes = [0.0, -0.0, 1.0, -0.3, 1e-45, -1e-38, 1e-30, 1e-18, 1e15, -1e30, 3.4e38, f32::INFINITY, f32::NAN];
     let mut accel = build(&room_with_block());
     let mut rng = Rng::new(6, &[]);
@@ -298,7 +298,7 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
 /// of the grid.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_cancel_is_heard_within_50_ms_while_three_million_triangles_are_built() {
+fn a_cancel_is_answered_within_50_ms_while_three_million_triangles_are_built() {
     /// CPU time of this thread in nanoseconds, to a few milliseconds; load on the machine does not count.
     fn now() -> u64 {
         let schedstat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();

@@ -184,7 +184,8 @@ struct Best {
 }
 
 impl Best {
-    /// Tests eight triangles; only an accepted hit shortens the ray. Returns whether the search ends, which needs `ANY`.
+    /// Tests eight triangles; only an accepted hit shortens the ray. Returns whether the search ends, which needs
+    /// `ANY`.
     #[inline(always)]
     fn update<L: Lanes, const ANY: bool>(
         &mut self,

@@ -135,7 +135,8 @@ pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f
     Ok((accessor.normalized && kind != ComponentType::F32).then(|| largest_of(kind)))
 }
 
-/// Reads vectors of `N` numbers, or matrices of four columns as 16; normalised integers are scaled to `[0, 1]` or `[-1, 1]`.
+/// Reads vectors of `N` numbers, or matrices of four columns as 16; normalised integers are scaled to `[0, 1]` or
+/// `[-1, 1]`.
 pub fn vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
     read_vectors(file, index).map_err(|e| e.within(format_args!("accessor {}", index.value())))
 }

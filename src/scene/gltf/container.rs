@@ -15,12 +15,12 @@ const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: &[u8] = b"JSON";
 const BINARY_CHUNK: &[u8] = b"BIN\0";
 
-/// Where the files are that a file names.
+/// The location of the external files that a file refers to.
 #[derive(Clone, Copy)]
 pub struct Folder<'a> {
-    /// Paths are relative to it.
+    /// The folder to which paths are relative; `None` for a file held in memory.
     pub path: Option<&'a Path>,
-    /// Whether they may lead out of it.
+    /// Whether paths may lead out of the folder.
     pub is_open: bool,
 }
 
@@ -29,7 +29,7 @@ pub struct File<'a> {
     pub root: Root,
     /// The parts that are not rendered, as far as the JSON shows them.
     pub unrendered: Vec<Unrendered>,
-    /// `None` for one without data: it may stand for decoded data, or for nothing that is used.
+    /// `None` for a buffer without data: the fallback of compressed views, or a buffer that is not used.
     buffers: Vec<Option<Cow<'a, [u8]>>>,
     /// The decoded data of compressed buffer views.
     unpacked: Vec<(usize, Vec<u8>)>,
@@ -77,7 +77,7 @@ impl<'a> File<'a> {
     fn part(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8]> {
         let whole = self.buffers.get(buffer).ok_or_else(|| missing("buffer", buffer, self.buffers.len()))?;
         let Some(whole) = whole else {
-            // Such a file is valid: an extension of its maker's may give the data.
+            // Such a file is valid: an extension of a vendor may supply the data.
             let message = format!("buffer {buffer} has no URI, and the file has no binary chunk for it");
             return Err(Error::new(ErrorKind::Unsupported, message));
         };
@@ -99,7 +99,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// Bytes that decoding all compressed buffer views gives.
+    /// Size in bytes of all compressed buffer views after decoding.
     pub fn packed_bytes(&self) -> Result<u64> {
         self.packed().try_fold(0u64, |sum, (_, packed)| Ok(sum.saturating_add(packed?.bytes())))
     }
@@ -174,7 +174,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     json.map(|json| (json, binary)).ok_or_else(|| Error::format("the GLB file has no JSON chunk"))
 }
 
-/// The path in a URI, which cannot leave its folder unless that is open.
+/// The path in a URI; an error if it leads out of the folder, unless `is_open`.
 fn relative_path(uri: &str, is_open: bool) -> Result<PathBuf> {
     let broken = |why: &str| Error::format(format!("the external file {uri:?} {why}"));
     let refused = |why: &str| Error::new(ErrorKind::Unsupported, format!("the external file {uri:?} {why}"));

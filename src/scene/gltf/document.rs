@@ -23,7 +23,7 @@ pub fn parse(json: &[u8]) -> Result<(Root, Vec<Unrendered>)> {
     Ok((serde_json::from_value(document).map_err(broken)?, unrendered))
 }
 
-/// Refuses files of glTF 1, and files that ask for more than glTF 2.0.
+/// Refuses files of glTF 1, and files that require a version above 2.0.
 fn check_version(document: &Value) -> Result<()> {
     let asset = document.get("asset");
     let stated = |key: &str| -> Result<Option<(&str, [u32; 2])>> {
@@ -68,7 +68,7 @@ fn complete(root: &mut Map<String, Value>) {
         scene.entry("nodes").or_insert_with(|| json!([]));
     }
     for texture in objects(root, "textures") {
-        // The picture is WebP, and the other one only for readers that do not know WebP.
+        // Use the WebP image: the other source is a fallback for readers without WebP.
         let source = texture.get("extensions").and_then(|e| e.get(features::WEBP)?.get("source").cloned());
         if let Some(source) = source {
             texture.insert("source".into(), source);

@@ -11,23 +11,23 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, buffer};
 use serde_json::Value;
 
-/// Bytes that the decoder takes at most for each vertex and for each triangle, beside the values: the tables of corners,
-/// the traversal, and the symbols.
+/// Upper bounds of the bytes that the decoder allocates per vertex and per triangle, in addition to the values: corner
+/// tables, traversal and symbols.
 const VERTEX_BYTES: u64 = 256;
 const TRIANGLE_BYTES: u64 = 256;
 
-/// Bytes of a component of the decoded values: of their integers, and of the values themselves.
+/// Bytes per component of the decoded attributes: the integers, and the values made from them.
 const COMPONENT_BYTES: u64 = 16;
 
 /// A decoded primitive.
 pub struct Decoded {
     mesh: Mesh,
-    /// The stream's number of each attribute.
+    /// Each attribute by its name, with its number in the stream.
     numbers: Vec<(String, u32)>,
 }
 
 impl Decoded {
-    /// Decodes a primitive, unless it has no such stream or its accessors have the same data.
+    /// Decodes a primitive; `None` if it has no Draco stream, or if its accessors hold the same data uncompressed.
     pub fn read(file: &File, budget: &dyn Budget, primitive: &Primitive) -> Result<Option<Self>> {
         let Some(settings) = primitive.extensions.as_ref().and_then(|e| e.others.get(DRACO)) else { return Ok(None) };
         let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));

@@ -31,10 +31,10 @@ pub const READ: [&str; 13] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions that change no picture, or whose file has the same picture in another form too.
+/// Extensions without an effect on the picture, or whose files also contain the picture in a form that is read.
 const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds"];
 
-/// A member that makes an extension do nothing, and the value that it has then and by default.
+/// A property of an extension, and its default value, with which the extension has no effect.
 type Neutral = (&'static str, f64);
 
 /// Extensions of materials that are not rendered, with the missing effect and their neutral settings.
@@ -118,13 +118,13 @@ fn extensions(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> St
     }
 }
 
-/// Whether all settings have the values with which an extension does nothing.
+/// Whether all settings have the default values, with which the extension has no effect.
 fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
     let is = |value: &Value, wanted: f64| match value {
         Value::Array(numbers) => numbers.iter().all(|number| number.as_f64() == Some(wanted)),
         value => value.as_f64() == Some(wanted),
     };
-    // Textures multiply: they change a factor of 1, not one of 0.
+    // A texture is multiplied by its factor, so it has no effect if the default factor is 0.
     let has_texture = || settings.as_object().is_some_and(|s| s.keys().any(|key| key.ends_with("Texture")));
     let is_factor = neutral.iter().any(|&(_, wanted)| wanted != 0.0);
     !neutral.is_empty()

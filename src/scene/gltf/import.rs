@@ -5,7 +5,7 @@ use super::features::{IES, READ};
 use super::instances::{instances, local_transform};
 use super::material::Materials;
 use super::nodes::roots;
-use super::pose::{self, Bent, mixed};
+use super::pose::{self, Skinning, mixed};
 use super::vertices::Vertices;
 use super::{Budget, Options, accessor};
 use crate::error::{Error, ErrorKind, Result};
@@ -94,14 +94,21 @@ struct Importer<'a> {
     triangles: u64,
 }
 
-/// Where and in which shape a node shows its mesh.
+/// The transform and the pose with which a node shows its mesh.
 #[derive(Clone, Copy)]
 struct Placement<'a> {
     transform: DMat4,
-    /// Joints move the mesh instead of the transform.
+    /// The skin, whose joints replace the transform.
     skin: Option<Index<Skin>>,
     /// Weights of the morph targets.
     weights: &'a [f32],
+}
+
+/// The vertices of a primitive in world space.
+struct Posed {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    is_mirrored: bool,
 }
 
 impl Importer<'_> {
@@ -216,55 +223,13 @@ impl Importer<'_> {
         let extras = [(Semantic::Normals, 12), (Semantic::TexCoords(0), 8), (Semantic::TexCoords(1), 8)];
         let extras = extras.into_iter().filter_map(|(semantic, bytes)| attribute(semantic).map(|_| bytes));
         let targets = mixed(primitive, placement.weights);
-        self.reserve(positions, 12 + extras.sum::<u64>(), targets.clone().count(), primitive.indices, mode)?;
+        self.reserve(positions, 12 + extras.sum::<u64>(), targets.count(), primitive.indices, mode)?;
 
-        // Read the vertices, mix their morph targets and bend them by their joints.
         let vertices = Vertices::new(self.file, self.budget, primitive)?;
-        let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();
+        let Posed { mut positions, mut normals, is_mirrored } = self.pose(&vertices, primitive, placement)?;
         let count = positions.len();
-        pose::mix(self.file, targets.clone(), |target| target.positions, &mut positions)?;
-        let bent = match placement.skin {
-            Some(skin) => Bent::read(self.file, &vertices, skin, &self.nodes, count)?,
-            None => None,
-        };
-        let whole = placement.transform;
-        let point = |transform: DMat4, p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
-        let mut positions = match &bent {
-            Some(bent) => bring_in(positions, |i, p| point(bent.transform(i), p))?,
-            None => bring_in(positions, |_, p| point(whole, p))?,
-        };
-
-        // A reflection turns the winding and the normals.
-        let flipped = bent.as_ref().map_or_else(|| whole.determinant() < 0.0, |bent| bent.is_mirrored(count));
-        let side = if flipped { -1.0 } else { 1.0 };
-        let normal = |turn: DMat3, n| (turn * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3();
-        let mut normals = match vertices.checked(&Semantic::Normals, count)? {
-            Some(mut normals) => {
-                pose::mix(self.file, targets, |target| target.normals, &mut normals)?;
-                let turn = cofactor(whole);
-                match &bent {
-                    Some(bent) => bring_in(normals, |i, n| normal(cofactor(bent.transform(i)), n))?,
-                    None => bring_in(normals, |_, n| normal(turn, n))?,
-                }
-            }
-            None => Vec::new(),
-        };
-        let mut uvs = [Vec::new(), Vec::new()];
-        for (set, uv) in uvs.iter_mut().enumerate() {
-            if let Some(read) = vertices.checked(&Semantic::TexCoords(set as u32), count)? {
-                *uv = bring_in(read, |_, uv: [f32; 2]| Vec2::from(uv))?;
-            }
-        }
-
-        // Form triangles of all three modes, restoring their winding after a reflection.
-        let (mode, indices) = vertices.indices(mode, count)?;
-        if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
-            return Err(Error::format(format!("an index is {beyond}, but there are {count} vertices")));
-        }
-        let mut triangles = triangulate(mode, &indices)?;
-        if flipped {
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
+        let uvs = texture_coordinates(&vertices, count)?;
+        let triangles = triangles(&vertices, mode, count, is_mirrored)?;
         if !normals.is_empty() {
             mend_normals(&positions, &mut normals, &triangles)?;
         }
@@ -280,6 +245,42 @@ impl Importer<'_> {
         positions.shrink_to_fit();
         self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, colours, triangles });
         Ok(())
+    }
+
+    /// Reads positions and normals, applies morph targets and skin, and transforms them to world space.
+    fn pose(&self, vertices: &Vertices, primitive: &Primitive, placement: Placement) -> Result<Posed> {
+        let targets = mixed(primitive, placement.weights);
+        let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();
+        let count = positions.len();
+        pose::mix(self.file, targets.clone(), |target| target.positions, &mut positions)?;
+        let skinning = match placement.skin {
+            Some(skin) => Skinning::read(self.file, vertices, skin, &self.nodes, count)?,
+            None => None,
+        };
+        let whole = placement.transform;
+        let point = |transform: DMat4, p| transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3();
+        let positions = match &skinning {
+            Some(skinning) => map_indexed(positions, |i, p| point(skinning.transform(i), p))?,
+            None => map_indexed(positions, |_, p| point(whole, p))?,
+        };
+
+        // A reflection reverses the winding and the normals.
+        let is_mirrored =
+            skinning.as_ref().map_or_else(|| whole.determinant() < 0.0, |skinning| skinning.is_mirrored(count));
+        let side = if is_mirrored { -1.0 } else { 1.0 };
+        let normal = |turn: DMat3, n| (turn * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3();
+        let normals = match vertices.checked(&Semantic::Normals, count)? {
+            Some(mut normals) => {
+                pose::mix(self.file, targets, |target| target.normals, &mut normals)?;
+                let turn = cofactor(whole);
+                match &skinning {
+                    Some(skinning) => map_indexed(normals, |i, n| normal(cofactor(skinning.transform(i)), n))?,
+                    None => map_indexed(normals, |_, n| normal(turn, n))?,
+                }
+            }
+            None => Vec::new(),
+        };
+        Ok(Posed { positions, normals, is_mirrored })
     }
 
     /// Counts the output of a primitive before allocating it, and the morph targets to mix: instances multiply the
@@ -327,7 +328,7 @@ impl Importer<'_> {
         let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
         if rest.iter().any(|colour| *colour != first) {
             self.budget.keep(size_of_val(&colours[..]) as u64)?;
-            return Ok((material, bring_in(colours, |_, colour| clamped(colour))?));
+            return Ok((material, map_indexed(colours, |_, colour| clamped(colour))?));
         }
         if first == [1.0; 4] {
             return Ok((material, Vec::new()));
@@ -355,7 +356,7 @@ impl Importer<'_> {
             axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to zero")))
         };
         let forward = axis(DVec3::NEG_Z)?;
-        // Non-uniform scaling shears the axes: make up orthogonal again.
+        // Non-uniform scaling shears the axes: orthogonalise `up`.
         let up = axis(DVec3::Y)?;
         let up = (up - forward * forward.dot(up)).try_normalize();
         let up = up.ok_or_else(|| Error::format(format!("camera {name:?} has parallel axes")))?;
@@ -370,8 +371,32 @@ impl Importer<'_> {
     }
 }
 
-/// Changes values by their index.
-fn bring_in<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(usize, T) -> U) -> Result<Vec<U>> {
+/// Both sets of texture coordinates of a primitive; a missing set is empty.
+fn texture_coordinates(vertices: &Vertices, count: usize) -> Result<[Vec<Vec2>; 2]> {
+    let mut uvs = [Vec::new(), Vec::new()];
+    for (set, uv) in uvs.iter_mut().enumerate() {
+        if let Some(read) = vertices.checked(&Semantic::TexCoords(set as u32), count)? {
+            *uv = map_indexed(read, |_, uv: [f32; 2]| Vec2::from(uv))?;
+        }
+    }
+    Ok(uvs)
+}
+
+/// Forms the triangles of a primitive of any of the three modes; a mirrored pose reverses their winding.
+fn triangles(vertices: &Vertices, mode: Mode, count: usize, is_mirrored: bool) -> Result<Vec<[u32; 3]>> {
+    let (mode, indices) = vertices.indices(mode, count)?;
+    if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
+        return Err(Error::format(format!("an index is {beyond}, but there are {count} vertices")));
+    }
+    let mut triangles = triangulate(mode, &indices)?;
+    if is_mirrored {
+        triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    Ok(triangles)
+}
+
+/// Maps each value and its index to a new value; returns an error if memory is short.
+fn map_indexed<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(usize, T) -> U) -> Result<Vec<U>> {
     let mut out = try_vec(values.len(), U::default())?;
     out.iter_mut().zip(values).enumerate().for_each(|(i, (o, v))| *o = change(i, v));
     Ok(out)

@@ -18,14 +18,14 @@ pub fn local_transform(node: &json::Node) -> DMat4 {
     compose(node.translation.unwrap_or([0.0; 3]), rotation, node.scale.unwrap_or([1.0; 3]))
 }
 
-/// Translation × rotation × scale; a rotation of zeros is none.
+/// Translation × rotation × scale; a rotation of zeros counts as the identity.
 fn compose(translation: [f32; 3], rotation: [f32; 4], scale: [f32; 3]) -> DMat4 {
     let rotation = DQuat::from_array(rotation.map(f64::from));
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
     DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, Vec3::from(translation).as_dvec3())
 }
 
-/// The transforms of all instances of a node's mesh: of one, unless the node states others.
+/// The transforms of all instances of a node's mesh: a single one, unless the node has `EXT_mesh_gpu_instancing`.
 pub fn instances(file: &File, node: &json::Node, transform: DMat4) -> Result<Vec<DMat4>> {
     match node.extensions.as_ref().and_then(|e| e.others.get(INSTANCING)) {
         Some(stated) => read(file, stated, transform).map_err(|e| e.within(INSTANCING)),

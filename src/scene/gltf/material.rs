@@ -104,7 +104,7 @@ impl<'a> Materials<'a> {
                 [wrapping(&sampler.wrap_s)?, wrapping(&sampler.wrap_t)?]
             }
         };
-        // As the crate `gltf` has it.
+        // The crate `gltf` stores this index for a texture without an image.
         if json.source.value() == u32::MAX as usize {
             return Ok(None);
         }

@@ -1,4 +1,5 @@
-//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`), decoded by the crate meshoptimizer-rs.
+//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`), decoded by the crate
+//! meshoptimizer-rs.
 
 use super::features::MESHOPT;
 use crate::error::{Error, ErrorKind, Result};
@@ -8,10 +9,10 @@ use meshoptimizer_rs::codec::{BufferView, Filter, Mode};
 use meshoptimizer_rs::{Limits, Workspace};
 use serde_json::Value;
 
-/// Decoded bytes for each byte of a stream, at most: the codec of attributes states groups of 64 equal bytes in one.
+/// Maximum ratio of decoded to encoded bytes: the attribute codec encodes a group of 64 equal bytes in one byte.
 const MAX_RATIO: u64 = 64;
 
-/// Bytes that the decoder may give beyond that ratio: one block.
+/// Decoded bytes that may exceed that ratio: one block.
 const BLOCK: u64 = 8192;
 
 /// A compressed buffer view.
@@ -76,7 +77,7 @@ impl Packed {
     }
 }
 
-/// Whether a buffer stands for decoded data and need not be there.
+/// Whether a buffer is the fallback of compressed views, which need not have data.
 pub fn is_fallback(buffer: &Buffer) -> bool {
     let settings = buffer.extensions.as_ref().and_then(|e| e.others.get(MESHOPT));
     settings.and_then(|settings| settings.get("fallback")?.as_bool()) == Some(true)

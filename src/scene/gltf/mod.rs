@@ -1,17 +1,17 @@
 //! glTF 2.0 import and export: GLB, or JSON with embedded or external buffers and images.
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
-//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants` (the
-//! default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`, `EXT_meshopt_compression`,
+//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants`
+//! (the default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`, `EXT_meshopt_compression`,
 //! `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
 //!
 //! Import: every node × instance × primitive becomes one mesh in world space, named after its node, with its morph
 //! targets mixed by their weights and its skin bent by the joints at rest. A vertex colour that all vertices share
 //! becomes part of the material. Not imported: animation, morph targets of colours and texture coordinates, tangents
-//! (the renderer derives them), occlusion textures, points and lines, orthographic cameras, more than two sets
-//! of texture coordinates, and material properties of other extensions such as `KHR_materials_specular`, `_clearcoat`,
-//! `_sheen` and `_volume`. A required extension not listed above is an error; an optional one is ignored. All that is
-//! left out and would be seen is listed in [`Scene::unrendered`].
+//! (the renderer derives them), occlusion textures, points and lines, orthographic cameras, more than two sets of
+//! texture coordinates, and material properties of other extensions such as `KHR_materials_specular`, `_clearcoat`,
+//! `_sheen` and `_volume`. A required extension not listed above is an error; an optional one is ignored. Visible
+//! parts of the file that are not rendered are listed in [`Scene::unrendered`].
 //!
 //! Export: a flat list of nodes, one per mesh, camera and light. The environment is left out, because glTF cannot hold
 //! it.
@@ -49,7 +49,7 @@ pub trait Budget {
     /// Called with the size in bytes of each mesh and texture before allocation.
     fn keep(&self, bytes: u64) -> Result<()>;
 
-    /// Runs work that takes so many bytes until it is done.
+    /// Runs work that needs this many bytes of memory until it is done.
     fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()>;
 }
 

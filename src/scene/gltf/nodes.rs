@@ -1,11 +1,11 @@
-//! The nodes at which the trees of a file begin.
+//! The root nodes of a file.
 
 use super::container::{File, missing};
 use crate::error::{Error, Result};
 use crate::image::{try_collect, try_vec};
 use gltf::json::Root;
 
-/// The root nodes: those of the default or first scene, or else all nodes that are nobody's child.
+/// The root nodes: those of the default or first scene, or else all nodes without a parent.
 pub fn roots(file: &File) -> Result<Vec<usize>> {
     let root = &file.root;
     let number = root.scene.map_or(0, |s| s.value());
@@ -13,7 +13,7 @@ pub fn roots(file: &File) -> Result<Vec<usize>> {
         Some(scene) => try_collect(scene.nodes.iter().map(|n| n.value())),
         None if root.scene.is_some() => Err(missing("scene", number, root.scenes.len())),
         None => {
-            let roots = tops(root)?;
+            let roots = parentless(root)?;
             if roots.is_empty() && !root.nodes.is_empty() {
                 return Err(Error::format("every node is the child of another: the nodes form a circle"));
             }
@@ -22,8 +22,8 @@ pub fn roots(file: &File) -> Result<Vec<usize>> {
     }
 }
 
-/// All nodes that are nobody's child.
-pub fn tops(root: &Root) -> Result<Vec<usize>> {
+/// All nodes without a parent.
+pub fn parentless(root: &Root) -> Result<Vec<usize>> {
     let mut is_child = try_vec(root.nodes.len(), false)?;
     for child in root.nodes.iter().flat_map(|n| n.children.iter().flatten()) {
         if let Some(flag) = is_child.get_mut(child.value()) {

@@ -19,7 +19,7 @@ const MAX_SETS: u32 = 4;
 pub fn node_transforms(file: &File, world: DMat4) -> Result<Vec<Option<DMat4>>> {
     let all = &file.root.nodes;
     let mut placed = try_vec(all.len(), None)?;
-    let mut stack = try_collect(nodes::tops(&file.root)?.into_iter().map(|top| (top, world)))?;
+    let mut stack = try_collect(nodes::parentless(&file.root)?.into_iter().map(|top| (top, world)))?;
     while let Some((index, parent)) = stack.pop() {
         let Some(node) = all.get(index) else { continue };
         if placed[index].is_none() {
@@ -31,16 +31,16 @@ pub fn node_transforms(file: &File, world: DMat4) -> Result<Vec<Option<DMat4>>> 
     Ok(placed)
 }
 
-/// How joints bend the vertices of a primitive.
-pub struct Bent {
-    /// From the mesh's space at binding to the world, of each joint.
+/// The skinning of a primitive: the transforms of the joints, and the weights of each vertex.
+pub struct Skinning {
+    /// The transform of each joint from the space of the mesh in the bind pose to world space.
     joints: Vec<DMat4>,
     /// Indices of joints and their weights, for each vertex.
     sets: Vec<(Vec<[f32; 4]>, Vec<[f32; 4]>)>,
 }
 
-impl Bent {
-    /// The joints of `count` vertices; `None` if they name none.
+impl Skinning {
+    /// Reads the joints and weights of `count` vertices; `None` if they have no joints.
     pub fn read(
         file: &File,
         vertices: &Vertices,
@@ -59,11 +59,11 @@ impl Bent {
             return Ok(None);
         }
         let joints = joints(file, skin, nodes).map_err(|e| e.within(format_args!("skin {}", skin.value())))?;
-        let bent = Self { joints, sets };
+        let skinning = Self { joints, sets };
         for vertex in 0..count {
-            bent.check(vertex)?;
+            skinning.check(vertex)?;
         }
-        Ok(Some(bent))
+        Ok(Some(skinning))
     }
 
     /// The joints that move a vertex, with their weights.

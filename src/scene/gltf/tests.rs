@@ -16,11 +16,8 @@ fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
     super::import(bytes, base, Options::default())
 }
 
-/// One of each object that the format can hold.
-fn scene() -> Scene {
-    let colour = Image::from_fn(4, 2, |x, y| [x as f32 / 3.0, y as f32, 0.5, 1.0]).unwrap();
-    let lights = Image::from_fn(4, 4, |x, y| [if (x + y) % 3 == 0 { 8.0 } else { 0.0 }, 2.0, 0.5]).unwrap();
-    let normals = Image::from_fn(2, 2, |x, _| [0.5, 0.25 + 0.5 * x as f32, 1.0]).unwrap();
+/// An opaque material with textures, a cut-out lamp, and glass.
+fn materials() -> Vec<Material> {
     let turned = Mat3::from_cols(Vec3::new(0.0, -2.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.1, 0.2, 1.0));
     let oak = Material {
         base_color: Vec3::new(0.5, 0.4, 0.3),
@@ -45,6 +42,24 @@ fn scene() -> Scene {
         alpha_mode: AlphaMode::Blend,
         ..Material::diffuse("Glass", Vec3::ONE)
     };
+    vec![oak, lamp, glass]
+}
+
+/// A point, a spot and a directional light.
+fn lights() -> Vec<PunctualLight> {
+    let direction = Vec3::new(0.6, -0.8, 0.0);
+    vec![
+        PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::new(300.0, 200.0, 100.0) },
+        PunctualLight::Spot { position: Vec3::Y, direction, intensity: Vec3::ONE, inner_angle: 0.2, outer_angle: 0.5 },
+        PunctualLight::Directional { direction: -direction, illuminance: Vec3::splat(1000.0) },
+    ]
+}
+
+/// One of each object that the format can hold.
+fn scene() -> Scene {
+    let colour = Image::from_fn(4, 2, |x, y| [x as f32 / 3.0, y as f32, 0.5, 1.0]).unwrap();
+    let emission = Image::from_fn(4, 4, |x, y| [if (x + y) % 3 == 0 { 8.0 } else { 0.0 }, 2.0, 0.5]).unwrap();
+    let normals = Image::from_fn(2, 2, |x, _| [0.5, 0.25 + 0.5 * x as f32, 1.0]).unwrap();
     let triangle = Mesh {
         name: "Desk".into(),
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z],
@@ -62,26 +77,15 @@ fn scene() -> Scene {
     };
     let pane = Mesh { name: "Pane".into(), material: 2, uvs: [Vec::new(), Vec::new()], ..triangle.clone() };
     let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 0.5, 0.0), 0.8);
-    let direction = Vec3::new(0.6, -0.8, 0.0);
     Scene {
         meshes: vec![triangle, sheet, pane],
-        materials: vec![oak, lamp, glass],
+        materials: materials(),
         textures: vec![
             Texture { wrap: [Wrap::Mirror, Wrap::Repeat], ..Texture::new("Colour", colour) },
-            Texture { wrap: [Wrap::Clamp; 2], ..Texture::new("Lights", lights) },
+            Texture { wrap: [Wrap::Clamp; 2], ..Texture::new("Lights", emission) },
             Texture::new("Data", normals),
         ],
-        lights: vec![
-            PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::new(300.0, 200.0, 100.0) },
-            PunctualLight::Spot {
-                position: Vec3::Y,
-                direction,
-                intensity: Vec3::ONE,
-                inner_angle: 0.2,
-                outer_angle: 0.5,
-            },
-            PunctualLight::Directional { direction: -direction, illuminance: Vec3::splat(1000.0) },
-        ],
+        lights: lights(),
         distributions: Vec::new(),
         environment: None,
         cameras: vec![Camera { name: "View".into(), ..camera }],
@@ -94,7 +98,7 @@ fn near(a: Vec3, b: Vec3) -> bool {
 }
 
 #[test]
-fn a_scene_survives_the_way_out_and_in() {
+fn a_scene_is_unchanged_by_export_and_import() {
     let (before, glb) = (scene(), export(&scene()).unwrap());
     let after = import(&glb, None).unwrap();
     assert_eq!(after.meshes, before.meshes);
@@ -143,7 +147,7 @@ fn a_scene_survives_the_way_out_and_in() {
 
 /// Luminaires keep their orientation and their distributions, each of which is written once.
 #[test]
-fn luminaires_survive_the_way_out_and_in() {
+fn luminaires_are_unchanged_by_export_and_import() {
     let measured = |planes: usize| Luminaire {
         planes: (0..planes).map(|i| i as f64 * 90.0).collect(),
         gammas: vec![0.0, 30.0, 90.0],
@@ -268,7 +272,7 @@ fn strips_fans_and_sparse_accessors() {
 }
 
 #[test]
-fn lying_files_are_errors_that_say_why() {
+fn inconsistent_files_are_errors_that_give_the_reason() {
     type Edit = fn(&mut Value);
     let cases: [(&str, Edit); 26] = [
         ("buffer view 9", |f| f["accessors"][0]["bufferView"] = 9.into()),
@@ -326,7 +330,7 @@ fn lying_files_are_errors_that_say_why() {
 #[test]
 fn a_budget_is_asked_for_all_that_will_be_made() {
     let glb = export(&scene()).unwrap();
-    /// What is kept, and the largest loan.
+    /// A budget that records the bytes of the scene and the largest temporary amount.
     struct Limited {
         limit: u64,
         kept: Cell<u64>,
@@ -366,7 +370,7 @@ fn a_budget_is_asked_for_all_that_will_be_made() {
 fn a_vertex_that_is_no_number_is_named() {
     let mut glb = export(&scene()).unwrap();
     let json_length = u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
-    // Images come first; only the JSON knows the file's layout.
+    // Images are stored first; only the JSON states the layout of the file.
     let root: Value = serde_json::from_slice(&glb[20..20 + json_length]).unwrap();
     let view = &root["bufferViews"][root["accessors"][0]["bufferView"].as_u64().unwrap() as usize];
     let at = 28 + json_length + view["byteOffset"].as_u64().unwrap() as usize + 12;

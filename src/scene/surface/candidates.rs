@@ -1,10 +1,11 @@
 //! Objects and materials of a scene as candidates for the surface with the lights: their area, height and direction,
 //! and how much each resembles a ceiling.
 //!
-//! A ceiling is level, lies high in the scene and covers much of its plan. The score multiplies the three shares; it
-//! orders the list and claims no more. Each triangle is read once, so that large scenes are listed quickly.
+//! A ceiling is level, lies high in the scene and covers much of its plan. The score is the product of these three
+//! shares; only its order has a meaning. Each triangle is read once, so that large scenes are listed quickly.
 //!
-//! Not modelled: whether a surface is visible from the room. The upper side of a roof counts as its lower side does.
+//! Not modelled: whether a surface is visible from the room. The upper side of a roof counts as much as its lower
+//! side.
 
 use crate::error::Result;
 use crate::image::{try_collect, try_push, try_vec, try_with_capacity};
@@ -14,7 +15,7 @@ use glam::{DVec2, DVec3};
 /// Cosine of 15 degrees: triangles that are inclined less are level. [convention]
 const LEVEL: f64 = 0.965_925_826;
 
-/// Share of the way to 1 by which a name that says "ceiling" raises a score. [convention]
+/// Share of the distance to 1 by which a name that contains "ceiling" raises a score. [convention]
 const NAMED: f64 = 0.5;
 
 /// Words for a ceiling, in lower case, in the languages of modelling programs.
@@ -49,7 +50,7 @@ pub struct Candidate {
     pub normal: DVec3,
     /// Resemblance to a ceiling, in `[0, 1]`.
     pub score: f64,
-    /// Words for the score.
+    /// The reason for the score, as text.
     pub reason: String,
 }
 
@@ -165,7 +166,7 @@ impl Sums {
             share(self.level_area, plan),
             share(self.height() - scene.low.y, size.y),
         ];
-        // The middle of the height says little for a ceiling, so its share counts twice.
+        // Square the share of the height: a surface at half the height is hardly a ceiling.
         let score = level * cover * above * above;
         let lower = name.to_lowercase();
         let is_named = NAMES.iter().any(|word| lower.contains(word));
@@ -249,7 +250,7 @@ mod tests {
         assert_eq!(slab.normal, DVec3::NEG_Y);
         let words = "24.0 of its 24.0 m² are level, at 3.00 m, which is 100 % of the scene's height, and cover 100 % of its plan";
         assert_eq!(slab.reason, words);
-        // A material of ceiling and wall: its level part alone has the height.
+        // A material of ceiling and wall: the height is that of its level triangles alone.
         let plaster = &list[1];
         assert_eq!((plaster.index, plaster.area, plaster.level_area, plaster.height), (1, 42.0, 24.0, 3.0));
         let find = |name: &str| list.iter().find(|c| c.name == name).unwrap();

@@ -68,7 +68,7 @@ fn a_sheet_faces_the_room_however_it_is_wound() {
 }
 
 #[test]
-fn of_a_slab_the_side_towards_the_room_is_taken() {
+fn the_side_of_a_slab_that_faces_the_room_is_chosen() {
     for thickness in [0.02, 0.13, 0.6] {
         let mut scene = shell();
         scene.meshes.push(slab("Lid", Vec3::new(0., 3., 0.), Vec3::new(6., 3. + thickness, 4.)));

@@ -77,12 +77,10 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     }
     // What the lamps are as bright as: the pixels of the strokes, else the brightest ones of the plane.
     let plane = input.within.filter(|_| is_proposed);
-    let examples = match plane {
-        Some(plane) => vec![proposed::brightest(input.features, plane)?],
-        None => try_collect(paint.positive.iter().cloned())?,
-    };
-    let photo = Brightness::new(input.features, white(input.features, &examples)?, job.part(0.0, 0.2))?;
-    let floor = floor(&photo, &examples)?;
+    let brightest = plane.map(|plane| proposed::brightest(input.features, plane)).transpose()?;
+    let examples = brightest.as_ref().map_or(&paint.positive[..], std::slice::from_ref);
+    let photo = Brightness::new(input.features, white(input.features, examples)?, job.part(0.0, 0.2))?;
+    let floor = floor(&photo, examples);
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
     // In a room laid out as a box, the features tell how large things are.
     let normal = if is_proposed { Some(face::CEILING) } else { face::laid_out(input) };
@@ -130,14 +128,14 @@ fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
 }
 
 /// The level below which no contour is looked for.
-fn floor(photo: &Brightness, examples: &[Vec<u32>]) -> Result<u16> {
+fn floor(photo: &Brightness, examples: &[Vec<u32>]) -> u16 {
     let mut lightness: Vec<f32> = Vec::new();
     for stroke in examples {
         lightness.extend(stroke.iter().map(|&p| photo.smooth.data[p as usize]));
     }
     let edge = (lightness.len() as f64 * STROKE_EDGE) as usize;
     let (_, dim, _) = lightness.select_nth_unstable_by(edge, f32::total_cmp);
-    Ok(level(*dim * (1.0 - DEPTH)) as u16)
+    level(*dim * (1.0 - DEPTH)) as u16
 }
 
 fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Ownership) -> Result<Segmentation> {

@@ -55,7 +55,7 @@ fn draco(method: i32) -> Vec<u8> {
     out.data().to_vec()
 }
 
-/// Adds a buffer and a view of all of it; the index of the view.
+/// Adds a buffer and a view of all of it; returns the index of the view.
 fn add_view(file: &mut Value, bytes: &[u8]) -> usize {
     let padded =
         bytes.iter().copied().chain(std::iter::repeat_n(0, bytes.len().wrapping_neg() % 4)).collect::<Vec<_>>();
@@ -88,7 +88,8 @@ fn draco_file(stream: &[u8], edit: impl FnOnce(&mut Value)) -> Vec<u8> {
     })
 }
 
-/// The corners of all triangles with their texture coordinates, in an order that depends on nothing else.
+/// The corners of all triangles with their texture coordinates, sorted, so that meshes of different order compare
+/// equal.
 fn soup(mesh: &Mesh) -> Vec<String> {
     let corner = |&i: &u32| format!("{:?} {:?}", mesh.positions[i as usize], mesh.uvs[0][i as usize]);
     let triangle = |t: &[u32; 3]| {
@@ -146,7 +147,7 @@ fn defects_of_draco_streams_are_errors() {
         let error = import(&draco_file(&stream, edit), None).map(|_| ()).expect_err(message);
         assert!(error.kind == ErrorKind::Format && error.message.contains(message), "{message}: {error}");
     }
-    // Data beside the stream, in accessors, is the same picture without decoding.
+    // If the accessors hold the data too, the stream is not decoded.
     let plain = draco_file(&stream[..8], |f| {
         let (positions, uvs, triangles) = grid();
         *f.pointer_mut(settings).unwrap() = json!({ "bufferView": 0, "attributes": {} });
@@ -196,7 +197,7 @@ fn meshopt_file(sequence: bool, edit: impl FnOnce(&mut Value)) -> Vec<u8> {
             let settings = json!({
                 "buffer": buffer, "byteLength": stream.len(), "byteStride": stride, "count": count, "mode": mode,
             });
-            // The view is of a buffer without data.
+            // The view refers to a buffer without data.
             let view = json!({ "buffer": 1, "byteLength": count * stride, "extensions": { "EXT_meshopt_compression": settings } });
             let views = f["bufferViews"].as_array_mut().unwrap();
             views.push(view);

@@ -1,4 +1,4 @@
-//! Valid files in unusual forms, features that are read, and the names of those that are not.
+//! Valid files in unusual forms, features that are read, and reports of features that are not.
 
 use super::*;
 
@@ -30,11 +30,9 @@ fn only_gltf_2_is_read() {
     }
 }
 
-#[test]
-fn valid_files_in_unusual_forms_are_read() {
-    let plain = import(&triangle_file(|_| ()), None).unwrap();
-    type Edit = fn(&mut Value);
-    let edits: [(&str, Edit); 10] = [
+/// Changes of a file that keep its picture, with their names.
+fn unusual_forms() -> [(&'static str, fn(&mut Value)); 10] {
+    [
         ("extras of any type", |f| {
             f["extras"] = json!(7);
             f["nodes"][0]["extras"] = json!("a text");
@@ -87,8 +85,13 @@ fn valid_files_in_unusual_forms_are_read() {
             f["bufferViews"].as_array_mut().unwrap().push(json!({ "buffer": 1, "byteLength": 1 }));
         }),
         ("metadata", |f| f["extensionsUsed"] = json!(["KHR_xmp_json_ld"])),
-    ];
-    for (name, edit) in edits {
+    ]
+}
+
+#[test]
+fn valid_files_in_unusual_forms_are_read() {
+    let plain = import(&triangle_file(|_| ()), None).unwrap();
+    for (name, edit) in unusual_forms() {
         let scene = import(&triangle_file(edit), None).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert_eq!(scene.meshes[0].positions, plain.meshes[0].positions, "{name}");
         assert_eq!(scene.materials[scene.meshes[0].material], plain.materials[0], "{name}");
@@ -157,7 +160,7 @@ fn each_feature_that_is_not_rendered_is_named() {
     assert!(unrendered(|_| ()).is_empty());
 }
 
-/// Adds an accessor of floats in a buffer of its own; its index.
+/// Adds an accessor of floats in a buffer of its own; returns its index.
 pub fn add_floats(file: &mut Value, kind: &str, count: usize, numbers: &[f32]) -> usize {
     let raw: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -223,13 +226,13 @@ fn instances_are_meshes_of_their_own() {
 /// A triangle of which joints or morph targets move two corners.
 #[test]
 fn a_skin_is_bent_by_its_joints_at_rest() {
-    // The second corner hangs on node 2, the third on nodes 1 and 2 by halves, the first on node 1.
+    // Node 1 moves the first corner, node 2 the second, and both with equal weights the third.
     let file = |joint: f32, matrices: usize| {
         triangle_file(|f| {
             let joints = add_floats(f, "VEC4", 3, &[0.0, 0.0, 0.0, 0.0, joint, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
             let weights = add_floats(f, "VEC4", 3, &[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]);
             let normals = add_floats(f, "VEC3", 3, &[0.0, 0.0, 1.0].repeat(3));
-            // Bound where node 2 was one metre to the right.
+            // In the bind pose, node 2 is one metre to the right.
             let unit = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
             let moved = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0];
             let inverse = add_floats(f, "MAT4", matrices, &[unit, moved].concat()[..16 * matrices]);
@@ -251,14 +254,14 @@ fn a_skin_is_bent_by_its_joints_at_rest() {
     let scene = import(&file(1.0, 2), None).unwrap();
     assert!(scene.unrendered.is_empty(), "{:?}", scene.unrendered);
     let mesh = &scene.meshes[0];
-    // Node 2 turns about y by 90 degrees at (1, 0, 5): a point is taken to it from (1, 0, 0).
+    // Node 2 moves from (1, 0, 0) in the bind pose to (1, 0, 5), and rotates by 90 degrees about y.
     let bent = Vec3::new(1.0 + 0.0, 1.0, 5.0 - (0.0 - 1.0));
     let expected = [Vec3::new(0.0, 0.0, 5.0), Vec3::new(1.0, 0.0, 5.0), (Vec3::new(0.0, 1.0, 5.0) + bent) / 2.0];
     for (found, wanted) in mesh.corners(0).into_iter().zip(expected) {
         assert!(near(found, wanted), "{found} instead of {wanted}");
     }
     assert!(near(mesh.normals[0], Vec3::Z) && near(mesh.normals[1], Vec3::X), "{:?}", mesh.normals);
-    // Joints that reflect keep the front where the normals are.
+    // Joints that reflect the mesh keep its front on the side of the normals.
     let mut mirrored: Value = serde_json::from_slice(&file(1.0, 2)).unwrap();
     mirrored["nodes"][1]["scale"] = json!([-1, 1, 1]);
     let mesh = &import(mirrored.to_string().as_bytes(), None).unwrap().meshes[0];
@@ -294,12 +297,12 @@ fn morph_targets_are_mixed_by_their_weights() {
     };
     assert_eq!(read(Value::Null, Value::Null), (Vec3::ZERO, Vec3::Z));
     assert_eq!(read(Value::Null, json!([0.5, 0])), (Vec3::Z, Vec3::Z));
-    // The node's weights come before the mesh's.
+    // The weights of the node override those of the mesh.
     let (position, normal) = read(json!([0, 0.25]), json!([0.5, 0]));
     assert!(near(position, Vec3::X) && near(normal, Vec3::new(1.0, 0.0, 1.0).normalize()), "{position} {normal}");
     let error = import(&file(json!([1, 0]), Value::Null, 2), None).unwrap_err();
     assert!(error.message.contains("2 values for 3 vertices"), "{error}");
-    // A small file with a lot to mix.
+    // A small file with many morph targets of a large array.
     let bomb = triangle_file(|f| {
         let accessor = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
         f["accessors"].as_array_mut().unwrap().push(accessor);
