@@ -36,7 +36,7 @@ static inline int show_progress(void *title, double fraction) {
 /* Waits for a job, with a progress bar in a terminal, and releases it. */
 static inline void finish(luxfer_job *job, const char *title) {
     check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
-    check(luxfer_job_release(job), title);
+    check(luxfer_release(job), title);
 }
 
 /* --8<-- [start:warnings] */
@@ -56,7 +56,7 @@ static inline void print_warnings(luxfer_warnings *warnings) {
         if (warning.has_place) fprintf(stderr, " (at %.0f, %.0f)", warning.place[0], warning.place[1]);
         fprintf(stderr, " [%s]\n", luxfer_warning_name(warning.code));
     }
-    check(luxfer_warnings_release(warnings), "warnings");
+    check(luxfer_release(warnings), "warnings");
 }
 /* --8<-- [end:warnings] */
 
@@ -74,7 +74,7 @@ static inline luxfer_image *take_photo(uint32_t width, uint32_t height, uint32_t
     check(luxfer_demo_photo_start(demo, &params, &job), "photo");
     finish(job, "taking the photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
-    check(luxfer_demo_photo_release(demo), "photo");
+    check(luxfer_release(demo), "photo");
     return photo;
 }
 

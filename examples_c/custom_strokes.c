@@ -22,7 +22,7 @@ static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last
     else printf("lamps:   %.1f %% wrong on strokes held out\n", 100 * report.lights_error);
     check(luxfer_transfer_get_image(transfer, which, &confidence), "confidence");
     panels_add(s, column, row, confidence, 1);
-    luxfer_image_release(confidence);
+    luxfer_release(confidence);
 }
 
 int main(void) {
@@ -68,8 +68,8 @@ int main(void) {
     check(luxfer_transfer_get_warnings(transfer, &warnings), "warnings");
     print_warnings(warnings);
 
-    luxfer_transfer_release(transfer);
-    luxfer_image_release(photo);
-    luxfer_context_release(context);
+    luxfer_release(transfer);
+    luxfer_release(photo);
+    luxfer_release(context);
     return 0;
 }

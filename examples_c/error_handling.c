@@ -85,9 +85,9 @@ int main(void) {
     /* The outputs are still unchanged. A handle of the wrong kind, or NULL, is an error like any other. */
     if (image != NULL || luxfer_job_wait(NULL, -1, NULL, NULL) != LUXFER_INVALID_ARGUMENT) return 1;
 
-    luxfer_job_release(job);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(job);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

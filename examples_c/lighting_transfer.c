@@ -82,7 +82,7 @@ static void load_input(const options *o, luxfer_transfer *transfer, luxfer_image
         luxfer_image *drawing = NULL;
         check(luxfer_image_load(context, o->strokes, LUXFER_COLOUR_SRGB, &drawing), "strokes");
         check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
-        luxfer_image_release(drawing);
+        luxfer_release(drawing);
     }
     check(luxfer_scene_load(context, o->scene, scene), "scene");
 }
@@ -100,8 +100,8 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     check(luxfer_transfer_set_photo(transfer, *photo), "photo");
     check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
     check(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, scene), "demo scene");
-    luxfer_image_release(drawing);
-    luxfer_demo_photo_release(demo);
+    luxfer_release(drawing);
+    luxfer_release(demo);
 }
 
 /* Adds a light at the camera to a scene without lights, so that its picture is not black. */
@@ -137,7 +137,7 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     check(luxfer_render_start(render, &params, &job), title);
     finish(job, title);
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), title);
-    luxfer_render_release(render);
+    luxfer_release(render);
     return image;
 }
 
@@ -258,15 +258,15 @@ int main(int argc, char **argv) {
            path(&o, "overview.png"));
     print_warnings(warnings);
 
-    luxfer_image_release(white);
-    luxfer_image_release(before);
-    luxfer_image_release(emission);
-    luxfer_image_release(lit);
-    luxfer_scene_release(white_scene);
-    luxfer_scene_release(lit_scene);
-    luxfer_transfer_release(transfer);
-    luxfer_scene_release(scene);
-    luxfer_image_release(photo);
-    luxfer_context_release(context);
+    luxfer_release(white);
+    luxfer_release(before);
+    luxfer_release(emission);
+    luxfer_release(lit);
+    luxfer_release(white_scene);
+    luxfer_release(lit_scene);
+    luxfer_release(transfer);
+    luxfer_release(scene);
+    luxfer_release(photo);
+    luxfer_release(context);
     return 0;
 }

@@ -64,7 +64,7 @@ int main(void) {
     view.data = lux;
     view.byte_size = sizeof lux;
     check(luxfer_image_read(image, 0, &view), "lux");
-    check(luxfer_image_release(image), "lux");
+    check(luxfer_release(image), "lux");
 
     for (y = 0; y < ROWS * SCALE; y++)
         for (x = 0; x < COLUMNS * SCALE; x++) false_colour(lux[y / SCALE][x / SCALE] / 1500, map[y][x]);
@@ -78,9 +78,9 @@ int main(void) {
     check(luxfer_image_create(context, &view, &image), "map");
     check(luxfer_image_save(image, "lux_map.png", 1), "map");
 
-    luxfer_image_release(image);
-    luxfer_illuminance_release(illuminance);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(image);
+    luxfer_release(illuminance);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

@@ -49,13 +49,13 @@ int main(void) {
     if (count == 0 || status != LUXFER_OUT_OF_MEMORY) return 1;
 
     /* A host with a cache would release the least recently used image. */
-    luxfer_image_release(images[0]);
+    luxfer_release(images[0]);
     images[0] = NULL;
     status = load(context, &images[0]);
     printf("after letting go of one: %s\n", luxfer_status_name(status));
     /* --8<-- [end:budget] */
 
-    for (i = 0; i < MOST; i++) luxfer_image_release(images[i]);
-    luxfer_context_release(context);
+    for (i = 0; i < MOST; i++) luxfer_release(images[i]);
+    luxfer_release(context);
     return status == LUXFER_OK ? 0 : 1;
 }

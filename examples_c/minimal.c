@@ -49,10 +49,10 @@ int main(int argc, char **argv) {
     }
 
     /* Release in any order; releasing NULL does nothing. */
-    luxfer_image_release(picture);
-    luxfer_job_release(job);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(picture);
+    luxfer_release(job);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return status == LUXFER_OK ? 0 : 1;
 }

@@ -83,7 +83,7 @@ static luxfer_status panels_save(sheet *s, luxfer_context *context, const char *
     view.data = s->pixels;
     if (status == LUXFER_OK) status = luxfer_image_create(context, &view, &image);
     if (status == LUXFER_OK) status = luxfer_image_save(image, file, 1);
-    luxfer_image_release(image);
+    luxfer_release(image);
     free(s->pixels);
     return status;
 }

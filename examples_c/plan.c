@@ -41,7 +41,7 @@ int main(void) {
         finish(job, "planning");
         check(luxfer_plan_get_report(plan, &expected), "plan");
         check(luxfer_plan_get_render_params(plan, &settings), "plan");
-        luxfer_plan_release(plan);
+        luxfer_release(plan);
         /* --8<-- [end:plan] */
 
         check(luxfer_render_start(render, &settings, &job), "render");
@@ -56,9 +56,9 @@ int main(void) {
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
     check(luxfer_image_save(picture, "plan.png", 0.005f), "picture");
     printf("look at plan.png\n");
-    luxfer_image_release(picture);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(picture);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

@@ -55,7 +55,7 @@ int main(void) {
     status = luxfer_job_wait(job, -1, on_progress, &w);
     printf("the wait ended with %s\n", luxfer_status_name(status));
     /* --8<-- [end:wait] */
-    luxfer_job_release(job);
+    luxfer_release(job);
     if (status != LUXFER_CANCELLED) return 1;
 
     /* The passes before the cancel give a picture, with its error. */
@@ -63,7 +63,7 @@ int main(void) {
     check(luxfer_render_get_report(render, &report), "report");
     check(luxfer_image_save(picture, "progress_and_cancel.png", 1 / 450.0f), "picture");
     printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
-    luxfer_image_release(picture);
+    luxfer_release(picture);
 
     /* 2. Waiting in a loop of the program: wait at most 16 ms, then draw a frame of the user interface. */
     check(luxfer_render_start(render, &params, &job), "start");
@@ -75,10 +75,10 @@ int main(void) {
     }
     /* --8<-- [end:loop] */
     printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_name(status));
-    luxfer_job_release(job);
+    luxfer_release(job);
 
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return status == LUXFER_CANCELLED ? 0 : 1;
 }

@@ -24,7 +24,7 @@ static luxfer_render *describe(luxfer_render_params *params) {
     params->width = 240;
     params->height = 180;
     params->samples = 16;
-    luxfer_scene_release(scene);
+    luxfer_release(scene);
     return render;
 }
 
@@ -64,7 +64,7 @@ static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     if (!view->data) exit(1);
     check(luxfer_image_read(image, 0, view), "picture");
     check(luxfer_image_save(image, "render_parts.png", 1 / 450.0f), "render_parts.png");
-    luxfer_image_release(image);
+    luxfer_release(image);
     return view->data;
 }
 
@@ -108,7 +108,7 @@ int main(int argc, char **argv) {
         status = demonstrate(render, &params);
     else
         status = 2;
-    luxfer_render_release(render);
-    luxfer_context_release(context);
+    luxfer_release(render);
+    luxfer_release(context);
     return status;
 }

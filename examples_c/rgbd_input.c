@@ -31,8 +31,8 @@ static luxfer_image *measure_depth(void) {
     finish(job, "measuring the depth");
     check(luxfer_render_find_layer(render, "Depth", &layer), "depth");
     check(luxfer_render_get_layer(render, layer, &depth), "depth");
-    luxfer_render_release(render);
-    luxfer_scene_release(office);
+    luxfer_release(render);
+    luxfer_release(office);
     return depth;
 }
 
@@ -59,8 +59,8 @@ static void show_normals(luxfer_features *features, const char *title, sheet *s,
     for (k = 0; k < view.byte_size / sizeof *pixels; k++) pixels[k] = 0.5f + 0.5f * pixels[k];
     check(luxfer_image_create(context, &view, &shown), title);
     panels_add(s, column, 1, shown, 1);
-    luxfer_image_release(shown);
-    luxfer_image_release(channels);
+    luxfer_release(shown);
+    luxfer_release(channels);
     free(pixels);
 }
 
@@ -89,9 +89,9 @@ int main(int argc, char **argv) {
     check(panels_save(&s, context, "rgbd_input.png"), "rgbd_input.png");
     /* For a whole transfer, use luxfer_transfer_set_depth. */
 
-    luxfer_features_release(features);
-    luxfer_image_release(depth);
-    luxfer_image_release(photo);
-    luxfer_context_release(context);
+    luxfer_release(features);
+    luxfer_release(depth);
+    luxfer_release(photo);
+    luxfer_release(context);
     return 0;
 }

@@ -100,9 +100,9 @@ int main(void) {
     check(luxfer_image_save(picture, "scene_from_arrays.png", 0.008f), "picture");
     check(luxfer_scene_export(scene, "scene_from_arrays.glb"), "glTF");
 
-    luxfer_image_release(picture);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(picture);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

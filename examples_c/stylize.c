@@ -27,7 +27,7 @@ static luxfer_guides *render(luxfer_demo which, const luxfer_guides_params *para
     check(luxfer_guides_set_scene(guides, scene), title);
     check(luxfer_guides_start(guides, params, &job), title);
     finish(job, title);
-    luxfer_scene_release(scene);
+    luxfer_release(scene);
     return guides;
 }
 
@@ -54,8 +54,8 @@ static void print_sheet(luxfer_image *radiance, const char *out) {
     check(luxfer_sheet_print(picture, &params, &page), "sheet");
     if (snprintf(file, sizeof file, "%s/sheet.png", out) >= (int)sizeof file) exit(2);
     check(luxfer_image_save(page, file, 1), file);
-    luxfer_image_release(page);
-    luxfer_image_release(picture);
+    luxfer_release(page);
+    luxfer_release(picture);
     free(pixels);
 }
 
@@ -101,10 +101,10 @@ int main(int argc, char **argv) {
     image = full(source);
     panels_add(&s, 0, 0, image, 1 / EXPOSURE);
     print_sheet(image, out);
-    luxfer_image_release(image);
+    luxfer_release(image);
     image = full(target);
     panels_add(&s, 0, 1, image, 1 / EXPOSURE);
-    luxfer_image_release(image);
+    luxfer_release(image);
 
     /* Paint the target in the style of each artwork. */
     for (i = 0; i < STYLES; i++) {
@@ -125,14 +125,14 @@ int main(int argc, char **argv) {
         panels_add(&s, 1 + i, 1, image, 1);
         if (snprintf(file, sizeof file, "%s/stylize_%s.png", out, names[i]) >= (int)sizeof file) return 2;
         check(luxfer_image_save(image, file, 1), file);
-        luxfer_image_release(image);
-        luxfer_image_release(artwork);
+        luxfer_release(image);
+        luxfer_release(artwork);
     }
     if (snprintf(file, sizeof file, "%s/stylize.png", out) >= (int)sizeof file) return 2;
     check(panels_save(&s, context, file), file);
-    luxfer_guides_release(source);
-    luxfer_guides_release(target);
-    luxfer_stylize_release(stylize);
-    luxfer_context_release(context);
+    luxfer_release(source);
+    luxfer_release(target);
+    luxfer_release(stylize);
+    luxfer_release(context);
     return 0;
 }

@@ -13,8 +13,8 @@
  *         luxfer_context_last_error(context, message, sizeof message, NULL);
  *         fprintf(stderr, "%s\n", message);
  *     }
- *     luxfer_image_release(photo);
- *     luxfer_context_release(context);
+ *     luxfer_release(photo);
+ *     luxfer_release(context);
  *
  * Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709; luminance is in cd/m², illuminance in
  * lux, luminous flux in lumens.
@@ -126,9 +126,8 @@ const char *luxfer_status_name(luxfer_status status);
  * context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
  * (LUXFER_INVALID_ARGUMENT).
  *
- * Handles of every kind are reference counted: X_retain adds a reference, X_release removes one, and removing the last
- * reference frees the object. Releasing NULL does nothing. Each call checks its handles: NULL and a handle of another
- * kind give LUXFER_INVALID_ARGUMENT; so does a released handle in most cases, but not if its memory has been reused.
+ * Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
+ * handle in most cases, but not if its memory has been reused.
  *
  * Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
  * use different objects at the same time, and also the same object: calls that change an object wait for each other.
@@ -140,8 +139,8 @@ const char *luxfer_status_name(luxfer_status status);
  * allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
  *
  * Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
- * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and X_release returns
- * LUXFER_OK and frees nothing. A child may create contexts of its own.
+ * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and luxfer_release
+ * returns LUXFER_OK and frees nothing. A child may create contexts of its own.
  *
  * Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
  *
@@ -186,15 +185,6 @@ luxfer_status luxfer_context_params_init(luxfer_context_params *params,
 luxfer_status luxfer_context_create(const luxfer_context_params *params,
                                     luxfer_context **context);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_context_retain(luxfer_context *context);
-
-/**
- * Removes a reference. When the context and all objects created in it are released, the call waits until the worker
- * threads have ended. Any thread.
- */
-luxfer_status luxfer_context_release(luxfer_context *context);
-
 /**
  * Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,
  * truncated to capacity bytes. *needed, unless NULL, receives the capacity that the whole message needs. If no call
@@ -206,6 +196,30 @@ luxfer_status luxfer_context_last_error(luxfer_context *context,
                                         char *buffer,
                                         size_t capacity,
                                         size_t *needed);
+
+/* ====================================================================================================================
+ * References
+ *
+ * Handles of every kind are reference counted: a create function returns one reference, luxfer_retain adds one,
+ * luxfer_release removes one, and removing the last reference frees the object. Objects may be released in any order.
+ * ==================================================================================================================== */
+
+/**
+ * Adds a reference to an object of any kind. Any thread.
+ * LUXFER_INVALID_ARGUMENT if handle is NULL or not a live object; the failure leaves no message.
+ */
+luxfer_status luxfer_retain(void *handle);
+
+/**
+ * Removes a reference to an object of any kind; NULL does nothing. Any thread.
+ *
+ * An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
+ * long as its job, which continues. Two releases take time. The last reference to a job cancels the job and waits until
+ * it has ended; the last reference to a context and all objects created in it waits until the worker threads have
+ * ended.
+ * LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
+ */
+luxfer_status luxfer_release(void *handle);
 
 /* ====================================================================================================================
  * Image
@@ -343,12 +357,6 @@ luxfer_status luxfer_image_size(luxfer_image *image,
 luxfer_status luxfer_image_read(luxfer_image *image,
                                 uint32_t first_channel,
                                 const luxfer_image_view *view);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_image_retain(luxfer_image *image);
-
-/** Removes a reference. Any thread. */
-luxfer_status luxfer_image_release(luxfer_image *image);
 
 /* ====================================================================================================================
  * Photo metadata
@@ -491,12 +499,6 @@ luxfer_status luxfer_job_status(luxfer_job *job);
  */
 luxfer_status luxfer_job_cancel(luxfer_job *job);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_job_retain(luxfer_job *job);
-
-/** Removes a reference. Removing the last reference cancels a running job and waits until it has ended. Any thread. */
-luxfer_status luxfer_job_release(luxfer_job *job);
-
 /* ====================================================================================================================
  * Scene
  *
@@ -638,12 +640,6 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
                                           float blue,
                                           uint32_t *mesh,
                                           uint32_t *material);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_scene_retain(luxfer_scene *scene);
-
-/** Removes a reference. Any thread. */
-luxfer_status luxfer_scene_release(luxfer_scene *scene);
 
 /* ====================================================================================================================
  * Scene files
@@ -1080,12 +1076,6 @@ luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distributio
                                                 double gamma,
                                                 double *candela);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_distribution_retain(luxfer_distribution *distribution);
-
-/** Removes a reference. Any thread. */
-luxfer_status luxfer_distribution_release(luxfer_distribution *distribution);
-
 /* ====================================================================================================================
  * Lights of a scene
  *
@@ -1488,12 +1478,6 @@ luxfer_status luxfer_candidates_get_reason(luxfer_candidates *candidates,
                                            size_t capacity,
                                            size_t *needed);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_candidates_retain(luxfer_candidates *candidates);
-
-/** Gives a reference back. Any thread. */
-luxfer_status luxfer_candidates_release(luxfer_candidates *candidates);
-
 /* ====================================================================================================================
  * Plane geometry
  *
@@ -1740,12 +1724,6 @@ luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
  */
 luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_rectify_retain(luxfer_rectify *rectify);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
-
 /* ====================================================================================================================
  * Features
  *
@@ -1941,12 +1919,6 @@ luxfer_status luxfer_features_get_image(luxfer_features *features,
 luxfer_status luxfer_features_get_report(luxfer_features *features,
                                          luxfer_features_report *report);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_features_retain(luxfer_features *features);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_features_release(luxfer_features *features);
-
 /* ====================================================================================================================
  * Segmentation
  *
@@ -2129,12 +2101,6 @@ luxfer_status luxfer_segment_get_image(luxfer_segment *segment,
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_segment_get_report(luxfer_segment *segment, luxfer_segment_report *report);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_segment_retain(luxfer_segment *segment);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_segment_release(luxfer_segment *segment);
 
 /* ====================================================================================================================
  * Emission
@@ -2405,12 +2371,6 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
                                          double *x,
                                          double *y);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_emission_retain(luxfer_emission *emission);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_emission_release(luxfer_emission *emission);
-
 /* ====================================================================================================================
  * Styles and tiles
  *
@@ -2621,12 +2581,6 @@ luxfer_status luxfer_render_get_image(luxfer_render *render,
  * LUXFER_NOT_READY before the first pass of a job.
  */
 luxfer_status luxfer_render_get_report(luxfer_render *render, luxfer_render_report *report);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_render_retain(luxfer_render *render);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_render_release(luxfer_render *render);
 
 /* ====================================================================================================================
  * Outputs of a rendering
@@ -2992,12 +2946,6 @@ luxfer_status luxfer_illuminance_get_image(luxfer_illuminance *illuminance,
 luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
                                             luxfer_illuminance_report *report);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_illuminance_retain(luxfer_illuminance *illuminance);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_illuminance_release(luxfer_illuminance *illuminance);
-
 /* ====================================================================================================================
  * Relighting
  *
@@ -3160,12 +3108,6 @@ luxfer_status luxfer_relight_start(luxfer_relight *relight,
  */
 luxfer_status luxfer_relight_get_report(luxfer_relight *relight, luxfer_relight_report *report);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_relight_retain(luxfer_relight *relight);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_relight_release(luxfer_relight *relight);
-
 /* ====================================================================================================================
  * Lamps
  *
@@ -3277,12 +3219,6 @@ luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
 luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
                                  const luxfer_lamps_params *params,
                                  luxfer_job **job);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_lamps_retain(luxfer_lamps *lamps);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
 
 /* ====================================================================================================================
  * Goals of lamps
@@ -3572,12 +3508,6 @@ luxfer_status luxfer_importance_solve(luxfer_importance *importance,
                                       float green,
                                       float blue,
                                       luxfer_relight_report *report);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_importance_retain(luxfer_importance *importance);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_importance_release(luxfer_importance *importance);
 
 /* ====================================================================================================================
  * Placement
@@ -4218,12 +4148,6 @@ luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     const luxfer_transfer_params *params,
                                     luxfer_job **job);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_transfer_retain(luxfer_transfer *transfer);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_transfer_release(luxfer_transfer *transfer);
-
 /* ====================================================================================================================
  * Transfer results
  *
@@ -4624,12 +4548,6 @@ luxfer_status luxfer_warnings_get_advice(luxfer_warnings *warnings,
                                          size_t capacity,
                                          size_t *needed);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_warnings_retain(luxfer_warnings *warnings);
-
-/** Gives a reference back. Any thread. */
-luxfer_status luxfer_warnings_release(luxfer_warnings *warnings);
-
 /**
  * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
  * string is static: never free it. Any thread.
@@ -4755,12 +4673,6 @@ luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
 luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
                                              luxfer_relight_params *params);
 
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_plan_retain(luxfer_plan *plan);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_plan_release(luxfer_plan *plan);
-
 /* ====================================================================================================================
  * Guides
  *
@@ -4861,12 +4773,6 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
 luxfer_status luxfer_guides_motion(luxfer_guides *guides,
                                    luxfer_guides *before,
                                    luxfer_image **motion);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_guides_retain(luxfer_guides *guides);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_guides_release(luxfer_guides *guides);
 
 /* ====================================================================================================================
  * Settings of a stylisation
@@ -5184,12 +5090,6 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
  */
 luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
                                          luxfer_image *painted);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_stylize_retain(luxfer_stylize *stylize);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_stylize_release(luxfer_stylize *stylize);
 
 /* ====================================================================================================================
  * Results of a stylisation
@@ -5541,12 +5441,6 @@ luxfer_status luxfer_demo_photo_start(luxfer_demo_photo *demo,
 luxfer_status luxfer_demo_photo_get_image(luxfer_demo_photo *demo,
                                           luxfer_demo_photo_image which,
                                           luxfer_image **image);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_demo_photo_retain(luxfer_demo_photo *demo);
-
-/** Removes a reference; a running job continues. Any thread. */
-luxfer_status luxfer_demo_photo_release(luxfer_demo_photo *demo);
 #ifdef __cplusplus
 }
 #endif

@@ -18,6 +18,7 @@ const GROUPS: &[&str] = &[
     "version",
     "status",
     "context",
+    "references",
     "image",
     "photo",
     "job",

@@ -24,7 +24,7 @@ fn renderer(context: *mut luxfer_context) -> *mut luxfer_render {
     let render = made(|out| unsafe { luxfer_render_create(context, out) });
     unsafe {
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
     }
     render
 }
@@ -44,14 +44,7 @@ fn threads() -> usize {
 fn any_release_order_is_fine() {
     let _alone = ALONE.lock();
     let release = |objects: [*mut c_void; 4], order: [usize; 4]| {
-        let status = order.map(|i| unsafe {
-            match i {
-                0 => luxfer_context_release(objects[0].cast()),
-                1 => luxfer_image_release(objects[1].cast()),
-                2 => luxfer_render_release(objects[2].cast()),
-                _ => luxfer_job_release(objects[3].cast()),
-            }
-        });
+        let status = order.map(|i| unsafe { luxfer_release(objects[i]) });
         assert_eq!(status, [LUXFER_OK; 4], "{order:?}");
     };
     for code in 0..256usize {
@@ -113,9 +106,9 @@ fn progress_rises_and_ends_at_one() {
         let mut report = luxfer_render_report { struct_size: 40, ..std::mem::zeroed() };
         assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
         assert_eq!(report.samples, 64);
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -134,7 +127,7 @@ fn a_cancel_is_answered_at_any_point() {
         assert!(late < Duration::from_millis(500), "{late:?} after {cancel_at}");
         assert!(seen.seen.iter().all(|f| (0.0..1.0).contains(f)), "no call after the cancel, none from elsewhere");
         assert_eq!(unsafe { luxfer_job_status(job) }, LUXFER_CANCELLED);
-        assert_eq!(unsafe { luxfer_job_release(job) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_release(job.cast()) }, LUXFER_OK);
     }
     // Cancel from another thread while this one waits.
     let job = start(render, &render_params(64, ENDLESS));
@@ -146,9 +139,9 @@ fn a_cancel_is_answered_at_any_point() {
     unsafe {
         assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_CANCELLED);
         assert_eq!(other.join().unwrap(), LUXFER_OK);
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -179,12 +172,12 @@ fn waits_time_out_and_a_busy_object_refuses_changes() {
         // The object is idle as soon as the wait ends.
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
         for job in [job, small] {
-            assert_eq!(luxfer_job_release(job), LUXFER_OK);
+            assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_render_release(other), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(other.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -201,13 +194,13 @@ fn a_thousand_contexts_and_jobs_leave_no_thread_behind() {
             let render = renderer(context);
             let job = start(render, &render_params(16, ENDLESS));
             unsafe {
-                assert_eq!(luxfer_render_release(render), LUXFER_OK);
-                assert_eq!(luxfer_job_release(job), LUXFER_OK);
+                assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+                assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
             }
         }
         unsafe {
-            assert_eq!(luxfer_context_release(context), LUXFER_OK);
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
     }
     assert!(threads() < before + 50, "{before} threads before, {} after", threads());

@@ -14,7 +14,7 @@ fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
         let mut data = vec![0.0f32; (width * height * channels) as usize];
         let view = luxfer_image_view { channels, ..host::view(width, height, &mut data) };
         assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
-        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         (channels as usize, data)
     }
 }
@@ -22,7 +22,7 @@ fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
 fn finish(job: *mut luxfer_job) -> luxfer_status {
     unsafe {
         let status = luxfer_job_wait(job, -1, None, null_mut());
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     }
 }
@@ -101,9 +101,9 @@ fn layers_are_found_read_and_written() {
         assert!(!holds("Alpha.A"));
         let nowhere = c"/nonexistent/layers.exr".as_ptr();
         assert_eq!(luxfer_render_write_exr(render, nowhere), LUXFER_IO);
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -149,9 +149,9 @@ fn illuminance_comes_with_its_error() {
         assert_eq!(luxfer_illuminance_start_mesh(stage, 0, 2, &params, &mut job), LUXFER_INVALID_ARGUMENT);
         let mut image = null_mut();
         assert_eq!(luxfer_illuminance_get_image(stage, 2, &mut image), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_illuminance_release(stage), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stage.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -218,9 +218,9 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
             };
             assert_eq!(status, LUXFER_INVALID_ARGUMENT);
         }
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -256,11 +256,11 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
             let expected = luminance * std::f64::consts::PI;
             assert!((mean(&lux) / expected - 1.0).abs() < 0.02, "{} lx, expected {expected}", mean(&lux));
         }
-        assert_eq!(luxfer_illuminance_release(stage), LUXFER_OK);
+        assert_eq!(luxfer_release(stage.cast()), LUXFER_OK);
         for image in [sky, below] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

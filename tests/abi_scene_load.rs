@@ -78,7 +78,7 @@ fn warnings(scene: *mut luxfer_scene) -> Vec<(luxfer_warning_code, f64, String)>
         (warning.code, warning.severity, words)
     };
     let found = (0..count).map(read).collect();
-    assert_eq!(unsafe { luxfer_warnings_release(list) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_release(list.cast()) }, LUXFER_OK);
     found
 }
 
@@ -95,7 +95,7 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
     assert_eq!(found[0].1, 2700.0);
     assert!(found[0].2.contains("millimetre") && found[0].2.contains("unit = 0.001"), "{}", found[0].2);
     assert!(found[1].2.contains("KHR_materials_clearcoat") && found[1].2.contains("\"Paint\""), "{}", found[1].2);
-    unsafe { assert_eq!(luxfer_scene_release(scene), LUXFER_OK) };
+    unsafe { assert_eq!(luxfer_release(scene.cast()), LUXFER_OK) };
 
     let params = luxfer_scene_load_params { unit: 0.001, ..params() };
     let scene = made(|out| unsafe { luxfer_scene_load_with(context, file.as_ptr(), &params, out) });
@@ -108,8 +108,8 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let text = CStr::from_ptr(text.as_ptr()).to_str().unwrap();
         assert!(text.lines().any(|l| l.starts_with("KHR_materials_clearcoat: not rendered")), "{text}");
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -123,7 +123,7 @@ fn files_outside_the_folder_are_read_only_with_leave() {
         assert!(message(context).contains("luxfer_scene_load_params.outside"), "{}", message(context));
         let open = luxfer_scene_load_params { outside: 1, ..params() };
         assert_eq!(luxfer_scene_load_with(context, file.as_ptr(), &open, &mut scene), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         // Load from memory too, with the folder as base.
         let bytes = std::fs::read(folder.0.join("scene/room.gltf")).unwrap();
         let base = CString::new(folder.0.join("scene").to_str().unwrap()).unwrap();
@@ -133,8 +133,8 @@ fn files_outside_the_folder_are_read_only_with_leave() {
         };
         assert_eq!(load(null()), LUXFER_UNSUPPORTED);
         assert_eq!(load(&open), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -150,5 +150,5 @@ fn settings_out_of_range_are_refused() {
     assert_eq!(load(luxfer_scene_load_params { outside: 2, ..params() }), LUXFER_INVALID_ARGUMENT);
     assert_eq!(load(luxfer_scene_load_params { struct_size: 3, ..params() }), LUXFER_INVALID_ARGUMENT);
     assert!(scene.is_null());
-    assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
 }

@@ -41,8 +41,8 @@ fn a_mesh_comes_back_as_it_was_described() {
         assert_eq!(luxfer_scene_get_mesh_name(scene, 1, name.as_mut_ptr().cast(), 8, &mut needed), LUXFER_OK);
         assert_eq!((&name[..needed], needed), (&b"Lamp\0"[..], 5));
         assert_eq!(luxfer_scene_get_mesh(scene, 2, &mut info), LUXFER_NOT_FOUND);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -75,13 +75,13 @@ fn materials_and_textures_come_back() {
         assert_eq!(luxfer_scene_get_material(scene, 3, &mut material), LUXFER_NOT_FOUND);
 
         // A texture outlives its scene.
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         let (mut width, mut height) = (0, 0);
         assert_eq!(luxfer_image_size(texture, &mut width, &mut height, null_mut()), LUXFER_OK);
         assert_eq!((width, height), (5, 3));
-        assert_eq!(luxfer_image_release(texture), LUXFER_OK);
-        assert_eq!(luxfer_image_release(light), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(texture.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(light.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -122,8 +122,8 @@ fn rays_hit_what_they_should_after_every_change() {
         assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, null_mut()), LUXFER_INVALID_ARGUMENT);
         let too_many = luxfer_scene_intersect(scene, rays.as_ptr(), usize::MAX / 2, hits.as_mut_ptr());
         assert_eq!(too_many, LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -141,7 +141,7 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
             let mut out = null_mut();
             let status = luxfer_image_warp(source, map.as_ptr(), width, height, &mut out);
             assert_eq!(status == LUXFER_OK, !out.is_null());
-            assert_eq!(luxfer_image_release(out), LUXFER_OK);
+            assert_eq!(luxfer_release(out.cast()), LUXFER_OK);
             status
         };
         assert_eq!(warp(&identity, 4, 4), LUXFER_OK);
@@ -149,8 +149,8 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
         assert_eq!(warp(&identity, 4, 65537), LUXFER_INVALID_ARGUMENT);
         assert_eq!(warp(&[f64::NAN; 9], 4, 4), LUXFER_INVALID_ARGUMENT);
         assert_eq!(warp(&[0.0; 9], 4, 4), LUXFER_OK, "a map to nowhere shows nothing");
-        assert_eq!(luxfer_image_release(source), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(source.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -228,9 +228,9 @@ fn materials_are_replaced_and_keep_their_textures() {
         assert_eq!(luxfer_scene_get_material_texture(scene, 0, LUXFER_TEXTURE_NORMAL, &mut used), LUXFER_OK);
         assert_eq!(used.texture, LUXFER_NONE);
         for image in [picture, dark] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

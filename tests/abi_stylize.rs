@@ -69,7 +69,7 @@ fn run(stylize: *mut luxfer_stylize, params: &luxfer_stylize_params) -> luxfer_s
     let job = made(|out| unsafe { luxfer_stylize_start(stylize, params, out) });
     unsafe {
         let status = luxfer_job_wait(job, -1, None, null_mut());
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     }
 }
@@ -83,7 +83,7 @@ fn ready(context: *mut luxfer_context, width: u32) -> *mut luxfer_stylize {
         let (name, light) = (c"light".as_ptr(), LUXFER_GUIDE_LIGHT);
         assert_eq!(luxfer_stylize_add_guide(stylize, name, images[1], images[2], 1.0, light), LUXFER_OK);
         for image in images {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
     }
     stylize
@@ -98,7 +98,7 @@ fn usage_can_be_a_cost() {
         assert_eq!(run(stylize, &params), LUXFER_OK, "{}", message(context));
         let picture = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         let (_, _, colours) = pixels(picture);
-        assert_eq!(unsafe { luxfer_image_release(picture) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_release(picture.cast()) }, LUXFER_OK);
         (colours, report(stylize).used)
     };
     let plain = with(LUXFER_STYLIZE_MODE_NEAREST, 1.0);
@@ -106,8 +106,8 @@ fn usage_can_be_a_cost() {
     let used = with(LUXFER_STYLIZE_MODE_OCCURRENCE, 1.0).1;
     assert!(used > plain.1, "{used} {}", plain.1);
     unsafe {
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -162,10 +162,10 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(pixels(half).0, 35);
         assert_eq!(report(stylize).halvings, 1);
         for image in images.into_iter().chain([half, art]) {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -173,7 +173,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
 unsafe extern "C" fn cancel_at_first_picture(user: *mut c_void, _: f64) -> i32 {
     let mut image = null_mut();
     let status = unsafe { luxfer_stylize_get_image(user.cast(), LUXFER_STYLIZE_IMAGE_PICTURE, &mut image) };
-    unsafe { luxfer_image_release(image) };
+    unsafe { luxfer_release(image.cast()) };
     i32::from(status == LUXFER_OK)
 }
 
@@ -187,17 +187,17 @@ fn a_cancelled_run_keeps_the_picture_of_its_last_level() {
         let job = made(|out| luxfer_stylize_start(stylize, &params, out));
         assert_eq!(luxfer_stylize_clear_guides(stylize), LUXFER_INVALID_OPERATION, "a job runs");
         assert_eq!(luxfer_job_wait(job, -1, Some(cancel_at_first_picture), stylize.cast()), LUXFER_CANCELLED);
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         let so_far = report(stylize);
         assert!(so_far.finished == 0 && so_far.levels >= 1 && so_far.halvings >= 1 && so_far.energy > 0.0);
         let picture = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         assert_eq!(pixels(picture).0, 2000 >> so_far.halvings);
-        assert_eq!(luxfer_image_release(picture), LUXFER_OK);
+        assert_eq!(luxfer_release(picture.cast()), LUXFER_OK);
         let mut image = null_mut();
         assert_eq!(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_SOURCES, &mut image), LUXFER_NOT_READY);
         assert_eq!(luxfer_stylize_update(stylize, null_mut(), null_mut(), null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -213,7 +213,7 @@ fn new_paint_is_followed_where_it_is() {
         let job = made(|out| unsafe { luxfer_stylize_update(stylize, artwork, changed, out) });
         unsafe {
             let status = luxfer_job_wait(job, -1, None, null_mut());
-            assert_eq!(luxfer_job_release(job), LUXFER_OK);
+            assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
             status
         }
     };
@@ -231,10 +231,10 @@ fn new_paint_is_followed_where_it_is() {
         assert_eq!(at(40, 20), [1.0, 0.0, 0.0], "the disc is red");
         assert_ne!(at(3, 45), [1.0, 0.0, 0.0], "the ground is not");
         for image in [art, red, changed, picture] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -262,10 +262,10 @@ fn the_rest_of_a_half_painted_picture_is_painted() {
         let right = || sources.chunks_exact(2).enumerate().filter(|(i, _)| i % 60 >= 32);
         assert!(right().all(|(_, s)| s[0] < 30.0), "paint comes from what is painted");
         for image in images.into_iter().chain([scene, painted, art]) {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -284,7 +284,7 @@ fn handles_and_settings_that_are_wrong_are_refused() {
             assert_eq!(luxfer_stylize_start(bad, null(), &mut job), LUXFER_INVALID_ARGUMENT);
             assert_eq!(luxfer_stylize_set_artwork(stylize, bad.cast()) == LUXFER_OK, bad == three.cast());
         }
-        assert_eq!(luxfer_stylize_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_release(null_mut()), LUXFER_OK);
         assert_eq!(luxfer_stylize_set_artwork(stylize, foreign), LUXFER_INVALID_ARGUMENT);
         let add = |name, a, b, weight, range| luxfer_stylize_add_guide(stylize, name, a, b, weight, range);
         for (name, a, b, weight, range, why) in [
@@ -327,11 +327,11 @@ fn handles_and_settings_that_are_wrong_are_refused() {
         assert_eq!(luxfer_stylize_start(stylize, &good, &mut job), LUXFER_INVALID_OPERATION, "no guides");
         assert!(message(context).contains("luxfer_stylize_add_guide"));
         for image in [two, three, foreign] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(other), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(other.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -353,8 +353,8 @@ fn extreme(from: (u32, u32), size: (u32, u32), channels: u32, weight: f32, broke
                 (drawn(context, (from.0, from.1, count), value), drawn(context, (size.0, size.1, count), value));
             let name = std::ffi::CString::new(format!("{first}")).unwrap();
             assert_eq!(luxfer_stylize_add_guide(stylize, name.as_ptr(), a, b, weight, 0), LUXFER_OK);
-            assert_eq!(luxfer_image_release(a), LUXFER_OK);
-            assert_eq!(luxfer_image_release(b), LUXFER_OK);
+            assert_eq!(luxfer_release(a.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(b.cast()), LUXFER_OK);
         }
         let status = run(stylize, &params());
         if status == LUXFER_OK {
@@ -363,13 +363,13 @@ fn extreme(from: (u32, u32), size: (u32, u32), channels: u32, weight: f32, broke
             assert_eq!((width, height), size);
             assert!(data.iter().all(|v| (0.0..=1.0).contains(v)), "every pixel is one of the artwork's");
             assert_eq!(report(stylize).broken_source > 0, broken.is_some_and(|b| !b.is_finite()));
-            assert_eq!(luxfer_image_release(picture), LUXFER_OK);
+            assert_eq!(luxfer_release(picture.cast()), LUXFER_OK);
         } else {
             assert!(!message(context).is_empty());
         }
-        assert_eq!(luxfer_image_release(art), LUXFER_OK);
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(art.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
         status
     }
 }
@@ -427,13 +427,13 @@ fn images_that_do_not_fit_each_other_end_the_job_with_a_message() {
             let name = std::ffi::CString::new(format!("{i}")).unwrap();
             let four = drawn(context, (60, 44, 4), |_, _, _| 0.5);
             status = luxfer_stylize_add_guide(stylize, name.as_ptr(), four, four, 1.0, LUXFER_GUIDE_DATA);
-            assert_eq!(luxfer_image_release(four), LUXFER_OK);
+            assert_eq!(luxfer_release(four.cast()), LUXFER_OK);
         }
         assert_eq!(status, LUXFER_INVALID_ARGUMENT, "more than 60 channels");
         for image in [small, none, wide, broken, art] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

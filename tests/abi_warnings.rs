@@ -21,7 +21,7 @@ fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
             let points = [4.0f32, y, 60.0, y];
             assert_eq!(luxfer_segment_add_stroke(segment, points.as_ptr(), 2, 2.0, positive), LUXFER_OK);
         }
-        assert_eq!(luxfer_image_release(features), LUXFER_OK);
+        assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
     }
     segment
 }
@@ -30,7 +30,7 @@ fn run(segment: *mut luxfer_segment) {
     let job = made(|out| unsafe { luxfer_segment_start(segment, std::ptr::null(), out) });
     unsafe {
         assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
     }
 }
 
@@ -105,18 +105,18 @@ fn a_doubtful_mask_says_so_with_figure_limit_place_and_advice() {
 
     // The first list stays unchanged after everything else is released.
     unsafe {
-        assert_eq!(luxfer_warnings_release(lights), LUXFER_OK);
-        assert_eq!(luxfer_image_release(within), LUXFER_OK);
-        assert_eq!(luxfer_segment_release(segment), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(lights.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(within.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(segment.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
     let again = list(warnings);
     assert_eq!(again.iter().map(|w| w.code).collect::<Vec<_>>(), found.iter().map(|w| w.code).collect::<Vec<_>>());
     unsafe {
-        assert_eq!(luxfer_warnings_retain(warnings), LUXFER_OK);
-        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
-        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
-        assert_eq!(luxfer_warnings_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_retain(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(null_mut()), LUXFER_OK);
     }
 }
 
@@ -144,9 +144,9 @@ fn wrong_arguments_are_errors_and_texts_are_cut() {
         let mut buffer = [1 as c_char; 8];
         assert_eq!(luxfer_warnings_get_message(warnings, 0, buffer.as_mut_ptr(), 8, null_mut()), LUXFER_OK);
         assert_eq!(CStr::from_ptr(buffer.as_ptr()).to_str().unwrap(), &whole[..7]);
-        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
-        assert_eq!(luxfer_segment_release(segment), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(segment.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -166,11 +166,11 @@ fn stages_without_a_result_have_no_list() {
         assert_eq!(luxfer_emission_get_warnings(emission, &mut list), LUXFER_NOT_READY);
         assert_eq!(luxfer_relight_get_warnings(relight, &mut list), LUXFER_NOT_READY);
         assert!(list.is_null());
-        assert_eq!(luxfer_relight_release(relight), LUXFER_OK);
-        assert_eq!(luxfer_emission_release(emission), LUXFER_OK);
-        assert_eq!(luxfer_features_release(features), LUXFER_OK);
-        assert_eq!(luxfer_rectify_release(rectify), LUXFER_OK);
-        assert_eq!(luxfer_transfer_release(transfer), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(relight.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(emission.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(rectify.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(transfer.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

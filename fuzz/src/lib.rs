@@ -72,7 +72,7 @@ pub fn image(data: &[u8]) {
     let load =
         |out| unsafe { luxfer_image_load_memory(context(), data.as_ptr().cast(), data.len(), LUXFER_COLOUR_SRGB, out) };
     if let Some(image) = made("luxfer_image_load_memory", load) {
-        unsafe { luxfer_image_release(image) };
+        unsafe { luxfer_release(image.cast()) };
     }
 }
 
@@ -95,7 +95,7 @@ pub fn scene(data: &[u8]) {
         needs.struct_size = size_of_val(&needs) as u32;
         check("luxfer_scene_requirements", luxfer_scene_requirements(scene, 0.01, &mut needs));
         check("luxfer_scene_export_memory", luxfer_scene_export_memory(scene, Some(take), null_mut()));
-        luxfer_scene_release(scene);
+        luxfer_release(scene.cast());
     }
 }
 
@@ -107,7 +107,7 @@ pub fn distribution(data: &[u8], format: luxfer_distribution_format) {
     unsafe {
         let mut intensity = 0.0;
         check("luxfer_distribution_get_intensity", luxfer_distribution_get_intensity(lamp, 0.3, 0.7, &mut intensity));
-        luxfer_distribution_release(lamp);
+        luxfer_release(lamp.cast());
     }
 }
 
@@ -120,9 +120,9 @@ pub fn network(data: &[u8]) {
             let photo = photo();
             check("luxfer_features_set_photo", luxfer_features_set_photo(stage, photo));
             wait(made("luxfer_features_start", |out| luxfer_features_start(stage, null(), out)));
-            luxfer_image_release(photo);
+            luxfer_release(photo.cast());
         }
-        luxfer_features_release(stage);
+        luxfer_release(stage.cast());
     }
 }
 
@@ -136,7 +136,7 @@ pub fn expression(data: &[u8]) {
             check("luxfer_render_set_scene", luxfer_render_set_scene(stage, demo()));
             wait(made("luxfer_render_start", |out| luxfer_render_start(stage, &small(), out)));
         }
-        luxfer_render_release(stage);
+        luxfer_release(stage.cast());
     }
 }
 
@@ -148,8 +148,8 @@ pub fn strokes(data: &[u8]) {
         let stage = stage.expect("a stage");
         check("luxfer_features_set_photo", luxfer_features_set_photo(stage, photo));
         check("luxfer_features_add_strokes_text", luxfer_features_add_strokes_text(stage, text.as_ptr()));
-        luxfer_image_release(photo);
-        luxfer_features_release(stage);
+        luxfer_release(photo.cast());
+        luxfer_release(stage.cast());
     }
 }
 
@@ -163,7 +163,7 @@ pub fn part(data: &[u8]) {
                 wait(made("luxfer_render_start_merge", |out| luxfer_render_start_merge(stage, &small(), out)));
             }
         });
-        luxfer_render_release(stage);
+        luxfer_release(stage.cast());
     }
 }
 
@@ -172,7 +172,7 @@ unsafe fn wait(job: Option<*mut luxfer_job>) {
     if let Some(job) = job {
         unsafe {
             check("luxfer_job_wait", luxfer_job_wait(job, 1000, None, null_mut()));
-            luxfer_job_release(job);
+            luxfer_release(job.cast());
         }
     }
 }

@@ -192,15 +192,3 @@ pub unsafe extern "C" fn luxfer_candidates_get_reason(
 ) -> luxfer_status {
     enter(candidates, |object| copy_text(&object.get(index)?.reason, buffer, capacity, needed))
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_retain(candidates: *mut luxfer_candidates) -> luxfer_status {
-    handle::retain(candidates)
-}
-
-/// Gives a reference back. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_release(candidates: *mut luxfer_candidates) -> luxfer_status {
-    handle::release(candidates)
-}

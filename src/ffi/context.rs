@@ -4,9 +4,8 @@
 //! context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
 //! (LUXFER_INVALID_ARGUMENT).
 //!
-//! Handles of every kind are reference counted: X_retain adds a reference, X_release removes one, and removing the last
-//! reference frees the object. Releasing NULL does nothing. Each call checks its handles: NULL and a handle of another
-//! kind give LUXFER_INVALID_ARGUMENT; so does a released handle in most cases, but not if its memory has been reused.
+//! Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
+//! handle in most cases, but not if its memory has been reused.
 //!
 //! Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
 //! use different objects at the same time, and also the same object: calls that change an object wait for each other.
@@ -18,8 +17,8 @@
 //! allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
 //!
 //! Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
-//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and X_release returns
-//! LUXFER_OK and frees nothing. A child may create contexts of its own.
+//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and luxfer_release
+//! returns LUXFER_OK and frees nothing. A child may create contexts of its own.
 //!
 //! Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
 //!
@@ -107,19 +106,6 @@ pub unsafe extern "C" fn luxfer_context_create(
         out.set(handle::give(Arc::new(ContextObject(context))));
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_context_retain(context: *mut luxfer_context) -> luxfer_status {
-    handle::retain(context)
-}
-
-/// Removes a reference. When the context and all objects created in it are released, the call waits until the worker
-/// threads have ended. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_context_release(context: *mut luxfer_context) -> luxfer_status {
-    handle::release(context)
 }
 
 /// Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,

@@ -133,15 +133,3 @@ pub unsafe extern "C" fn luxfer_demo_photo_get_image(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_demo_photo_retain(demo: *mut luxfer_demo_photo) -> luxfer_status {
-    handle::retain(demo)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_demo_photo_release(demo: *mut luxfer_demo_photo) -> luxfer_status {
-    handle::release(demo)
-}

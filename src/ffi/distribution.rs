@@ -221,15 +221,3 @@ pub unsafe extern "C" fn luxfer_distribution_get_intensity(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_distribution_retain(distribution: *mut luxfer_distribution) -> luxfer_status {
-    handle::retain(distribution)
-}
-
-/// Removes a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_distribution_release(distribution: *mut luxfer_distribution) -> luxfer_status {
-    handle::release(distribution)
-}

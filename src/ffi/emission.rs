@@ -577,15 +577,3 @@ pub unsafe extern "C" fn luxfer_emission_get_corner(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_retain(emission: *mut luxfer_emission) -> luxfer_status {
-    handle::retain(emission)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_release(emission: *mut luxfer_emission) -> luxfer_status {
-    handle::release(emission)
-}

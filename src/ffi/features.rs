@@ -473,15 +473,3 @@ pub unsafe extern "C" fn luxfer_features_get_report(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_retain(features: *mut luxfer_features) -> luxfer_status {
-    handle::retain(features)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_release(features: *mut luxfer_features) -> luxfer_status {
-    handle::release(features)
-}

@@ -206,15 +206,3 @@ pub unsafe extern "C" fn luxfer_guides_motion(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_guides_retain(guides: *mut luxfer_guides) -> luxfer_status {
-    handle::retain(guides)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_guides_release(guides: *mut luxfer_guides) -> luxfer_status {
-    handle::release(guides)
-}

@@ -284,15 +284,3 @@ pub unsafe extern "C" fn luxfer_illuminance_get_report(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_illuminance_retain(illuminance: *mut luxfer_illuminance) -> luxfer_status {
-    handle::retain(illuminance)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_illuminance_release(illuminance: *mut luxfer_illuminance) -> luxfer_status {
-    handle::release(illuminance)
-}

@@ -420,15 +420,3 @@ pub unsafe extern "C" fn luxfer_image_read(
         view::write(&part, layout, pixels)
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_retain(image: *mut luxfer_image) -> luxfer_status {
-    handle::retain(image)
-}
-
-/// Removes a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_release(image: *mut luxfer_image) -> luxfer_status {
-    handle::release(image)
-}

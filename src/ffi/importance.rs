@@ -281,15 +281,3 @@ fn respond(
     let response = stage.context().quick.run(|| map.respond(&texture, &placement, monitor.job()))?;
     Ok((map, response))
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_importance_retain(importance: *mut luxfer_importance) -> luxfer_status {
-    handle::retain(importance)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_importance_release(importance: *mut luxfer_importance) -> luxfer_status {
-    handle::release(importance)
-}

@@ -10,7 +10,7 @@
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};
-use super::handle::{self, Handle, Owned, tag};
+use super::handle::{Handle, Owned, tag};
 use super::pointer::set_optional;
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
@@ -185,16 +185,4 @@ pub unsafe extern "C" fn luxfer_job_cancel(job: *mut luxfer_job) -> luxfer_statu
         job.shared.monitor.cancel();
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_retain(job: *mut luxfer_job) -> luxfer_status {
-    handle::retain(job)
-}
-
-/// Removes a reference. Removing the last reference cancels a running job and waits until it has ended. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_release(job: *mut luxfer_job) -> luxfer_status {
-    handle::release(job)
 }

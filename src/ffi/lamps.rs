@@ -270,15 +270,3 @@ impl luxfer_lamps_params {
         }
     }
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_retain(lamps: *mut luxfer_lamps) -> luxfer_status {
-    handle::retain(lamps)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_release(lamps: *mut luxfer_lamps) -> luxfer_status {
-    handle::release(lamps)
-}

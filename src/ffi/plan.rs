@@ -297,15 +297,3 @@ pub unsafe extern "C" fn luxfer_plan_get_relight_params(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_plan_retain(plan: *mut luxfer_plan) -> luxfer_status {
-    handle::retain(plan)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_plan_release(plan: *mut luxfer_plan) -> luxfer_status {
-    handle::release(plan)
-}

@@ -457,15 +457,3 @@ pub unsafe extern "C" fn luxfer_rectify_get_report(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_retain(rectify: *mut luxfer_rectify) -> luxfer_status {
-    handle::retain(rectify)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_release(rectify: *mut luxfer_rectify) -> luxfer_status {
-    handle::release(rectify)
-}

@@ -374,15 +374,3 @@ pub unsafe extern "C" fn luxfer_relight_get_report(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_retain(relight: *mut luxfer_relight) -> luxfer_status {
-    handle::retain(relight)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_release(relight: *mut luxfer_relight) -> luxfer_status {
-    handle::release(relight)
-}

@@ -364,15 +364,3 @@ pub unsafe extern "C" fn luxfer_render_get_report(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_retain(render: *mut luxfer_render) -> luxfer_status {
-    handle::retain(render)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_release(render: *mut luxfer_render) -> luxfer_status {
-    handle::release(render)
-}

@@ -438,18 +438,6 @@ pub unsafe extern "C" fn luxfer_scene_place_emission(
     })
 }
 
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_retain(scene: *mut luxfer_scene) -> luxfer_status {
-    handle::retain(scene)
-}
-
-/// Removes a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_release(scene: *mut luxfer_scene) -> luxfer_status {
-    handle::release(scene)
-}
-
 /// A colour that light can have.
 pub(super) fn colour(name: &str, red: f32, green: f32, blue: f32) -> Result<Vec3> {
     let colour = Vec3::new(red, green, blue);

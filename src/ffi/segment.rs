@@ -403,15 +403,3 @@ pub unsafe extern "C" fn luxfer_segment_get_report(
         Ok(())
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_retain(segment: *mut luxfer_segment) -> luxfer_status {
-    handle::retain(segment)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_release(segment: *mut luxfer_segment) -> luxfer_status {
-    handle::release(segment)
-}

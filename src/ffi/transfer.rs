@@ -559,15 +559,3 @@ pub(super) fn snapshot(stage: &Runner<Inputs, Results>, params: luxfer_transfer_
     let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
     Ok(Transfer { input: stage.inputs().input()?, params: params.params()?, results })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_retain(transfer: *mut luxfer_transfer) -> luxfer_status {
-    handle::retain(transfer)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_release(transfer: *mut luxfer_transfer) -> luxfer_status {
-    handle::release(transfer)
-}

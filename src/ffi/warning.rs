@@ -317,18 +317,6 @@ pub unsafe extern "C" fn luxfer_warnings_get_advice(
     enter(warnings, |object| copy_text(&object.get(index)?.1.advice, buffer, capacity, needed))
 }
 
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_retain(warnings: *mut luxfer_warnings) -> luxfer_status {
-    handle::retain(warnings)
-}
-
-/// Gives a reference back. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_release(warnings: *mut luxfer_warnings) -> luxfer_status {
-    handle::release(warnings)
-}
-
 /// The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
 /// string is static: never free it. Any thread.
 #[unsafe(no_mangle)]

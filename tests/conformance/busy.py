@@ -60,7 +60,7 @@ class Busy(Player):
             check(library.luxfer_demo_scene(context, abi.LUXFER_DEMO_TARGET_ROOM, ctypes.addressof(scene)))
             check(library.luxfer_render_create(context, ctypes.addressof(render)))
             check(library.luxfer_render_set_scene(render, scene))
-            check(library.luxfer_scene_release(scene))
+            check(library.luxfer_release(scene))
             params = abi.luxfer_render_params()
             check(library.luxfer_render_params_init(ctypes.addressof(params), ctypes.sizeof(params)))
             params.width, params.height, params.samples = 64, 64, 1 << 20
@@ -76,8 +76,8 @@ class Busy(Player):
         for render, job in self.endless.values():
             check(library.luxfer_job_cancel(job))
             library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None)
-            check(library.luxfer_job_release(job))
-            check(library.luxfer_render_release(render))
+            check(library.luxfer_release(job))
+            check(library.luxfer_release(render))
         self.endless.clear()
 
     def release(self) -> None:

@@ -193,7 +193,7 @@ class Loader:
         status = self.library.luxfer_distribution_load_memory(self.context.handle, data, len(data), kind, ctypes.byref(out))
         check(seed, status, start)
         if status == abi.LUXFER_OK:
-            self.library.luxfer_distribution_release(out)
+            self.library.luxfer_release(out)
 
     def add_up(self, seed: int, rng: random.Random) -> None:
         """A half of a rendering with bytes changed, beside the other half."""
@@ -211,7 +211,7 @@ class Loader:
             check(seed, status, start)
             if status == abi.LUXFER_OK:
                 check(seed, self.library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None), start)
-                self.library.luxfer_job_release(job)
+                self.library.luxfer_release(job)
         self.library.luxfer_render_clear_parts(handle)
 
     def say(self, seed: int, rng: random.Random) -> None:
@@ -228,7 +228,7 @@ class Loader:
         """What loads must work, too."""
         library = self.library
         if not is_scene:
-            library.luxfer_image_release(thing)
+            library.luxfer_release(thing)
             return
         rays = (abi.luxfer_ray * 2)()
         for ray, axis in zip(rays, (1, 2)):
@@ -242,7 +242,7 @@ class Loader:
         check(seed, library.luxfer_scene_intersect(thing, rays, 2, (abi.luxfer_hit * 2)()), start)
         check(seed, library.luxfer_scene_requirements(thing, 0.01, ctypes.byref(needs)), start)
         check(seed, library.luxfer_scene_export_memory(thing, abi.luxfer_write_fn(lambda user, data, size: 0), None), start)
-        library.luxfer_scene_release(thing)
+        library.luxfer_release(thing)
 
 
 def load(first: int, count: int, journal: str) -> None:

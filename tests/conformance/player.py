@@ -21,7 +21,7 @@ import sys
 import threading
 import time
 
-from script import FUNCTIONS, ROOM, STRUCTS, is_handle, is_release, makes
+from script import FUNCTIONS, ROOM, STRUCTS, is_handle, is_release, is_retain, makes
 
 from luxfer import _abi as abi
 from luxfer._library import library as typed
@@ -208,7 +208,7 @@ class Player:
                     self.contexts.append(handle)
         if first and is_handle(first) and arguments[0][0] == "object" and arguments[0][1] in self.handles:
             kind, handle, count = self.handles[arguments[0][1]]
-            count += function.endswith("_retain") - releases
+            count += is_retain(function) - releases
             self.handles[arguments[0][1]] = (kind, handle, count)
             if not count:
                 del self.handles[arguments[0][1]]
@@ -242,8 +242,8 @@ class Player:
     def release(self) -> None:
         for kind, handle, count in sorted(self.handles.values(), key=lambda h: h[0] != "luxfer_job"):
             for _ in range(count):
-                if getattr(library, f"{kind}_release")(handle):
-                    raise Broken(f"{kind}_release failed at the end")
+                if library.luxfer_release(handle):
+                    raise Broken(f"luxfer_release of a {kind} failed at the end")
         self.handles.clear()
         self.contexts.clear()
         self.kept.clear()

@@ -35,13 +35,13 @@ class Scenario(Script):
     def photograph(self) -> tuple[Argument, Argument]:
         """A photo of the generated office, and strokes on it."""
         stage = self.make("demo_photo_create", self.context)
-        self.references("demo_photo", stage)
+        self.references(stage)
         self.run("demo_photo_start", stage, struct("demo_photo_params", width=180, height=120, samples=2))
         return self.make("demo_photo_get_image", stage, 0), self.make("demo_photo_get_image", stage, 1)
 
-    def references(self, kind: str, thing: Argument) -> None:
-        self.call(f"{kind}_retain", thing)
-        self.call(f"{kind}_release", thing)
+    def references(self, thing: Argument) -> None:
+        self.call("retain", thing)
+        self.call("release", thing)
 
 
 def camera() -> Argument:
@@ -58,14 +58,14 @@ def library() -> Scenario:
         name = function.removeprefix("luxfer_").removesuffix("_init")
         if function.endswith("_init"):
             s.call(f"{name}_init", struct(name, "raw"), 200)
-    s.references("context", s.context)
+    s.references(s.context)
     return s
 
 
 def images() -> Scenario:
     s = Scenario()
     image = s.image()
-    s.references("image", image)
+    s.references(image)
     s.call("image_size", image, ROOM, ROOM, ROOM)
     s.call("image_get_metadata", image, struct("photo_metadata", "size"))
     s.call("image_read", image, 0, view(12, 8))
@@ -82,7 +82,7 @@ def images() -> Scenario:
 def scenes() -> Scenario:
     s = Scenario()
     scene, image = s.room(), s.image()
-    s.references("scene", scene)
+    s.references(scene)
     s.call("scene_export", scene, "a.glb")
     s.make("scene_load", s.context, "a.glb")
     s.make("scene_load_memory", s.context, b'{"asset":{"version":"2.0"}}', 27, None)
@@ -90,7 +90,7 @@ def scenes() -> Scenario:
     warnings = s.make("scene_get_warnings", scaled)  # 200 m are too high for a room
     s.call("warnings_get", warnings, 0, struct("warning", "size"))
     candidates = s.make("scene_get_candidates", scaled)
-    s.references("candidates", candidates)
+    s.references(candidates)
     s.call("candidates_count", candidates, ROOM)
     s.call("candidates_get", candidates, 0, struct("candidate", "size"))
     s.call("candidates_get_name", candidates, 0, ROOM, 300, ROOM)
@@ -139,7 +139,7 @@ def jobs() -> Scenario:
         s.call("job_poll", job, ROOM, ROOM)
         s.call("job_status", job)
         s.call("job_wait", job, 5000 if progress == "go" else 30, ["callback", progress], None)
-        s.references("job", job)
+        s.references(job)
         s.call("job_cancel", job)
         s.finish(job)
     return s
@@ -151,7 +151,7 @@ def photo() -> Scenario:
     photo, strokes = s.photograph()
     even = s.image(180, 120, 1, 1.0)
     rectify = s.make("rectify_create", s.context)
-    s.references("rectify", rectify)
+    s.references(rectify)
     s.call("rectify_set_photo", rectify, photo)
     s.call("rectify_set_mask", rectify, even)
     s.run("rectify_start", rectify, struct("rectify_params"))
@@ -160,7 +160,7 @@ def photo() -> Scenario:
     s.call("rectify_get_report", rectify, struct("rectify_report", "size"))
     s.make("rectify_get_warnings", rectify)
     features = s.make("features_create", s.context)
-    s.references("features", features)
+    s.references(features)
     s.call("features_set_photo", features, photo)
     s.call("features_set_depth", features, even, 0)
     s.call("features_set_network", features, None, 0)
@@ -175,7 +175,7 @@ def photo() -> Scenario:
     s.call("features_get_report", features, struct("features_report", "size"))
     s.make("features_get_warnings", features)
     segment = s.make("segment_create", s.context)
-    s.references("segment", segment)
+    s.references(segment)
     s.call("segment_set_features", segment, channels)
     s.call("segment_set_region", segment, even)
     s.call("segment_clear_strokes", segment)
@@ -194,14 +194,14 @@ def emission() -> Scenario:
     s = Scenario()
     unwarped, light, valid = s.image(40, 30), s.image(40, 30, 1, 1.0), s.image(40, 30, 1, 1.0)
     stage = s.make("emission_create", s.context)
-    s.references("emission", stage)
+    s.references(stage)
     s.call("emission_set_exemplar", stage, unwarped, light, valid)
     s.call("emission_set_photo", stage, unwarped, array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1))
     s.run("emission_start", stage, struct("emission_params", width=48, height=40))
     s.make("emission_get_image", stage, 0)
     s.call("emission_get_report", stage, struct("emission_report", "size"))
     warnings = s.make("emission_get_warnings", stage)  # there are no whole lamps
-    s.references("warnings", warnings)
+    s.references(warnings)
     s.call("warnings_count", warnings, ROOM)
     s.call("warnings_get", warnings, 0, struct("warning", "size"))
     s.call("warnings_get_message", warnings, 0, ROOM, 300, ROOM)
@@ -219,7 +219,7 @@ def emission() -> Scenario:
 def rendering() -> Scenario:
     s = Scenario()
     scene, stage = s.room(), s.make("render_create", s.context)
-    s.references("render", stage)
+    s.references(stage)
     s.call("render_set_scene", stage, scene)
     s.call("render_set_camera", stage, camera())
     s.call("render_set_camera_index", stage, 0)
@@ -250,7 +250,7 @@ def light() -> Scenario:
     """Lux on grids and meshes, and the emission that meets a target."""
     s = Scenario()
     scene, stage = s.room(), s.make("illuminance_create", s.context)
-    s.references("illuminance", stage)
+    s.references(stage)
     s.call("illuminance_set_scene", stage, scene)
     grid = struct("illuminance_grid", origin=array("float", -1, 1, -1), across=array("float", 2, 0, 0), down=array("float", 0, 0, 2))
     small = struct("illuminance_params", columns=5, rows=4, samples=16)
@@ -259,7 +259,7 @@ def light() -> Scenario:
     s.make("illuminance_get_image", stage, 0)
     s.call("illuminance_get_report", stage, struct("illuminance_report", "size"))
     relight = s.make("relight_create", s.context)
-    s.references("relight", relight)
+    s.references(relight)
     s.call("relight_set_scene", relight, scene, 1, 0)
     s.call("relight_set_target", relight, 1.0, 1.0, 1.0)
     s.call("relight_set_constraint", relight, 1, 0, 2)
@@ -273,7 +273,7 @@ def lamps() -> Scenario:
     """Powers of lamps for goals, and what a surface means to one."""
     s = Scenario()
     scene, stage = s.room(), s.make("lamps_create", s.context)
-    s.references("lamps", stage)
+    s.references(stage)
     s.call("lamps_set_scene", stage, scene, 1)
     s.call("lamps_add_grid", stage, struct("illuminance_grid", across=array("float", 1, 0, 0), down=array("float", 0, 0, 1)), 500.0, 1.0)
     s.call("lamps_clear_goals", stage)
@@ -288,7 +288,7 @@ def lamps() -> Scenario:
     s.call("lamps_get_reason", stage, ROOM, 300, ROOM)
     s.make("lamps_get_texture", stage)
     importance = s.make("importance_create", s.context)
-    s.references("importance", importance)
+    s.references(importance)
     s.call("importance_set_scene", importance, scene, 1, 0)
     s.run("importance_start", importance, struct("importance_params", width=6, height=4, paths=2048))
     s.make("importance_get_image", importance)
@@ -315,7 +315,7 @@ def photometry() -> Scenario:
     s.call("preset_name", s.context, 0, ROOM, 60, ROOM)
     file = b"IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0\n100 80 0\n"
     lamp = s.make("distribution_load_memory", s.context, file, len(file), 0)
-    s.references("distribution", lamp)
+    s.references(lamp)
     s.call("distribution_save", lamp, "a.ldt")
     s.make("distribution_load", s.context, "a.ldt")
     s.call("distribution_get_report", lamp, struct("distribution_report", "size"))
@@ -329,7 +329,7 @@ def transfer() -> Scenario:
     s = Scenario()
     scene, (photo, strokes) = s.room(), s.photograph()
     stage = s.make("transfer_create", s.context)
-    s.references("transfer", stage)
+    s.references(stage)
     s.call("transfer_set_photo", stage, photo)
     s.call("transfer_set_depth", stage, s.image(180, 120, 1, 1.0), 0)
     s.call("transfer_set_scene", stage, scene, "Ceiling")
@@ -379,7 +379,7 @@ def planning() -> Scenario:
     s = Scenario()
     scene, (photo, strokes) = s.room(), s.photograph()
     stage = s.make("plan_create", s.context)
-    s.references("plan", stage)
+    s.references(stage)
     render = s.make("render_create", s.context)
     s.call("render_set_scene", render, scene)
     small = struct("render_params", width=16, height=12)
@@ -410,12 +410,12 @@ def stylisation() -> Scenario:
         s.call("guides_set_scene", stage, s.make("demo_scene", s.context, which))
         s.run("guides_start", stage, struct("guides_params", width=24, height=16, samples=2))
         guides.append(stage)
-    s.references("guides", guides[0])
+    s.references(guides[0])
     s.make("guides_get_image", guides[0], 0)
     s.make("guides_motion", guides[1], guides[1])
     artwork = s.make("demo_artwork", guides[0], 0)
     stage = s.make("stylize_create", s.context)
-    s.references("stylize", stage)
+    s.references(stage)
     s.call("stylize_set_artwork", stage, artwork)
     s.call("stylize_add_guide", stage, "own", s.image(24, 16), s.image(24, 16), 1.0, 0)
     s.call("stylize_clear_guides", stage)

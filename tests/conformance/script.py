@@ -15,7 +15,6 @@ A program is a list of calls, a call [function, argument...]. Arguments:
 
 from __future__ import annotations
 
-import re
 import sys
 from pathlib import Path
 
@@ -88,14 +87,18 @@ class Script:
     def finish(self, job: Argument) -> None:
         """Waits for a job, and lets go of it."""
         self.call("job_wait", job, 60_000, None, None)
-        self.call("job_release", job)
+        self.call("release", job)
 
     def run(self, verb: str, *arguments) -> None:
         self.finish(self.make(verb, *arguments))
 
 
+def is_of_any_kind(field) -> bool:
+    return field.type == "void" and field.name == "handle"
+
+
 def is_handle(field) -> bool:
-    return field.type in KINDS and field.stars == 1
+    return field.type in KINDS and field.stars == 1 or is_of_any_kind(field)
 
 
 def makes(field) -> bool:
@@ -103,4 +106,8 @@ def makes(field) -> bool:
 
 
 def is_release(function: str) -> bool:
-    return re.fullmatch(r"luxfer_\w+_release", function) is not None
+    return function == "luxfer_release"
+
+
+def is_retain(function: str) -> bool:
+    return function == "luxfer_retain"

@@ -69,7 +69,7 @@ luxfer_render *new_render(luxfer_context *context) {
     luxfer_render *render = nullptr;
     CHECK_OK(luxfer_render_create(context, &render));
     CHECK_OK(luxfer_render_set_scene(render, scene));
-    CHECK_OK(luxfer_scene_release(scene));
+    CHECK_OK(luxfer_release(scene));
     return render;
 }
 
@@ -100,11 +100,11 @@ void wrong_handles_are_errors() {
     CHECK_STATUS(luxfer_image_size(reinterpret_cast<luxfer_image *>(context), nullptr, nullptr, nullptr),
                  LUXFER_INVALID_ARGUMENT);
     std::uint64_t garbage[4] = {1, 2, 3, 4};
-    CHECK_STATUS(luxfer_image_release(reinterpret_cast<luxfer_image *>(garbage)), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_context_retain(nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_OK(luxfer_image_release(nullptr));
-    CHECK_OK(luxfer_context_release(context));
-    CHECK_OK(luxfer_image_release(image));
+    CHECK_STATUS(luxfer_release(reinterpret_cast<luxfer_image *>(garbage)), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_retain(nullptr), LUXFER_INVALID_ARGUMENT);
+    CHECK_OK(luxfer_release(nullptr));
+    CHECK_OK(luxfer_release(context));
+    CHECK_OK(luxfer_release(image));
 }
 
 // Errors of one host thread are not those of another.
@@ -126,7 +126,7 @@ void messages_belong_to_threads() {
         host.join();
     CHECK(wrong == 0);
     CHECK(check::message(context).empty());
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(context));
 }
 
 // A callback may call any function, even release the very job it is told about.
@@ -147,9 +147,9 @@ std::int32_t reenter(void *user, double) {
         CHECK_OK(luxfer_job_poll(seen.job, &fraction, &finished));
         CHECK(fraction >= 0.0 && fraction <= 1.0 && (finished == 0 || finished == 1));
         CHECK_STATUS(luxfer_image_load(seen.context, "/nonexistent", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);
-        CHECK_OK(luxfer_render_release(seen.render));
-        CHECK_OK(luxfer_context_release(seen.context));
-        CHECK_OK(luxfer_job_release(seen.job));
+        CHECK_OK(luxfer_release(seen.render));
+        CHECK_OK(luxfer_release(seen.context));
+        CHECK_OK(luxfer_release(seen.job));
         return 1;
     }
     CHECK(false); // Not called again after it has asked to cancel.
@@ -171,17 +171,17 @@ void references_of_two_threads() {
     for (int i = 0; i < 20; ++i) {
         luxfer_render *render = new_render(context);
         luxfer_job *job = start(render, 16, endless);
-        CHECK_OK(luxfer_job_retain(job));
+        CHECK_OK(luxfer_retain(job));
         std::thread other([job] {
             CHECK_OK(luxfer_job_cancel(job));
-            CHECK_OK(luxfer_job_release(job));
+            CHECK_OK(luxfer_release(job));
         });
         CHECK_STATUS(luxfer_job_wait(job, -1, nullptr, nullptr), LUXFER_CANCELLED);
-        CHECK_OK(luxfer_job_release(job));
-        CHECK_OK(luxfer_render_release(render));
+        CHECK_OK(luxfer_release(job));
+        CHECK_OK(luxfer_release(render));
         other.join();
     }
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(context));
 }
 
 // Layers are asked for by expression and found by name; a slip is told with its column.
@@ -196,7 +196,7 @@ void layers_are_found_by_name() {
     CHECK_OK(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH));
     luxfer_job *job = start(render, 8, 4);
     CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr));
-    CHECK_OK(luxfer_job_release(job));
+    CHECK_OK(luxfer_release(job));
     std::uint32_t index = 9, channels = 0;
     luxfer_image *image = nullptr;
     CHECK_OK(luxfer_render_find_layer(render, "Depth", &index));
@@ -204,9 +204,9 @@ void layers_are_found_by_name() {
     CHECK_OK(luxfer_render_get_layer(render, index, &image));
     CHECK_OK(luxfer_image_size(image, nullptr, nullptr, &channels));
     CHECK(channels == 1);
-    CHECK_OK(luxfer_image_release(image));
-    CHECK_OK(luxfer_render_release(render));
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(image));
+    CHECK_OK(luxfer_release(render));
+    CHECK_OK(luxfer_release(context));
 }
 
 // The same bits on one thread and on three.
@@ -220,9 +220,9 @@ void threads_do_not_change_results() {
         luxfer_image *image = nullptr;
         CHECK_OK(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image));
         // Everything but the image goes; its pixels stay.
-        CHECK_OK(luxfer_job_release(job));
-        CHECK_OK(luxfer_render_release(render));
-        CHECK_OK(luxfer_context_release(context));
+        CHECK_OK(luxfer_release(job));
+        CHECK_OK(luxfer_release(render));
+        CHECK_OK(luxfer_release(context));
 
         std::vector<float> pixels(32 * 32 * 3);
         luxfer_image_view view;
@@ -231,7 +231,7 @@ void threads_do_not_change_results() {
         view.data = pixels.data();
         view.byte_size = pixels.size() * sizeof(float);
         CHECK_OK(luxfer_image_read(image, 0, &view));
-        CHECK_OK(luxfer_image_release(image));
+        CHECK_OK(luxfer_release(image));
         if (first.empty())
             first = pixels;
         CHECK(std::memcmp(first.data(), pixels.data(), view.byte_size) == 0);

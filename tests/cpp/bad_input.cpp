@@ -44,7 +44,7 @@ luxfer_status run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage la
     const luxfer_status started = luxfer_transfer_start(transfer, first, last, nullptr, &job);
     if (started != LUXFER_OK) return started;
     const luxfer_status ended = luxfer_job_wait(job, -1, nullptr, nullptr);
-    CHECK_OK(luxfer_job_release(job));
+    CHECK_OK(luxfer_release(job));
     return ended;
 }
 
@@ -79,8 +79,8 @@ void files() {
     CHECK_STATUS(luxfer_scene_load_memory(context, lying.data(), lying.size(), nullptr, &scene), LUXFER_FORMAT);
     CHECK(scene == nullptr);
     CHECK_OK(luxfer_scene_load_memory(context, glb.data(), glb.size(), nullptr, &scene));
-    CHECK_OK(luxfer_scene_release(scene));
-    CHECK_OK(luxfer_scene_release(room));
+    CHECK_OK(luxfer_release(scene));
+    CHECK_OK(luxfer_release(room));
 }
 
 void vertices() {
@@ -105,7 +105,7 @@ void vertices() {
     CHECK_STATUS(luxfer_scene_add_mesh(scene, &mesh, nullptr), LUXFER_INVALID_ARGUMENT);
     indices[2] = 2;
     CHECK_OK(luxfer_scene_add_mesh(scene, &mesh, nullptr));
-    CHECK_OK(luxfer_scene_release(scene));
+    CHECK_OK(luxfer_release(scene));
 }
 
 void strokes_and_surfaces() {
@@ -158,11 +158,11 @@ void strokes_and_surfaces() {
     CHECK(says({"luxfer_relight_set_scene"}));
     CHECK(job == nullptr && early == nullptr);
 
-    CHECK_OK(luxfer_relight_release(relight));
-    CHECK_OK(luxfer_scene_release(room));
-    CHECK_OK(luxfer_transfer_release(transfer));
-    CHECK_OK(luxfer_image_release(noisy));
-    CHECK_OK(luxfer_image_release(grey));
+    CHECK_OK(luxfer_release(relight));
+    CHECK_OK(luxfer_release(room));
+    CHECK_OK(luxfer_release(transfer));
+    CHECK_OK(luxfer_release(noisy));
+    CHECK_OK(luxfer_release(grey));
 }
 
 } // namespace
@@ -172,6 +172,6 @@ int main() {
     files();
     vertices();
     strokes_and_surfaces();
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(context));
     return check::summary("bad_input");
 }

@@ -52,7 +52,7 @@ luxfer_image *flat(Size size, float value) {
 
 luxfer_status finish(luxfer_job *job) {
     const luxfer_status status = luxfer_job_wait(job, -1, nullptr, nullptr);
-    CHECK_OK(luxfer_job_release(job));
+    CHECK_OK(luxfer_release(job));
     return status;
 }
 
@@ -74,7 +74,7 @@ luxfer_guides *rendered(luxfer_demo which, const luxfer_guides_params &params) {
     CHECK_OK(luxfer_guides_set_scene(guides, scene));
     CHECK_OK(luxfer_guides_start(guides, &params, &job));
     CHECK_OK(finish(job));
-    CHECK_OK(luxfer_scene_release(scene));
+    CHECK_OK(luxfer_release(scene));
     return guides;
 }
 
@@ -115,9 +115,9 @@ void guides_refuse() {
         CHECK_STATUS(started == LUXFER_OK ? finish(job) : started, LUXFER_INVALID_ARGUMENT);
     }
     CHECK_STATUS(luxfer_demo_scene(context, 9, &scene), LUXFER_INVALID_ARGUMENT);
-    CHECK_OK(luxfer_scene_release(scene));
-    CHECK_OK(luxfer_guides_release(guides));
-    CHECK_OK(luxfer_guides_release(nullptr));
+    CHECK_OK(luxfer_release(scene));
+    CHECK_OK(luxfer_release(guides));
+    CHECK_OK(luxfer_release(nullptr));
 }
 
 void guides_tell_light_apart(luxfer_guides *guides) {
@@ -132,7 +132,7 @@ void guides_tell_light_apart(luxfer_guides *guides) {
             most = std::fmax(most, v);
         }
         CHECK(most > 0);
-        CHECK_OK(luxfer_image_release(image));
+        CHECK_OK(luxfer_release(image));
     }
     luxfer_image *image = nullptr;
     CHECK_STATUS(luxfer_guides_get_image(guides, LUXFER_GUIDES_CAUSTICS + 1, &image), LUXFER_INVALID_ARGUMENT);
@@ -152,14 +152,14 @@ void guides_tell_light_apart(luxfer_guides *guides) {
         }
     }
     CHECK(seen > still.size() * 9 / 10);
-    CHECK_OK(luxfer_image_release(motion));
+    CHECK_OK(luxfer_release(motion));
     luxfer_guides_params params = small_guides();
     params.width = 2 * WIDTH;
     params.samples = 1;
     luxfer_guides *wider = rendered(LUXFER_DEMO_SPHERE_ON_TABLE, params);
     CHECK_STATUS(luxfer_guides_motion(guides, wider, &motion), LUXFER_INVALID_ARGUMENT);
     CHECK_STATUS(luxfer_guides_motion(guides, nullptr, &motion), LUXFER_INVALID_ARGUMENT);
-    CHECK_OK(luxfer_guides_release(wider));
+    CHECK_OK(luxfer_release(wider));
 }
 
 // The artworks that stand in for an artist's: three, each different, of the guides' size, white paper where nothing is.
@@ -174,7 +174,7 @@ void artworks(luxfer_guides *guides) {
         for (float v : paint) CHECK(v >= 0 && v <= 1);
         CHECK(paint != before);
         before = paint;
-        CHECK_OK(luxfer_image_release(image));
+        CHECK_OK(luxfer_release(image));
     }
     luxfer_image *image = nullptr;
     CHECK_STATUS(luxfer_demo_artwork(guides, LUXFER_ARTWORK_PAINT + 1, &image), LUXFER_INVALID_ARGUMENT);
@@ -205,9 +205,9 @@ void sheets() {
     CHECK(aligned.size() == pixels.size());
     auto at = [&](uint32_t x, uint32_t y) { return aligned[3 * (size_t{y} * WIDTH + x)]; };
     CHECK(at(10, 36) < at(48, 36) && at(48, 36) < at(86, 36));
-    CHECK_OK(luxfer_image_release(artwork));
+    CHECK_OK(luxfer_release(artwork));
     CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, nullptr));
-    CHECK_OK(luxfer_image_release(artwork));
+    CHECK_OK(luxfer_release(artwork));
 
     // What cannot be.
     artwork = nullptr;
@@ -221,7 +221,7 @@ void sheets() {
         luxfer_image *photo = flat({200, 150, 3}, blank);
         CHECK_STATUS(luxfer_sheet_align(photo, WIDTH, HEIGHT, &params, &artwork, nullptr), LUXFER_DEGENERATE);
         CHECK(!check::message(context).empty());
-        CHECK_OK(luxfer_image_release(photo));
+        CHECK_OK(luxfer_release(photo));
     }
     for (double luxfer_sheet_params::*field :
          {&luxfer_sheet_params::dpi, &luxfer_sheet_params::margin, &luxfer_sheet_params::contrast,
@@ -239,8 +239,8 @@ void sheets() {
     CHECK_STATUS(luxfer_sheet_print(nullptr, &params, &artwork), LUXFER_INVALID_ARGUMENT);
     CHECK_STATUS(luxfer_sheet_print(picture, &params, nullptr), LUXFER_INVALID_ARGUMENT);
     CHECK(artwork == nullptr);
-    CHECK_OK(luxfer_image_release(sheet));
-    CHECK_OK(luxfer_image_release(picture));
+    CHECK_OK(luxfer_release(sheet));
+    CHECK_OK(luxfer_release(picture));
 }
 
 luxfer_status paint(luxfer_stylize *stylize, const luxfer_stylize_params *params) {
@@ -276,7 +276,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     const std::vector<float> first = pixels_of(picture);
     CHECK(first.size() == size_t{WIDTH} * HEIGHT * 3);
     for (float v : first) CHECK(v >= 0 && v <= 1);
-    CHECK_OK(luxfer_image_release(picture));
+    CHECK_OK(luxfer_release(picture));
 
     // The next frame of a camera that stands still: all paint stays.
     CHECK_OK(luxfer_guides_motion(target, target, &motion));
@@ -288,7 +288,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     size_t same = 0;
     for (size_t i = 0; i < first.size(); ++i) same += first[i] == second[i];
     CHECK(same > first.size() * 8 / 10);
-    CHECK_OK(luxfer_image_release(picture));
+    CHECK_OK(luxfer_release(picture));
 
     // A motion of the wrong shape, or with nothing to go on from.
     luxfer_image *mask = flat({WIDTH, HEIGHT, 1}, 1);
@@ -329,9 +329,9 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     const std::vector<float> completed = pixels_of(picture), original = pixels_of(artwork);
     for (size_t i = 0; i < completed.size(); ++i)
         if (half[i / 3] > 0) CHECK(completed[i] == original[i]);
-    for (luxfer_image *image : {picture, painted, full, nothing, mask, motion, artwork}) CHECK_OK(luxfer_image_release(image));
-    CHECK_OK(luxfer_stylize_release(fresh));
-    CHECK_OK(luxfer_stylize_release(stylize));
+    for (luxfer_image *image : {picture, painted, full, nothing, mask, motion, artwork}) CHECK_OK(luxfer_release(image));
+    CHECK_OK(luxfer_release(fresh));
+    CHECK_OK(luxfer_release(stylize));
 }
 
 } // namespace
@@ -346,11 +346,11 @@ int main() {
     sheets();
     luxfer_stylize *stylize = nullptr;
     if (luxfer_stylize_create(context, &stylize) != LUXFER_UNSUPPORTED) {
-        CHECK_OK(luxfer_stylize_release(stylize));
+        CHECK_OK(luxfer_release(stylize));
         stylise(source, target);
     }
-    CHECK_OK(luxfer_guides_release(source));
-    CHECK_OK(luxfer_guides_release(target));
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(source));
+    CHECK_OK(luxfer_release(target));
+    CHECK_OK(luxfer_release(context));
     return check::summary("stylisation");
 }

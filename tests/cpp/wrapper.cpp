@@ -151,7 +151,7 @@ void copies_share_and_the_last_one_releases() {
     first = ok(fill());
 
     // A C handle that the caller has, taken over.
-    CHECK_OK(luxfer_image_retain(first.get()));
+    CHECK_OK(luxfer_retain(first.get()));
     Image adopted(context, first.get());
     first = Image();
     CHECK(ok(adopted.size()).width == 256);

@@ -12,8 +12,8 @@ int main(void) {
     if (luxfer_context_create(NULL, &context) != LUXFER_OK) return 1;
     if (luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
     if (luxfer_scene_get_counts(scene, &counts) != LUXFER_OK || counts.meshes == 0) return 1;
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(scene);
+    luxfer_release(context);
     printf("C: luxfer %s\n", luxfer_version_string());
     return 0;
 }

@@ -24,21 +24,21 @@ constexpr bool is_compatible(std::uint32_t library, std::uint32_t header) noexce
 namespace detail {
 
 /// One reference to a C object, or none. Copies retain, the destructor releases.
-template <class C, luxfer_status (*retain)(C *), luxfer_status (*release)(C *)>
+template <class C>
 class Reference {
 public:
     Reference() noexcept = default;
     explicit Reference(C *adopted) noexcept : object_(adopted) {}
     Reference(const Reference &other) noexcept : object_(other.object_) {
         if (object_ != nullptr)
-            retain(object_);
+            luxfer_retain(object_);
     }
     Reference(Reference &&other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
     Reference &operator=(Reference other) noexcept {
         std::swap(object_, other.object_);
         return *this;
     }
-    ~Reference() { release(object_); }
+    ~Reference() { luxfer_release(object_); }
 
     C *get() const noexcept { return object_; }
 
@@ -116,14 +116,14 @@ private:
                luxfer_version_string() + "; install a library that is compatible, or rebuild the program";
     }
 
-    detail::Reference<luxfer_context, luxfer_context_retain, luxfer_context_release> reference_;
+    detail::Reference<luxfer_context> reference_;
 };
 
 /// The base class of images, scenes, jobs and stages: a reference to a C object, and one to its context, which has the
 /// error messages. Copies share the object. A moved-from or default-constructed object is empty: it means NULL where a
 /// function accepts NULL, and gives LUXFER_INVALID_ARGUMENT elsewhere. Objects may be destroyed in any order, also
 /// after the context.
-template <class C, luxfer_status (*retain)(C *), luxfer_status (*release)(C *)>
+template <class C>
 class Handle {
 public:
     /// The type of the C object.
@@ -180,7 +180,7 @@ protected:
 
 private:
     Context context_;
-    detail::Reference<C, retain, release> reference_;
+    detail::Reference<C> reference_;
 };
 
 /// Width and height in pixels, and the number of channels.
@@ -192,7 +192,7 @@ struct ImageSize {
 };
 
 /// An image, which never changes. See luxfer_image.
-class Image : public Handle<luxfer_image, luxfer_image_retain, luxfer_image_release> {
+class Image : public Handle<luxfer_image> {
 public:
     using Handle::Handle;
 
@@ -270,7 +270,7 @@ struct JobState {
 };
 
 /// Work in progress. The destructor of the last copy cancels the job and waits until it has ended. See luxfer_job.
-class Job : public Handle<luxfer_job, luxfer_job_retain, luxfer_job_release> {
+class Job : public Handle<luxfer_job> {
 public:
     using Handle::Handle;
 

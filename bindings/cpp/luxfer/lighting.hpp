@@ -14,7 +14,7 @@ using LuminaireParams = Params<luxfer_luminaire_params, luxfer_luminaire_params_
 using PlacementParams = Params<luxfer_placement_params, luxfer_placement_params_init>;
 
 /// Solves for the powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
-class Lamps : public Handle<luxfer_lamps, luxfer_lamps_retain, luxfer_lamps_release> {
+class Lamps : public Handle<luxfer_lamps> {
 public:
     using Handle::Handle;
 
@@ -69,7 +69,7 @@ public:
 };
 
 /// A map of the light that each point of an emitting surface would send to a target. See luxfer_importance.
-class Importance : public Handle<luxfer_importance, luxfer_importance_retain, luxfer_importance_release> {
+class Importance : public Handle<luxfer_importance> {
 public:
     using Handle::Handle;
 
@@ -119,7 +119,7 @@ public:
 };
 
 /// A luminous intensity distribution from an IES or EULUMDAT file. See luxfer_distribution.
-class Distribution : public Handle<luxfer_distribution, luxfer_distribution_retain, luxfer_distribution_release> {
+class Distribution : public Handle<luxfer_distribution> {
 public:
     using Handle::Handle;
 

@@ -16,7 +16,7 @@ using SegmentParams = Params<luxfer_segment_params, luxfer_segment_params_init>;
 using EmissionParams = Params<luxfer_emission_params, luxfer_emission_params_init>;
 
 /// Finds lines, vanishing points and the camera, and unwarps a plane to a frontal view. See luxfer_rectify.
-class Rectify : public Handle<luxfer_rectify, luxfer_rectify_retain, luxfer_rectify_release> {
+class Rectify : public Handle<luxfer_rectify> {
 public:
     using Handle::Handle;
 
@@ -44,7 +44,7 @@ public:
 };
 
 /// The features of each pixel of a photo, for segmentation. See luxfer_features.
-class Features : public Handle<luxfer_features, luxfer_features_retain, luxfer_features_release> {
+class Features : public Handle<luxfer_features> {
 public:
     using Handle::Handle;
 
@@ -90,7 +90,7 @@ public:
 };
 
 /// Computes a mask from strokes. See luxfer_segment.
-class Segment : public Handle<luxfer_segment, luxfer_segment_retain, luxfer_segment_release> {
+class Segment : public Handle<luxfer_segment> {
 public:
     using Handle::Handle;
 
@@ -128,7 +128,7 @@ public:
 };
 
 /// Synthesises an emissive texture of any size from unwarped lights. See luxfer_emission.
-class Emission : public Handle<luxfer_emission, luxfer_emission_retain, luxfer_emission_release> {
+class Emission : public Handle<luxfer_emission> {
 public:
     using Handle::Handle;
 

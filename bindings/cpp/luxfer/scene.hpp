@@ -37,7 +37,7 @@ struct PlacedEmission {
 using Writer = std::function<bool(const void *data, std::size_t size)>;
 
 /// The objects and materials of a scene as candidates for the ceiling. See luxfer_candidates.
-class Candidates : public Handle<luxfer_candidates, luxfer_candidates_retain, luxfer_candidates_release> {
+class Candidates : public Handle<luxfer_candidates> {
 public:
     using Handle::Handle;
 
@@ -55,7 +55,7 @@ public:
 };
 
 /// Meshes, materials, textures, lights and cameras. See luxfer_scene.
-class Scene : public Handle<luxfer_scene, luxfer_scene_retain, luxfer_scene_release> {
+class Scene : public Handle<luxfer_scene> {
 public:
     using Handle::Handle;
 

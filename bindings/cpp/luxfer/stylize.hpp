@@ -22,7 +22,7 @@ struct StylizeParams : Params<luxfer_stylize_params, luxfer_stylize_params_init>
 };
 
 /// Renders the guide images of a scene for a stylisation. See luxfer_guides.
-class Guides : public Handle<luxfer_guides, luxfer_guides_retain, luxfer_guides_release> {
+class Guides : public Handle<luxfer_guides> {
 public:
     using Handle::Handle;
 
@@ -45,7 +45,7 @@ public:
 };
 
 /// Paints a target scene in the style in which an artist has painted an exemplar scene. See luxfer_stylize.
-class Stylize : public Handle<luxfer_stylize, luxfer_stylize_retain, luxfer_stylize_release> {
+class Stylize : public Handle<luxfer_stylize> {
 public:
     using Handle::Handle;
 

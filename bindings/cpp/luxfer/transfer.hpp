@@ -14,7 +14,7 @@ using PatternParams = Params<luxfer_pattern_params, luxfer_pattern_params_init>;
 using DemoPhotoParams = Params<luxfer_demo_photo_params, luxfer_demo_photo_params_init>;
 
 /// Lights a scene as in a photo, from the photo and a few strokes. See luxfer_transfer.
-class Transfer : public Handle<luxfer_transfer, luxfer_transfer_retain, luxfer_transfer_release> {
+class Transfer : public Handle<luxfer_transfer> {
 public:
     using Handle::Handle;
 
@@ -109,7 +109,7 @@ public:
 };
 
 /// A photo of a generated office, and strokes as a user would paint them. See luxfer_demo_photo.
-class DemoPhoto : public Handle<luxfer_demo_photo, luxfer_demo_photo_retain, luxfer_demo_photo_release> {
+class DemoPhoto : public Handle<luxfer_demo_photo> {
 public:
     using Handle::Handle;
 

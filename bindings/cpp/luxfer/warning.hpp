@@ -8,7 +8,7 @@
 namespace luxfer {
 
 /// The warnings of a stage, of a whole transfer or of a scene, as they were when they were asked for. See luxfer_warnings.
-class Warnings : public Handle<luxfer_warnings, luxfer_warnings_retain, luxfer_warnings_release> {
+class Warnings : public Handle<luxfer_warnings> {
 public:
     using Handle::Handle;
 

@@ -58,7 +58,7 @@ class Handle:
         """Releases the object. A job that runs on it continues; a job without references is cancelled."""
         pointer, self._pointer = self._pointer, None
         if pointer and self._forks == _forks:
-            getattr(library, f"luxfer_{self.kind}_release")(pointer)
+            library.luxfer_release(pointer)
 
     @property
     def context(self) -> Context:
