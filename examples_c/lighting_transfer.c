@@ -70,20 +70,33 @@ static char *read_text(const char *name) {
     return text;
 }
 
+/* An empty set of strokes for a photo. */
+static luxfer_strokes *strokes_for(luxfer_image *photo) {
+    luxfer_strokes *strokes = NULL;
+    uint32_t width, height;
+    check(luxfer_image_size(photo, &width, &height, NULL), "photo");
+    check(luxfer_strokes_create(context, width, height, &strokes), "strokes");
+    return strokes;
+}
+
 /* Photo, strokes and scene from the user's files. */
 static void load_input(const options *o, luxfer_transfer *transfer, luxfer_image **photo, luxfer_scene **scene) {
+    luxfer_strokes *strokes;
     check(luxfer_image_load(context, o->photo, LUXFER_COLOUR_SRGB, photo), "photo");
     check(luxfer_transfer_set_photo(transfer, *photo), "photo");
+    strokes = strokes_for(*photo);
     if (ends_with(o->strokes, ".txt")) {
         char *text = read_text(o->strokes);
-        check(luxfer_transfer_add_strokes_text(transfer, text), "strokes");
+        check(luxfer_strokes_add_text(strokes, text), "strokes");
         free(text);
     } else {
         luxfer_image *drawing = NULL;
         check(luxfer_image_load(context, o->strokes, LUXFER_COLOUR_SRGB, &drawing), "strokes");
-        check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
+        check(luxfer_strokes_add_image(strokes, drawing), "strokes");
         luxfer_release(drawing);
     }
+    check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
+    luxfer_release(strokes);
     check(luxfer_scene_load(context, o->scene, scene), "scene");
 }
 
@@ -92,13 +105,17 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     luxfer_demo_photo *demo = NULL;
     luxfer_job *job = NULL;
     luxfer_image *drawing = NULL;
+    luxfer_strokes *strokes;
     check(luxfer_demo_photo_create(context, &demo), "demo");
     check(luxfer_demo_photo_start(demo, NULL, &job), "demo");
     finish(job, "photographing the office");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, photo), "demo photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_STROKES, &drawing), "demo strokes");
     check(luxfer_transfer_set_photo(transfer, *photo), "photo");
-    check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
+    strokes = strokes_for(*photo);
+    check(luxfer_strokes_add_image(strokes, drawing), "strokes");
+    check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
+    luxfer_release(strokes);
     check(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, scene), "demo scene");
     luxfer_release(drawing);
     luxfer_release(demo);

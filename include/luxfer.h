@@ -1725,6 +1725,69 @@ luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
 luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
 
 /* ====================================================================================================================
+ * Strokes
+ *
+ * What the user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a drawing
+ * or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
+ * luxfer_features_set_strokes. A stage copies the strokes; to show it later strokes, set them again.
+ * ==================================================================================================================== */
+
+/** Strokes for images of one size. See luxfer_strokes_create. */
+typedef struct luxfer_strokes luxfer_strokes;
+
+/** The mask that strokes are for: a LUXFER_PHASE_ value. */
+typedef int32_t luxfer_phase;
+
+/** The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too. */
+#define LUXFER_PHASE_PLANE 0
+
+/** The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them. */
+#define LUXFER_PHASE_LIGHTS 1
+
+/**
+ * Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes. Any
+ * thread.
+ * LUXFER_INVALID_ARGUMENT if width or height is not in [1, 65536].
+ */
+luxfer_status luxfer_strokes_create(luxfer_context *context,
+                                    uint32_t width,
+                                    uint32_t height,
+                                    luxfer_strokes **strokes);
+
+/**
+ * Adds a stroke along a polyline. phase is a LUXFER_PHASE_ value; positive is 1 on the plane or on lights, 0 beside
+ * them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5, 0.5);
+ * radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later stroke
+ * counts. Any thread.
+ */
+luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
+                                 luxfer_phase phase,
+                                 const float *points,
+                                 size_t point_count,
+                                 float radius,
+                                 int32_t positive);
+
+/**
+ * Adds the strokes of a drawing of the same size: green (0, 255, 0) is plane, red (255, 0, 0) not plane, yellow (255,
+ * 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels are ignored. Load drawings with
+ * LUXFER_COLOUR_SRGB. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the size differs or the drawing has fewer than 3 channels.
+ */
+luxfer_status luxfer_strokes_add_image(luxfer_strokes *strokes,
+                                       luxfer_image *drawing);
+
+/**
+ * Adds the strokes of a text in UTF-8. Each line has a class, a radius, and x and y of the points in pixels, such as
+ * "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a comment. Any thread.
+ * LUXFER_FORMAT, naming the line, if the text is malformed.
+ */
+luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
+                                      const char *description);
+
+/** Removes all strokes. Stages keep their copies. Any thread. */
+luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
+
+/* ====================================================================================================================
  * Features
  *
  * Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
@@ -1865,35 +1928,15 @@ luxfer_status luxfer_features_set_view(luxfer_features *features,
                                        luxfer_rectify *rectify);
 
 /**
- * Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the
- * ceiling that carries the lights, and 0 off this plane. Strokes affect only a room that is fitted to lines
- * (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one face and all others off this
- * face. Any thread.
- * LUXFER_INVALID_OPERATION before the photo is set.
+ * Sets strokes on the photo, of which the fit of a room takes those for LUXFER_PHASE_PLANE and the positive strokes on
+ * lights: on one plane of the room, such as the ceiling that carries the lights, or off this plane. They affect only a
+ * room that is fitted to lines (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one
+ * face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL: no
+ * strokes. Any thread.
+ * LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
  */
-luxfer_status luxfer_features_add_stroke(luxfer_features *features,
-                                         const float *points,
-                                         size_t point_count,
-                                         float radius,
-                                         int32_t positive);
-
-/**
- * Adds the strokes for the plane from a drawing of the photo's size, as luxfer_segment_add_strokes_image does with
- * LUXFER_PHASE_PLANE. Any thread.
- * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_INVALID_ARGUMENT if the size differs.
- */
-luxfer_status luxfer_features_add_strokes_image(luxfer_features *features,
-                                                luxfer_image *drawing);
-
-/**
- * Adds the strokes for the plane from a text in UTF-8, as luxfer_segment_add_strokes_text does with
- * LUXFER_PHASE_PLANE. Any thread.
- * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_FORMAT, naming the line, if the text is malformed.
- */
-luxfer_status luxfer_features_add_strokes_text(luxfer_features *features, const char *description);
-
-/** Removes all strokes. Any thread. */
-luxfer_status luxfer_features_clear_strokes(luxfer_features *features);
+luxfer_status luxfer_features_set_strokes(luxfer_features *features,
+                                          luxfer_strokes *strokes);
 
 /**
  * Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
@@ -1968,9 +2011,6 @@ typedef struct luxfer_segment_params {
     uint32_t reserved;
 } luxfer_segment_params;
 
-/** The mask that strokes are for: a LUXFER_PHASE_ value. */
-typedef int32_t luxfer_phase;
-
 /** An image of a segmentation: a LUXFER_SEGMENT_ value. */
 typedef int32_t luxfer_segment_image;
 
@@ -1989,12 +2029,6 @@ typedef struct luxfer_segment_report {
     /** Number of pixels that strokes of both classes cover; the later stroke counts. */
     uint64_t contradictory_pixels;
 } luxfer_segment_report;
-
-/** The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too. */
-#define LUXFER_PHASE_PLANE 0
-
-/** The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them. */
-#define LUXFER_PHASE_LIGHTS 1
 
 /** 1 where the confidence is above one half, else 0; 1 channel. */
 #define LUXFER_SEGMENT_MASK 0
@@ -2044,39 +2078,13 @@ luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
                                         luxfer_image *region);
 
 /**
- * Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the centre of the
- * top-left pixel is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for the class that is sought,
- * 0 for the other. One point makes a dot. Any thread.
- * LUXFER_INVALID_OPERATION before the features are set.
+ * Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier strokes;
+ * strokes may be NULL: no strokes. Any thread.
+ * LUXFER_INVALID_ARGUMENT if they are for images of another size than the features.
  */
-luxfer_status luxfer_segment_add_stroke(luxfer_segment *segment,
-                                        const float *points,
-                                        size_t point_count,
-                                        float radius,
-                                        int32_t positive);
-
-/**
- * Adds the strokes for phase, a LUXFER_PHASE_ value, from a drawing of the features' size: green (0, 255, 0) is plane,
- * red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
- * pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
- * LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
- */
-luxfer_status luxfer_segment_add_strokes_image(luxfer_segment *segment,
-                                               luxfer_image *drawing,
-                                               luxfer_phase phase);
-
-/**
- * Adds the strokes for phase, a LUXFER_PHASE_ value, from a text in UTF-8. Each line has a class, a radius, and x and
- * y of the points in pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light;
- * # starts a comment. Any thread.
- * LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
- */
-luxfer_status luxfer_segment_add_strokes_text(luxfer_segment *segment,
-                                              const char *description,
-                                              luxfer_phase phase);
-
-/** Removes all strokes. Any thread. */
-luxfer_status luxfer_segment_clear_strokes(luxfer_segment *segment);
+luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
+                                         luxfer_strokes *strokes,
+                                         luxfer_phase phase);
 
 /**
  * Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
@@ -4067,29 +4075,12 @@ luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
                                          const luxfer_camera_params *camera);
 
 /**
- * Adds a stroke on the photo for phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
- * lights count as strokes on the plane too. Any thread.
- * LUXFER_INVALID_OPERATION before the photo is set.
+ * Sets the strokes on the photo. Strokes on lights count as strokes on the plane too. The transfer copies the strokes;
+ * they replace earlier strokes; strokes may be NULL: no strokes. Any thread.
+ * LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
  */
-luxfer_status luxfer_transfer_add_stroke(luxfer_transfer *transfer,
-                                         luxfer_phase phase,
-                                         const float *points,
-                                         size_t point_count,
-                                         float radius,
-                                         int32_t positive);
-
-/**
- * Adds the strokes of both phases from a drawing of the photo's size, as luxfer_segment_add_strokes_image. Any thread.
- * LUXFER_INVALID_OPERATION before the photo is set.
- */
-luxfer_status luxfer_transfer_add_strokes_image(luxfer_transfer *transfer,
-                                                luxfer_image *drawing);
-
-/**
- * Adds the strokes of both phases from a text, as luxfer_segment_add_strokes_text. Any thread.
- * LUXFER_INVALID_OPERATION before the photo is set.
- */
-luxfer_status luxfer_transfer_add_strokes_text(luxfer_transfer *transfer, const char *description);
+luxfer_status luxfer_transfer_set_strokes(luxfer_transfer *transfer,
+                                          luxfer_strokes *strokes);
 
 /**
  * Sets rectangles of the surface without lamps, for example behind ducts and sprinklers: u0, v0, u1 and v1 of each in
@@ -4099,9 +4090,6 @@ luxfer_status luxfer_transfer_add_strokes_text(luxfer_transfer *transfer, const 
 luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
                                         const double *zones,
                                         size_t count);
-
-/** Removes all strokes. Any thread. */
-luxfer_status luxfer_transfer_clear_strokes(luxfer_transfer *transfer);
 
 /**
  * Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
@@ -5414,7 +5402,7 @@ typedef int32_t luxfer_demo_photo_image;
 /** The photo: linear RGB, 1 = display white; its lamps are clipped. */
 #define LUXFER_DEMO_PHOTO_PICTURE 0
 
-/** The strokes on it, in the colours of luxfer_segment_add_strokes_image. */
+/** The strokes on it, in the colours of luxfer_strokes_add_image. */
 #define LUXFER_DEMO_PHOTO_STROKES 1
 
 /**

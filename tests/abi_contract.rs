@@ -397,3 +397,68 @@ fn stages_say_what_they_lack() {
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
+
+/// Strokes are copied by the stage, refused for another size, and gone with a photo of another size.
+#[test]
+fn a_stage_copies_strokes_of_its_size() {
+    let context = context(1);
+    let (small, large) = (image(context, 8, 6, 0.5), image(context, 9, 6, 0.5));
+    let create = |width, height| made(|out| unsafe { luxfer_strokes_create(context, width, height, out) });
+    let (strokes, transposed) = (create(8, 6), create(6, 8));
+    let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
+    let points = [1.0f32, 1.0, 6.0, 1.0];
+    let add = |phase, count, radius, positive| unsafe {
+        luxfer_strokes_add(strokes, phase, points.as_ptr(), count, radius, positive)
+    };
+    let start = || unsafe {
+        let job = made(|out| luxfer_segment_start(segment, null(), out));
+        let status = luxfer_job_wait(job, -1, None, null_mut());
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
+        status
+    };
+    unsafe {
+        let mut none = null_mut();
+        for (width, height) in [(0, 6), (8, 0), (65_537, 6)] {
+            assert_eq!(luxfer_strokes_create(context, width, height, &mut none), LUXFER_INVALID_ARGUMENT);
+        }
+        for (phase, count, radius, positive) in
+            [(2, 2, 1.0, 1), (-1, 2, 1.0, 1), (0, 0, 1.0, 1), (0, 2, 0.0, 1), (0, 2, 1.0, 2)]
+        {
+            assert_eq!(add(phase, count, radius, positive), LUXFER_INVALID_ARGUMENT);
+        }
+        assert_eq!(luxfer_strokes_add_image(strokes, large), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("drawing has 9 x 6"), "{}", message(context));
+        assert_eq!(luxfer_strokes_add_text(strokes, c"plane one".as_ptr()), LUXFER_FORMAT);
+
+        assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, transposed, LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("strokes are for 6 x 8"), "{}", message(context));
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, 2), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_segment_set_strokes(segment, small.cast(), LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+
+        // What the caller adds later, the stage does not have.
+        assert_eq!(add(LUXFER_PHASE_PLANE, 2, 1.0, 1), LUXFER_OK);
+        assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(luxfer_strokes_clear(strokes), LUXFER_OK);
+        assert_eq!(start(), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(start(), LUXFER_DEGENERATE);
+
+        // A photo of another size, and NULL, leave no strokes.
+        assert_eq!(luxfer_strokes_add_text(strokes, c"plane 1 1 1 6 1\nnot-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
+        for is_larger in [true, false] {
+            assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);
+            assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+            let status = match is_larger {
+                true => luxfer_segment_set_features(segment, large),
+                false => luxfer_segment_set_strokes(segment, null_mut(), LUXFER_PHASE_PLANE),
+            };
+            assert_eq!(status, LUXFER_OK);
+            assert_eq!(start(), LUXFER_DEGENERATE);
+        }
+        for object in [strokes.cast(), transposed.cast(), small.cast(), large.cast(), segment.cast(), context.cast()] {
+            assert_eq!(luxfer_release(object), LUXFER_OK);
+        }
+    }
+}

@@ -34,6 +34,7 @@ const GROUPS: &[&str] = &[
     "candidates",
     "geometry",
     "rectify",
+    "strokes",
     "features",
     "segment",
     "emission",

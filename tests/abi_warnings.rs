@@ -17,10 +17,14 @@ fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
     let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
     unsafe {
         assert_eq!(luxfer_segment_set_features(segment, features), LUXFER_OK);
+        let strokes = made(|out| luxfer_strokes_create(context, width, height, out));
         for (y, positive) in [(8.0f32, 1), (16.0, 0), (32.0, 1), (40.0, 0)] {
             let points = [4.0f32, y, 60.0, y];
-            assert_eq!(luxfer_segment_add_stroke(segment, points.as_ptr(), 2, 2.0, positive), LUXFER_OK);
+            let status = luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 2.0, positive);
+            assert_eq!(status, LUXFER_OK);
         }
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(luxfer_release(strokes.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
     }
     segment

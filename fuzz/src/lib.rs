@@ -144,12 +144,9 @@ pub fn expression(data: &[u8]) {
 pub fn strokes(data: &[u8]) {
     let Ok(text) = CString::new(data) else { return };
     unsafe {
-        let (stage, photo) = (made("luxfer_features_create", |out| luxfer_features_create(context(), out)), photo());
-        let stage = stage.expect("a stage");
-        check("luxfer_features_set_photo", luxfer_features_set_photo(stage, photo));
-        check("luxfer_features_add_strokes_text", luxfer_features_add_strokes_text(stage, text.as_ptr()));
-        luxfer_release(photo.cast());
-        luxfer_release(stage.cast());
+        let strokes = made("luxfer_strokes_create", |out| luxfer_strokes_create(context(), 48, 32, out)).expect("strokes");
+        check("luxfer_strokes_add_text", luxfer_strokes_add_text(strokes, text.as_ptr()));
+        luxfer_release(strokes.cast());
     }
 }
 

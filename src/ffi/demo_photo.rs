@@ -26,7 +26,7 @@ pub struct luxfer_demo_photo {
 pub type luxfer_demo_photo_image = i32;
 /// The photo: linear RGB, 1 = display white; its lamps are clipped.
 pub const LUXFER_DEMO_PHOTO_PICTURE: luxfer_demo_photo_image = 0;
-/// The strokes on it, in the colours of luxfer_segment_add_strokes_image.
+/// The strokes on it, in the colours of luxfer_strokes_add_image.
 pub const LUXFER_DEMO_PHOTO_STROKES: luxfer_demo_photo_image = 1;
 
 /// Settings of the photo. Fill them with luxfer_demo_photo_params_init.

@@ -172,6 +172,11 @@ impl Pixels {
         }
     }
 
+    /// Width and height.
+    pub(super) fn size(&self) -> (usize, usize) {
+        (self.image().width, self.image().height)
+    }
+
     /// The image with an owner of its own; a part of a result is copied.
     pub(super) fn shared(&self) -> Result<Arc<Image>> {
         match &self.source {

@@ -69,6 +69,7 @@ mod scene_read;
 mod segment;
 mod sheet;
 mod status;
+mod strokes;
 #[cfg(feature = "stylize")]
 mod stylize;
 #[cfg(not(feature = "stylize"))]
@@ -127,6 +128,7 @@ pub use scene_read::*;
 pub use segment::*;
 pub use sheet::*;
 pub use status::*;
+pub use strokes::*;
 #[cfg(feature = "stylize")]
 pub use stylize::*;
 #[cfg(not(feature = "stylize"))]

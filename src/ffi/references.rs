@@ -24,6 +24,7 @@ use super::render::luxfer_render;
 use super::scene::luxfer_scene;
 use super::segment::luxfer_segment;
 use super::status::luxfer_status;
+use super::strokes::luxfer_strokes;
 #[cfg(feature = "stylize")]
 use super::stylize::luxfer_stylize;
 use super::transfer::luxfer_transfer;
@@ -77,6 +78,7 @@ const KINDS: &[Kind] = &[
     Kind::of::<luxfer_render>(),
     Kind::of::<luxfer_scene>(),
     Kind::of::<luxfer_segment>(),
+    Kind::of::<luxfer_strokes>(),
     #[cfg(feature = "stylize")]
     Kind::of::<luxfer_stylize>(),
     Kind::of::<luxfer_transfer>(),

@@ -9,27 +9,19 @@ use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned};
-use super::pointer::{Out, bytes, text};
+use super::pointer::Out;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
+use super::strokes::{Painted, luxfer_phase, luxfer_strokes, of_phase};
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::segment::{self, Segmentation, Stroke, StrokeSet, Subject, strokes};
-use glam::DVec2;
-use std::ffi::{c_char, c_void};
+use crate::segment::{self, Segmentation, Stroke, Subject};
 use std::sync::Arc;
 
 /// A segmentation by strokes. See luxfer_segment_create.
 pub struct luxfer_segment {
     _opaque: [u8; 0],
 }
-
-/// The mask that strokes are for: a LUXFER_PHASE_ value.
-pub type luxfer_phase = i32;
-/// The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too.
-pub const LUXFER_PHASE_PLANE: luxfer_phase = 0;
-/// The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them.
-pub const LUXFER_PHASE_LIGHTS: luxfer_phase = 1;
 
 /// An image of a segmentation: a LUXFER_SEGMENT_ value.
 pub type luxfer_segment_image = i32;
@@ -165,49 +157,13 @@ unsafe impl Versioned for luxfer_segment_report {
 pub(super) struct Inputs {
     features: Option<Arc<Pixels>>,
     pub(super) region: Option<Arc<Pixels>>,
-    pub(super) strokes: Vec<Stroke>,
+    pub(super) strokes: Painted<Vec<Stroke>>,
 }
 
 impl Handle for luxfer_segment {
     type Object = Stage<Inputs, Segmentation>;
     const TAG: u64 = tag(b"lux.segm");
     const NAME: &'static str = "luxfer_segment";
-}
-
-/// A stroke from the caller's points, for an image of the given size.
-pub(super) fn stroke(
-    points: *const c_void,
-    point_count: usize,
-    radius: f32,
-    positive: i32,
-    (width, height): (usize, usize),
-) -> Result<Stroke> {
-    let size = point_count.checked_mul(8).ok_or_else(|| Error::argument(format!("point_count is {point_count}")))?;
-    let float = |b: &[u8]| f64::from(f32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
-    let points: Vec<DVec2> = bytes(points.cast(), size, "points")?
-        .chunks_exact(8)
-        .map(|b| DVec2::new(float(&b[..4]), float(&b[4..])))
-        .collect();
-    match positive {
-        0 | 1 => Stroke::polyline(&points, radius.into(), positive == 1, width, height),
-        _ => Err(Error::argument(format!("positive is {positive}; it must be 0 or 1"))),
-    }
-}
-
-/// The strokes of one phase.
-fn of_phase(set: StrokeSet, phase: luxfer_phase) -> Result<Vec<Stroke>> {
-    match phase {
-        LUXFER_PHASE_PLANE => Ok(set.plane_examples()),
-        LUXFER_PHASE_LIGHTS => Ok(set.lights),
-        other => Err(Error::argument(format!("phase is {other}; it must be a LUXFER_PHASE_ value"))),
-    }
-}
-
-impl Inputs {
-    fn size(&self) -> Result<(usize, usize)> {
-        let image = need(&self.features, "luxfer_segment_set_features")?.image();
-        Ok((image.width, image.height))
-    }
 }
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -238,10 +194,7 @@ pub unsafe extern "C" fn luxfer_segment_set_features(
     enter(segment, |stage| {
         let features = handle::borrow_in(stage.context(), features, "features")?;
         stage.change(|inputs| {
-            let size = (features.image().width, features.image().height);
-            if inputs.size().is_ok_and(|before| before != size) {
-                inputs.strokes.clear();
-            }
+            inputs.strokes.keep_for(features.size());
             inputs.features = Some(features);
             Ok(())
         })
@@ -264,74 +217,20 @@ pub unsafe extern "C" fn luxfer_segment_set_region(
     })
 }
 
-/// Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the centre of the
-/// top-left pixel is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for the class that is sought,
-/// 0 for the other. One point makes a dot. Any thread.
-/// LUXFER_INVALID_OPERATION before the features are set.
+/// Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier strokes;
+/// strokes may be NULL: no strokes. Any thread.
+/// LUXFER_INVALID_ARGUMENT if they are for images of another size than the features.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_add_stroke(
+pub unsafe extern "C" fn luxfer_segment_set_strokes(
     segment: *mut luxfer_segment,
-    points: *const f32,
-    point_count: usize,
-    radius: f32,
-    positive: i32,
-) -> luxfer_status {
-    enter(segment, |stage| {
-        stage.change(|inputs| {
-            let stroke = stroke(points.cast(), point_count, radius, positive, inputs.size()?)?;
-            inputs.strokes.push(stroke);
-            Ok(())
-        })
-    })
-}
-
-/// Adds the strokes for phase, a LUXFER_PHASE_ value, from a drawing of the features' size: green (0, 255, 0) is plane,
-/// red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
-/// pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
-/// LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_add_strokes_image(
-    segment: *mut luxfer_segment,
-    drawing: *mut luxfer_image,
+    strokes: *mut luxfer_strokes,
     phase: luxfer_phase,
 ) -> luxfer_status {
     enter(segment, |stage| {
-        let drawing = handle::borrow_in(stage.context(), drawing, "drawing")?;
+        let strokes = Painted::copy(stage.context(), strokes, |set| of_phase(set, phase))?;
         stage.change(|inputs| {
-            let features = need(&inputs.features, "luxfer_segment_set_features")?.image();
-            features.check_same_size("the features", drawing.image(), "the drawing")?;
-            inputs.strokes.extend(of_phase(strokes::from_image(drawing.image())?, phase)?);
-            Ok(())
-        })
-    })
-}
-
-/// Adds the strokes for phase, a LUXFER_PHASE_ value, from a text in UTF-8. Each line has a class, a radius, and x and
-/// y of the points in pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light;
-/// # starts a comment. Any thread.
-/// LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_add_strokes_text(
-    segment: *mut luxfer_segment,
-    description: *const c_char,
-    phase: luxfer_phase,
-) -> luxfer_status {
-    enter(segment, |stage| {
-        let description = text(description, "description")?;
-        stage.change(|inputs| {
-            let (width, height) = inputs.size()?;
-            inputs.strokes.extend(of_phase(strokes::parse(description, width, height)?, phase)?);
-            Ok(())
-        })
-    })
-}
-
-/// Removes all strokes. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_clear_strokes(segment: *mut luxfer_segment) -> luxfer_status {
-    enter(segment, |stage| {
-        stage.change(|inputs| {
-            inputs.strokes.clear();
+            strokes.check_size(inputs.features.as_ref().map(|features| features.size()), "the image of features")?;
+            inputs.strokes = strokes;
             Ok(())
         })
     })
@@ -353,7 +252,7 @@ pub unsafe extern "C" fn luxfer_segment_start(
         stage.start(job, move |inputs, _, job| {
             let input = segment::Input {
                 features: need(&inputs.features, "luxfer_segment_set_features")?.image(),
-                strokes: &inputs.strokes,
+                strokes: &inputs.strokes.taken,
                 within: inputs.region.as_ref().map(|w| w.image()),
             };
             segment::run(&input, &params, job)

@@ -206,7 +206,7 @@ pub unsafe extern "C" fn luxfer_segment_get_warnings(
         let out = Out::new(warnings, "warnings")?;
         let (made, inputs) = (stage.output()?, stage.inputs());
         let lit = inputs.region.as_ref().and_then(|region| segment::almost_all_lit(&made.mask, region.image()));
-        let list = made.warnings().into_iter().chain(made.missed(inputs.strokes.iter())).chain(lit).collect();
+        let list = made.warnings().into_iter().chain(made.missed(inputs.strokes.taken.iter())).chain(lit).collect();
         let phase = if inputs.region.is_some() { Stage::Lights } else { Stage::Plane };
         out.set(give(stage.context(), of(phase, list)));
         Ok(())

@@ -155,7 +155,7 @@ class Loader:
             part = self.merge.split(1, 1, 2, index, **self.size)
             self.merge.start_part(path, part, **self.size).wait()
         self.part = Path(self.other).read_bytes()
-        self.stages = [luxfer.Render(self.context, empty), luxfer.Transfer(self.context, photo, empty, "Ceiling")]
+        self.stages = [luxfer.Render(self.context, empty), luxfer.Strokes(self.context, *photo.size[:2])]
 
     def load(self, seed: int) -> None:
         rng = random.Random(seed)
@@ -222,7 +222,7 @@ class Loader:
             self.library.luxfer_render_clear_expressions(handle)
             check(seed, self.library.luxfer_render_add_expression(handle, b"text", text.encode()), start)
         else:
-            check(seed, self.library.luxfer_transfer_add_strokes_text(handle, text.encode()), start)
+            check(seed, self.library.luxfer_strokes_add_text(handle, text.encode()), start)
 
     def use(self, thing, is_scene: bool, seed: int) -> None:
         """What loads must work, too."""

@@ -132,10 +132,15 @@ void strokes_and_surfaces() {
     CHECK_STATUS(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE), LUXFER_DEGENERATE);
     CHECK(says({"stroke"}));
     const float right[] = {60, 10, 90, 50}, left[] = {10, 10, 40, 50};
-    CHECK_OK(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, right, 2, 3, 1));
+    luxfer_strokes *strokes = nullptr;
+    CHECK_OK(luxfer_strokes_create(context, 96, 64, &strokes));
+    CHECK_OK(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, right, 2, 3, 1));
+    CHECK_OK(luxfer_transfer_set_strokes(transfer, strokes));
     CHECK_STATUS(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE), LUXFER_DEGENERATE);
     CHECK(says({"stroke"}));
-    CHECK_OK(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, left, 2, 3, 0));
+    CHECK_OK(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, left, 2, 3, 0));
+    CHECK_OK(luxfer_transfer_set_strokes(transfer, strokes));
+    CHECK_OK(luxfer_release(strokes));
     CHECK_OK(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE));
 
     // A surface of another name, and what is called too early.

@@ -508,7 +508,7 @@ void stages_say_what_they_lack() {
     OK(rectify.set_mask(Image()));
     OK(features.set_depth(Image()));
     OK(features.clear_network());
-    OK(features.clear_strokes());
+    OK(features.set_strokes(luxfer::Strokes()));
     CHECK_ERROR(features.set_network("absent.onnx"), LUXFER_IO);
     CHECK_ERROR(features.set_network("absent.onnx", 9), LUXFER_INVALID_ARGUMENT);
     OK(emission.clear_photo());
@@ -517,11 +517,15 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(transfer.set_scene(Scene(), "Ceiling"), LUXFER_INVALID_ARGUMENT);
 
     const float points[] = {0.5f, 0.5f, 3.5f, 2.5f};
-    CHECK_ERROR(features.add_stroke(points, 1, true), LUXFER_INVALID_OPERATION);
-    CHECK_ERROR(segment.add_stroke(points, 1, true), LUXFER_INVALID_OPERATION);
+    const luxfer::Strokes strokes = ok(luxfer::Strokes::create(context, 5, 7));
+    OK(strokes.add(LUXFER_PHASE_PLANE, points, 1, true));
+    CHECK_ERROR(strokes.add(2, points, 1, true), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(strokes.add("plane one"), LUXFER_FORMAT);
+    CHECK_ERROR(luxfer::Strokes::create(context, 0, 7), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(luxfer::Strokes::from_image(Image()), LUXFER_INVALID_ARGUMENT);
+    OK(segment.set_strokes(strokes, LUXFER_PHASE_PLANE));
     OK(segment.set_features(new_image(context)));
-    OK(segment.add_stroke(points, 1, true));
-    CHECK_ERROR(segment.add_strokes("plane one", LUXFER_PHASE_PLANE), LUXFER_FORMAT);
+    CHECK_ERROR(segment.set_strokes(strokes, LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
 }
 
 } // namespace

@@ -43,6 +43,44 @@ public:
     Result<Warnings> warnings() const { return make<Warnings>(luxfer_rectify_get_warnings); }
 };
 
+/// Strokes for images of one size. A stage copies them: after a change, set them again. See luxfer_strokes.
+class Strokes : public Handle<luxfer_strokes> {
+public:
+    using Handle::Handle;
+
+    static Result<Strokes> create(const Context &context, std::uint32_t width, std::uint32_t height) {
+        return make_in<Strokes>(context, luxfer_strokes_create, width, height);
+    }
+
+    /// The strokes of a drawing, for images of its size.
+    static Result<Strokes> from_image(const Image &drawing) {
+        luxfer_strokes *made = nullptr;
+        std::uint32_t width = 0, height = 0;
+        luxfer_status status = luxfer_image_size(drawing.get(), &width, &height, nullptr);
+        if (status == LUXFER_OK)
+            status = luxfer_strokes_create(drawing.context().get(), width, height, &made);
+        Strokes strokes(drawing.context(), made);
+        if (status == LUXFER_OK)
+            status = luxfer_strokes_add_image(made, drawing.get());
+        return detail::finish(drawing.context().get(), status, std::move(strokes));
+    }
+
+    /// Adds a stroke along a polyline: points holds x and y of each, in pixels; phase is a LUXFER_PHASE_ value.
+    Result<> add(luxfer_phase phase, Span<const float> points, float radius, bool is_positive) const {
+        const std::int32_t positive = is_positive;
+        return call(luxfer_strokes_add, phase, points.data(), points.size() / 2, radius, positive);
+    }
+
+    /// Adds the strokes of a drawing of the same size.
+    Result<> add(const Image &drawing) const { return call(luxfer_strokes_add_image, drawing.get()); }
+
+    /// Adds the strokes of a text.
+    Result<> add(Text description) const { return call(luxfer_strokes_add_text, description.get()); }
+
+    /// Removes all strokes.
+    Result<> clear() const { return call(luxfer_strokes_clear); }
+};
+
 /// The features of each pixel of a photo, for segmentation. See luxfer_features.
 class Features : public Handle<luxfer_features> {
 public:
@@ -66,15 +104,8 @@ public:
     /// Takes the current lines and camera of a Rectify; may be empty: no lines.
     Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
 
-    /// Adds a stroke on one plane of the room (positive) or off it, to fit the room; points holds x and y of each, in
-    /// pixels.
-    Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
-        const std::int32_t positive = is_positive;
-        return call(luxfer_features_add_stroke, points.data(), points.size() / 2, radius, positive);
-    }
-    Result<> add_strokes(const Image &drawing) const { return call(luxfer_features_add_strokes_image, drawing.get()); }
-    Result<> add_strokes(Text description) const { return call(luxfer_features_add_strokes_text, description.get()); }
-    Result<> clear_strokes() const { return call(luxfer_features_clear_strokes); }
+    /// Sets strokes on the photo, of which the fit of a room takes those for the plane; may be empty: no strokes.
+    Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_features_set_strokes, strokes.get()); }
 
     Result<Job> start(const luxfer_features_params &params = FeaturesParams()) const {
         return make<Job>(luxfer_features_start, &params);
@@ -101,18 +132,10 @@ public:
     /// Restricts the segmentation to a mask; may be empty: everywhere.
     Result<> set_region(const Image &region) const { return call(luxfer_segment_set_region, region.get()); }
 
-    /// Adds a stroke along a polyline: points holds x and y of each, in pixels.
-    Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
-        const std::int32_t positive = is_positive;
-        return call(luxfer_segment_add_stroke, points.data(), points.size() / 2, radius, positive);
+    /// Sets the strokes for phase, a LUXFER_PHASE_ value; may be empty: no strokes.
+    Result<> set_strokes(const Strokes &strokes, luxfer_phase phase) const {
+        return call(luxfer_segment_set_strokes, strokes.get(), phase);
     }
-    Result<> add_strokes(const Image &drawing, luxfer_phase phase) const {
-        return call(luxfer_segment_add_strokes_image, drawing.get(), phase);
-    }
-    Result<> add_strokes(Text description, luxfer_phase phase) const {
-        return call(luxfer_segment_add_strokes_text, description.get(), phase);
-    }
-    Result<> clear_strokes() const { return call(luxfer_segment_clear_strokes); }
 
     Result<Job> start(const luxfer_segment_params &params = SegmentParams()) const {
         return make<Job>(luxfer_segment_start, &params);

@@ -41,15 +41,8 @@ public:
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_transfer_set_camera, &camera); }
     Result<> clear_camera() const { return call(luxfer_transfer_set_camera, nullptr); }
 
-    /// Adds a stroke along a polyline: points holds x and y of each, in pixels of the photo; phase is a LUXFER_PHASE_
-    /// value.
-    Result<> add_stroke(luxfer_phase phase, Span<const float> points, float radius, bool is_positive) const {
-        const std::int32_t positive = is_positive;
-        return call(luxfer_transfer_add_stroke, phase, points.data(), points.size() / 2, radius, positive);
-    }
-    Result<> add_strokes(const Image &drawing) const { return call(luxfer_transfer_add_strokes_image, drawing.get()); }
-    Result<> add_strokes(Text description) const { return call(luxfer_transfer_add_strokes_text, description.get()); }
-    Result<> clear_strokes() const { return call(luxfer_transfer_clear_strokes); }
+    /// Sets the strokes on the photo; may be empty: no strokes.
+    Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_transfer_set_strokes, strokes.get()); }
 
     /// Sets the rectangles of the surface without lamps: u0, v0, u1 and v1 of each, in metres; they replace earlier
     /// ones.

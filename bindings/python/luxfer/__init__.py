@@ -40,6 +40,7 @@ from .render import Render
 from .scene import Scene
 from .segment import Segment
 from .sheet import align_sheet, print_sheet
+from .strokes import Strokes
 from .stylize import Stylize
 from .transfer import Transfer
 from .warning import StageWarning
@@ -66,6 +67,7 @@ __all__ = [
     "Scene",
     "Segment",
     "StageWarning",
+    "Strokes",
     "Stylize",
     "SurfaceCandidate",
     "Transfer",

@@ -80,6 +80,8 @@ LUXFER_FOCAL_ASSUMED = 2
 LUXFER_FOCAL_FROM_METADATA = 3
 LUXFER_RECTIFY_UNWARPED = 0
 LUXFER_RECTIFY_VALID = 1
+LUXFER_PHASE_PLANE = 0
+LUXFER_PHASE_LIGHTS = 1
 LUXFER_DEPTH_ALONG_Z = 0
 LUXFER_DEPTH_ALONG_RAY = 1
 LUXFER_FEATURES_CHANNELS = 0
@@ -93,8 +95,6 @@ LUXFER_DEPTH_FROM_CALLER = 0
 LUXFER_DEPTH_FROM_LAYOUT = 1
 LUXFER_DEPTH_FROM_NOTHING = 2
 LUXFER_DEPTH_FROM_NETWORK = 3
-LUXFER_PHASE_PLANE = 0
-LUXFER_PHASE_LIGHTS = 1
 LUXFER_SEGMENT_MASK = 0
 LUXFER_SEGMENT_CONFIDENCE = 1
 LUXFER_SEGMENT_UNSEEN = 2
@@ -278,6 +278,10 @@ class luxfer_candidates(Structure):
 
 class luxfer_rectify(Structure):
     """Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create."""
+
+
+class luxfer_strokes(Structure):
+    """Strokes for images of one size. See luxfer_strokes_create."""
 
 
 class luxfer_features(Structure):
@@ -1471,16 +1475,18 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report))]),
+    "luxfer_strokes_create": (c_int32, [("context", POINTER(luxfer_context)), ("width", c_uint32), ("height", c_uint32), ("strokes", POINTER(POINTER(luxfer_strokes)))]),
+    "luxfer_strokes_add": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
+    "luxfer_strokes_add_image": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("drawing", POINTER(luxfer_image))]),
+    "luxfer_strokes_add_text": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("description", c_char_p)]),
+    "luxfer_strokes_clear": (c_int32, [("strokes", POINTER(luxfer_strokes))]),
     "luxfer_features_params_init": (c_int32, [("params", POINTER(luxfer_features_params)), ("size", c_size_t)]),
     "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
     "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
     "luxfer_features_set_depth": (c_int32, [("features", POINTER(luxfer_features)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
     "luxfer_features_set_network": (c_int32, [("features", POINTER(luxfer_features)), ("path", c_char_p), ("normalisation", c_int32)]),
     "luxfer_features_set_view": (c_int32, [("features", POINTER(luxfer_features)), ("rectify", POINTER(luxfer_rectify))]),
-    "luxfer_features_add_stroke": (c_int32, [("features", POINTER(luxfer_features)), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
-    "luxfer_features_add_strokes_image": (c_int32, [("features", POINTER(luxfer_features)), ("drawing", POINTER(luxfer_image))]),
-    "luxfer_features_add_strokes_text": (c_int32, [("features", POINTER(luxfer_features)), ("description", c_char_p)]),
-    "luxfer_features_clear_strokes": (c_int32, [("features", POINTER(luxfer_features))]),
+    "luxfer_features_set_strokes": (c_int32, [("features", POINTER(luxfer_features)), ("strokes", POINTER(luxfer_strokes))]),
     "luxfer_features_start": (c_int32, [("features", POINTER(luxfer_features)), ("params", POINTER(luxfer_features_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_features_get_image": (c_int32, [("features", POINTER(luxfer_features)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_features_get_report": (c_int32, [("features", POINTER(luxfer_features)), ("report", POINTER(luxfer_features_report))]),
@@ -1488,10 +1494,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
     "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
     "luxfer_segment_set_region": (c_int32, [("segment", POINTER(luxfer_segment)), ("region", POINTER(luxfer_image))]),
-    "luxfer_segment_add_stroke": (c_int32, [("segment", POINTER(luxfer_segment)), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
-    "luxfer_segment_add_strokes_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("drawing", POINTER(luxfer_image)), ("phase", c_int32)]),
-    "luxfer_segment_add_strokes_text": (c_int32, [("segment", POINTER(luxfer_segment)), ("description", c_char_p), ("phase", c_int32)]),
-    "luxfer_segment_clear_strokes": (c_int32, [("segment", POINTER(luxfer_segment))]),
+    "luxfer_segment_set_strokes": (c_int32, [("segment", POINTER(luxfer_segment)), ("strokes", POINTER(luxfer_strokes)), ("phase", c_int32)]),
     "luxfer_segment_start": (c_int32, [("segment", POINTER(luxfer_segment)), ("params", POINTER(luxfer_segment_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_segment_get_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_segment_get_report": (c_int32, [("segment", POINTER(luxfer_segment)), ("report", POINTER(luxfer_segment_report))]),
@@ -1591,11 +1594,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_set_triangles": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("triangles", POINTER(c_uint32)), ("count", c_size_t)]),
     "luxfer_transfer_set_texture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("texture", POINTER(luxfer_image))]),
     "luxfer_transfer_set_camera": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("camera", POINTER(luxfer_camera_params))]),
-    "luxfer_transfer_add_stroke": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
-    "luxfer_transfer_add_strokes_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("drawing", POINTER(luxfer_image))]),
-    "luxfer_transfer_add_strokes_text": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("description", c_char_p)]),
+    "luxfer_transfer_set_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("strokes", POINTER(luxfer_strokes))]),
     "luxfer_transfer_set_zones": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("zones", POINTER(c_double)), ("count", c_size_t)]),
-    "luxfer_transfer_clear_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
     "luxfer_transfer_use_rectify": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("rectify", POINTER(luxfer_rectify))]),
     "luxfer_transfer_use_features": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("features", POINTER(luxfer_features))]),
     "luxfer_transfer_use_segment": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("segment", POINTER(luxfer_segment))]),

@@ -200,6 +200,16 @@ class FocalSource(IntEnum):
     """Mainly from what the photo's file says; see luxfer_image_get_metadata."""
 
 
+class Phase(IntEnum):
+    """The mask that strokes are for."""
+
+    PLANE = 0
+    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
+    too."""
+    LIGHTS = 1
+    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
+
+
 class DepthKind(IntEnum):
     """Quantity that a depth map measures."""
 
@@ -261,16 +271,6 @@ class Subject(IntEnum):
     one or more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region
     are found as well. Negative strokes are not needed. The first three channels of the features must be
     CIELAB."""
-
-
-class Phase(IntEnum):
-    """The mask that strokes are for."""
-
-    PLANE = 0
-    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
-    too."""
-    LIGHTS = 1
-    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
 
 
 class SegmentImage(IntEnum):
@@ -729,7 +729,7 @@ class DemoPhotoImage(IntEnum):
     PICTURE = 0
     """The photo: linear RGB, 1 = display white; its lamps are clipped."""
     STROKES = 1
-    """The strokes on it, in the colours of luxfer_segment_add_strokes_image."""
+    """The strokes on it, in the colours of luxfer_strokes_add_image."""
 
 
 class Aov(IntFlag):
