@@ -48,11 +48,8 @@ static inline void print_warnings(luxfer_warnings *warnings) {
     warning.struct_size = sizeof warning;
     check(luxfer_warnings_count(warnings, &count), "warnings");
     for (i = 0; i < count; i++) {
-        char message[512], advice[512];
         check(luxfer_warnings_get(warnings, i, &warning), "warning");
-        check(luxfer_warnings_get_message(warnings, i, message, sizeof message, NULL), "warning");
-        check(luxfer_warnings_get_advice(warnings, i, advice, sizeof advice, NULL), "warning");
-        fprintf(stderr, "%s: %s\n    %s", stages[warning.stage], message, advice);
+        fprintf(stderr, "%s: %s\n    %s", stages[warning.stage], warning.message, warning.advice);
         if (warning.has_place) fprintf(stderr, " (at %.0f, %.0f)", warning.place[0], warning.place[1]);
         fprintf(stderr, " [%s]\n", luxfer_warning_name(warning.code));
     }

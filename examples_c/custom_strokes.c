@@ -70,7 +70,7 @@ int main(void) {
     check(panels_save(&s, context, "custom_strokes.png"), "custom_strokes.png");
 
     /* The reasons to doubt the masks, and the places where one more stroke helps. */
-    check(luxfer_transfer_get_warnings(transfer, &warnings), "warnings");
+    check(luxfer_get_warnings(transfer, &warnings), "warnings");
     print_warnings(warnings);
 
     luxfer_release(transfer);

@@ -50,7 +50,7 @@ int main(void) {
 
     report("A file that is not there:", luxfer_image_load(context, "photo.jpg", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);
     report("A file that is something else:",
-           luxfer_scene_load_memory(context, "not a scene", 11, NULL, &scene), LUXFER_FORMAT);
+           luxfer_scene_load_memory(context, "not a scene", 11, NULL, NULL, &scene), LUXFER_FORMAT);
 
     /* A view states the size of its memory, so that the library never accesses memory beyond it. */
     luxfer_image_view_init(&view, sizeof view);

@@ -97,7 +97,7 @@ static void load_input(const options *o, luxfer_transfer *transfer, luxfer_image
     }
     check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
     luxfer_release(strokes);
-    check(luxfer_scene_load(context, o->scene, scene), "scene");
+    check(luxfer_scene_load(context, o->scene, NULL, scene), "scene");
 }
 
 /* Generates photo, strokes and scene. */
@@ -259,7 +259,7 @@ int main(int argc, char **argv) {
     check(luxfer_image_save(emission, path(&o, "emission.exr"), 1), "emission.exr");
     check(luxfer_scene_export(lit_scene, path(&o, "lit.glb")), "lit.glb");
     check(luxfer_transfer_save_fixtures(transfer, path(&o, "luminaires.csv")), "luminaires.csv");
-    check(luxfer_transfer_get_warnings(transfer, &warnings), "warnings");
+    check(luxfer_get_warnings(transfer, &warnings), "warnings");
     write_report(&o, &report, &solution, warnings);
 
     /* For comparison: the scene before the transfer, with its own lights or a light at the camera, and in white

@@ -27,7 +27,7 @@ int main(int argc, char **argv) {
     params.samples = 8;
 
     /* Every call returns a status. A call whose input is missing fails too, so report the first failure. */
-    status = argc > 1 ? luxfer_scene_load(context, argv[1], &scene)
+    status = argc > 1 ? luxfer_scene_load(context, argv[1], NULL, &scene)
                       : luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene);
     if (status == LUXFER_OK) status = luxfer_render_create(context, &render);
     if (status == LUXFER_OK) status = luxfer_render_set_scene(render, scene);

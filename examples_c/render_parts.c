@@ -15,7 +15,7 @@ enum { COLUMNS = 3, ROWS = 2, RANGES = 2, PARTS = COLUMNS * ROWS * RANGES };
 static luxfer_render *describe(luxfer_render_params *params) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
-    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene"); /* luxfer_scene_load(context, file, &scene) */
+    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene"); /* luxfer_scene_load(context, file, NULL, &scene) */
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
     check(luxfer_render_add_expression(render, "direct", "LDE"), "layer");

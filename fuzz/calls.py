@@ -115,7 +115,7 @@ def expression(function: str, f: script.generate.Field) -> str:
         return f'a.made("{f.type}").cast()'
     if script.is_handle(f):
         if script.is_of_any_kind(f):
-            return f"a.{'given_back' if script.is_release(function) else 'retained'}().cast()"
+            return f"a.{'given_back' if script.is_release(function) else 'retained' if script.is_retain(function) else 'any'}().cast()"
         return f'a.handle("{f.type}").cast()'
     if f.type in script.CALLBACKS:
         return f"a.{f.type.removeprefix('luxfer_').removesuffix('_fn')}()"

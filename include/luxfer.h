@@ -582,27 +582,18 @@ luxfer_status luxfer_scene_export_memory(luxfer_scene *scene, luxfer_write_fn wr
 luxfer_status luxfer_scene_get_counts(luxfer_scene *scene, luxfer_scene_counts *counts);
 
 /**
- * Sets an environment that emits the same radiance from all directions: red, green and blue in cd/m², each finite and
- * >= 0. It replaces any earlier environment. Any thread.
- */
-luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
-                                           float red,
-                                           float green,
-                                           float blue);
-
-/**
- * Sets an environment from an equirectangular image in linear values, multiplied by (red, green, blue), each finite
- * and >= 0: radiance in cd/m². The renderer samples it in proportion to its brightness. The centre of the image is
- * towards -z, its top towards +y, the centre of its right half towards +x. The image is copied and replaces any
- * earlier environment. Any thread.
+ * Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
+ * or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an image
+ * in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its right
+ * half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
-luxfer_status luxfer_scene_set_environment_image(luxfer_scene *scene,
-                                                 luxfer_image *image,
-                                                 float red,
-                                                 float green,
-                                                 float blue);
+luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
+                                           luxfer_image *image,
+                                           float red,
+                                           float green,
+                                           float blue);
 
 /**
  * Sets the emission of a material: red, green and blue in cd/m², each finite and >= 0. An emission texture of the
@@ -674,23 +665,16 @@ luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_params *params,
 
 /**
  * Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
- * The caller releases *scene. Any thread.
+ * params may be NULL for the defaults. The caller releases *scene. Any thread.
  * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
  * LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
- * file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out of
+ * range.
  */
 luxfer_status luxfer_scene_load(luxfer_context *context,
                                 const char *path,
+                                const luxfer_scene_load_params *params,
                                 luxfer_scene **scene);
-
-/**
- * Loads a scene as luxfer_scene_load does, with settings; params may be NULL for the defaults.
- * LUXFER_INVALID_ARGUMENT also if a setting is out of range.
- */
-luxfer_status luxfer_scene_load_with(luxfer_context *context,
-                                     const char *path,
-                                     const luxfer_scene_load_params *params,
-                                     luxfer_scene **scene);
 
 /**
  * Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
@@ -700,18 +684,8 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
                                        const char *base_path,
+                                       const luxfer_scene_load_params *params,
                                        luxfer_scene **scene);
-
-/**
- * Loads a scene as luxfer_scene_load_memory does, with settings; params may be NULL for the defaults.
- * LUXFER_INVALID_ARGUMENT also if a setting is out of range.
- */
-luxfer_status luxfer_scene_load_memory_with(luxfer_context *context,
-                                            const void *data,
-                                            size_t size,
-                                            const char *base_path,
-                                            const luxfer_scene_load_params *params,
-                                            luxfer_scene **scene);
 
 /* ====================================================================================================================
  * Materials
@@ -1430,6 +1404,10 @@ typedef struct luxfer_candidate {
     float score;
     /** 0. */
     uint32_t reserved;
+    /** Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates. */
+    const char *name;
+    /** The reason for the score, in English and with its figures. */
+    const char *reason;
 } luxfer_candidate;
 
 /** All meshes of one name. */
@@ -1450,33 +1428,12 @@ luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,
 luxfer_status luxfer_candidates_count(luxfer_candidates *candidates, uint32_t *count);
 
 /**
- * Gets the figures of a candidate. Any thread.
+ * Gets a candidate of a list. Any thread.
  * LUXFER_NOT_FOUND if there is no such candidate.
  */
 luxfer_status luxfer_candidates_get(luxfer_candidates *candidates,
                                     uint32_t index,
                                     luxfer_candidate *candidate);
-
-/**
- * Copies the name of a candidate into buffer, as luxfer_context_last_error copies a message. Any thread.
- * LUXFER_NOT_FOUND if there is no such candidate.
- */
-luxfer_status luxfer_candidates_get_name(luxfer_candidates *candidates,
-                                         uint32_t index,
-                                         char *buffer,
-                                         size_t capacity,
-                                         size_t *needed);
-
-/**
- * Copies the reason for the score of a candidate, in English and with its figures, as luxfer_candidates_get_name
- * copies the name. Any thread.
- * LUXFER_NOT_FOUND if there is no such candidate.
- */
-luxfer_status luxfer_candidates_get_reason(luxfer_candidates *candidates,
-                                           uint32_t index,
-                                           char *buffer,
-                                           size_t capacity,
-                                           size_t *needed);
 
 /* ====================================================================================================================
  * Plane geometry
@@ -2556,14 +2513,12 @@ luxfer_status luxfer_render_create(luxfer_context *context, luxfer_render **rend
 /** Sets the scene; each job renders the scene as it is when the job starts. Any thread. */
 luxfer_status luxfer_render_set_scene(luxfer_render *render, luxfer_scene *scene);
 
-/** Renders from a camera of the scene; the default is camera 0. Any thread. */
-luxfer_status luxfer_render_set_camera_index(luxfer_render *render, uint32_t camera);
-
 /**
- * Renders from the given camera instead of one of the scene. camera may be NULL for the defaults of
- * luxfer_camera_params. Any thread.
+ * Sets the camera, such as one that luxfer_scene_get_camera has written. camera may be NULL, the default: the first
+ * camera of the scene. Any thread.
  */
-luxfer_status luxfer_render_set_camera(luxfer_render *render, const luxfer_camera_params *camera);
+luxfer_status luxfer_render_set_camera(luxfer_render *render,
+                                       const luxfer_camera_params *camera);
 
 /**
  * Starts a job that renders. params may be NULL for the defaults. The caller releases *job. Any thread.
@@ -3830,17 +3785,6 @@ luxfer_status luxfer_fit_temperature(luxfer_context *context,
                                      const double *target,
                                      luxfer_temperature_fit *fit);
 
-/**
- * Computes the electric power per floor area, in W/m²: flux is the luminous flux in lumens, >= 0, efficacy that of the
- * luminaires in lumens per watt, area in m², both > 0. Any thread.
- * LUXFER_INVALID_ARGUMENT if a number is out of range.
- */
-luxfer_status luxfer_power_density(luxfer_context *context,
-                                   double flux,
-                                   double efficacy,
-                                   double area,
-                                   double *density);
-
 /** Gets the number of presets. Any thread. */
 luxfer_status luxfer_preset_count(luxfer_context *context, uint32_t *count);
 
@@ -4343,7 +4287,7 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
  * again. An empty list does not prove a result right.
  * ==================================================================================================================== */
 
-/** A list of warnings. See luxfer_transfer_get_warnings. */
+/** A list of warnings. See luxfer_get_warnings. */
 typedef struct luxfer_warnings luxfer_warnings;
 
 /** The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added. */
@@ -4368,6 +4312,12 @@ typedef struct luxfer_warning {
     double limit;
     /** The place in the photo, x and y in pixels; 0 without one. */
     double place[2];
+    /**
+     * The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the luxfer_warnings.
+     */
+    const char *message;
+    /** The remedy. */
+    const char *advice;
 } luxfer_warning;
 
 /**
@@ -4457,84 +4407,31 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NOT_RENDERED 21
 
 /**
- * Gets the warnings of all stages that have a result, in their order. The caller releases *warnings. Any thread.
- * LUXFER_NOT_READY before the first stage has ended.
+ * Gets the warnings about the result of an object. handle is one of:
+ * - a luxfer_transfer: the warnings of all stages that have a result, in their order;
+ * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
+ * - a luxfer_features;
+ * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
+ * - a luxfer_emission: about the texture; a plan has no warnings;
+ * - a luxfer_relight;
+ * - a luxfer_scene: an implausible size, and features of its file that are not rendered.
+ *
+ * The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);
+ * LUXFER_INVALID_ARGUMENT if handle is of another kind.
  */
-luxfer_status luxfer_transfer_get_warnings(luxfer_transfer *transfer,
-                                           luxfer_warnings **warnings);
-
-/**
- * Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any
- * thread.
- * LUXFER_NOT_READY before a job has succeeded.
- */
-luxfer_status luxfer_rectify_get_warnings(luxfer_rectify *rectify,
-                                          luxfer_warnings **warnings);
-
-/**
- * Gets the warnings about the features. The caller releases *warnings. Any thread.
- * LUXFER_NOT_READY before a job has succeeded.
- */
-luxfer_status luxfer_features_get_warnings(luxfer_features *features, luxfer_warnings **warnings);
-
-/**
- * Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are
- * now. The caller releases *warnings. Any thread.
- * LUXFER_NOT_READY before a job has succeeded.
- */
-luxfer_status luxfer_segment_get_warnings(luxfer_segment *segment,
-                                          luxfer_warnings **warnings);
-
-/**
- * Gets the warnings about the texture; a plan has none. The caller releases *warnings. Any thread.
- * LUXFER_NOT_READY before a job has succeeded.
- */
-luxfer_status luxfer_emission_get_warnings(luxfer_emission *emission, luxfer_warnings **warnings);
-
-/**
- * Gets the warnings about the solution. The caller releases *warnings. Any thread.
- * LUXFER_NOT_READY before a job has succeeded.
- */
-luxfer_status luxfer_relight_get_warnings(luxfer_relight *relight, luxfer_warnings **warnings);
-
-/**
- * Gets the warnings about a scene: an implausible size, and features of its file that are not rendered. The caller
- * releases *warnings. Any thread.
- */
-luxfer_status luxfer_scene_get_warnings(luxfer_scene *scene,
-                                        luxfer_warnings **warnings);
+luxfer_status luxfer_get_warnings(void *handle, luxfer_warnings **warnings);
 
 /** Counts the warnings of a list. Any thread. */
 luxfer_status luxfer_warnings_count(luxfer_warnings *warnings, uint32_t *count);
 
 /**
- * Gets the code, the stage, the figures and the place of a warning. Any thread.
+ * Gets a warning of a list. Any thread.
  * LUXFER_NOT_FOUND if there is no such warning.
  */
 luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
                                   uint32_t index,
                                   luxfer_warning *warning);
-
-/**
- * Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be;
- * *needed receives the capacity for all of it, unless NULL. Any thread.
- * LUXFER_NOT_FOUND if there is no such warning.
- */
-luxfer_status luxfer_warnings_get_message(luxfer_warnings *warnings,
-                                          uint32_t index,
-                                          char *buffer,
-                                          size_t capacity,
-                                          size_t *needed);
-
-/**
- * Copies the remedy, as luxfer_warnings_get_message does the defect. Any thread.
- * LUXFER_NOT_FOUND if there is no such warning.
- */
-luxfer_status luxfer_warnings_get_advice(luxfer_warnings *warnings,
-                                         uint32_t index,
-                                         char *buffer,
-                                         size_t capacity,
-                                         size_t *needed);
 
 /**
  * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The

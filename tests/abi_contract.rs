@@ -298,8 +298,8 @@ fn files_that_are_missing_damaged_or_misnamed_say_so() {
             luxfer_image_load_memory(context, null(), 64, LUXFER_COLOUR_SRGB, &mut other),
             LUXFER_INVALID_ARGUMENT
         );
-        assert_eq!(luxfer_scene_load_memory(context, junk, 64, null(), &mut scene), LUXFER_FORMAT);
-        assert_eq!(luxfer_scene_load(context, c"/nonexistent.glb".as_ptr(), &mut scene), LUXFER_IO);
+        assert_eq!(luxfer_scene_load_memory(context, junk, 64, null(), null(), &mut scene), LUXFER_FORMAT);
+        assert_eq!(luxfer_scene_load(context, c"/nonexistent.glb".as_ptr(), null(), &mut scene), LUXFER_IO);
         assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
@@ -326,7 +326,7 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(add(&luxfer_mesh_params { position_stride: 8, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { vertex_count: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { position_stride: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, -1.0, 0.0, 0.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), -1.0, 0.0, 0.0), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_scene_set_emission(scene, 7, 1.0, 1.0, 1.0), LUXFER_NOT_FOUND);
 
         let mut counts = std::mem::zeroed::<luxfer_scene_counts>();
@@ -353,7 +353,8 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(luxfer_scene_export_memory(scene, Some(collect), (&raw mut file).cast()), LUXFER_OK);
         assert_eq!(luxfer_scene_export_memory(scene, Some(give_up), null_mut()), LUXFER_IO);
         assert_eq!(luxfer_scene_export_memory(scene, None, null_mut()), LUXFER_INVALID_ARGUMENT);
-        let again = made(|out| luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), out));
+        let again =
+            made(|out| luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), null(), out));
         assert_eq!(luxfer_scene_get_counts(again, &mut counts), LUXFER_OK);
         assert_eq!((counts.meshes, counts.triangles), (2, 14));
         assert_eq!(luxfer_release(again.cast()), LUXFER_OK);

@@ -216,7 +216,14 @@ fn nested_gltf() -> Vec<u8> {
 fn load_scene(context: *mut luxfer_context, file: &[u8]) -> luxfer_status {
     let mut scene = null_mut();
     unsafe {
-        let status = luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), std::ptr::null(), &mut scene);
+        let status = luxfer_scene_load_memory(
+            context,
+            file.as_ptr().cast(),
+            file.len(),
+            std::ptr::null(),
+            std::ptr::null(),
+            &mut scene,
+        );
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         status
     }

@@ -409,8 +409,8 @@ layouts! {
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error proposed_white
         proposed_white_low proposed_white_high;
-    luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved;
-    luxfer_warning: struct_size code stage has_place severity limit place;
+    luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved name reason;
+    luxfer_warning: struct_size code stage has_place severity limit place message advice;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;

@@ -237,11 +237,11 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
     let below = host::image(context, 4, 2, -1.0);
     let mut grid = unsafe { std::mem::zeroed::<luxfer_illuminance_grid>() };
     unsafe {
-        assert_eq!(luxfer_scene_set_environment_image(scene, below, 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, sky, 1.0, -1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, sky, f32::MAX, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, null_mut(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
+        assert_eq!(luxfer_scene_set_environment(scene, below, 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, 1.0, -1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, f32::MAX, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, scene.cast(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
         let mut needed =
             luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
         assert_eq!(luxfer_scene_requirements(scene, 0.0, &mut needed), LUXFER_OK);

@@ -131,6 +131,10 @@ impl Arguments<'_> {
         all().nth(usize::from(byte) % all().count().max(1)).ok_or(std::ptr::null_mut())
     }
 
+    fn any(&mut self) -> *mut u8 {
+        self.pick().map_or_else(|stranger| stranger, |(kind, place)| self.handles[kind][place])
+    }
+
     fn retained(&mut self) -> *mut u8 {
         let picked = self.pick().map(|(kind, place)| (kind, self.handles[kind][place]));
         self.retained = picked.ok();

@@ -81,7 +81,7 @@ pub fn scene(data: &[u8]) {
     extern "C" fn take(_: *mut c_void, _: *const c_void, _: usize) -> i32 {
         0
     }
-    let load = |out| unsafe { luxfer_scene_load_memory(context(), data.as_ptr().cast(), data.len(), null(), out) };
+    let load = |out| unsafe { luxfer_scene_load_memory(context(), data.as_ptr().cast(), data.len(), null(), null(), out) };
     let Some(scene) = made("luxfer_scene_load_memory", load) else { return };
     let rays = [[0.0, -1.0, 0.1], [0.1, 0.0, -1.0]].map(|direction| luxfer_ray {
         origin: [0.01, 0.5, 0.02],

@@ -12,7 +12,7 @@ use super::scene::missing;
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::photometry::presets::{PRESETS, Preset};
-use crate::photometry::{power_density, temperature};
+use crate::photometry::temperature;
 use crate::relight::{MAX_PRIMARIES, mix_primaries};
 use glam::DVec3;
 use std::ffi::c_char;
@@ -170,27 +170,6 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
             delta_e: found.delta_e,
             ..luxfer_temperature_fit::defaults()
         });
-        Ok(())
-    })
-}
-
-/// Computes the electric power per floor area, in W/m²: flux is the luminous flux in lumens, >= 0, efficacy that of the
-/// luminaires in lumens per watt, area in m², both > 0. Any thread.
-/// LUXFER_INVALID_ARGUMENT if a number is out of range.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_power_density(
-    context: *mut luxfer_context,
-    flux: f64,
-    efficacy: f64,
-    area: f64,
-    density: *mut f64,
-) -> luxfer_status {
-    enter(context, |_| {
-        let out = Out::new(density, "density")?;
-        check_range("flux", flux, 0.0, f64::MAX)?;
-        check_range("efficacy", efficacy, f64::MIN_POSITIVE, f64::MAX)?;
-        check_range("area", area, f64::MIN_POSITIVE, f64::MAX)?;
-        out.set(power_density(flux, efficacy, area));
         Ok(())
     })
 }

@@ -158,7 +158,8 @@ unsafe impl Versioned for luxfer_render_report {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
-    camera: Viewpoint,
+    /// The first camera of the scene unless the caller gives one.
+    camera: Option<Camera>,
     pub(super) outputs: Outputs,
     /// Files to be merged.
     pub(super) parts: Vec<parts::File>,
@@ -170,11 +171,8 @@ impl Inputs {
         let object = need(&self.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
         let camera = match &self.camera {
-            Viewpoint::Own(camera) => camera.clone(),
-            Viewpoint::OfScene(index) => {
-                let found = scene.cameras.get(*index as usize).cloned();
-                found.ok_or_else(|| missing("camera", *index, scene.cameras.len()))?
-            }
+            Some(camera) => camera.clone(),
+            None => scene.cameras.first().cloned().ok_or_else(|| missing("camera", 0, 0))?,
         };
         Ok((object, scene, camera))
     }
@@ -199,18 +197,6 @@ impl Shot {
     /// The scene made ready.
     pub(super) fn world(&self, job: Job) -> Result<Arc<World>> {
         self.object.world(&self.scene, job)
-    }
-}
-
-#[derive(Clone)]
-enum Viewpoint {
-    OfScene(u32),
-    Own(Camera),
-}
-
-impl Default for Viewpoint {
-    fn default() -> Self {
-        Self::OfScene(0)
     }
 }
 
@@ -253,28 +239,17 @@ pub unsafe extern "C" fn luxfer_render_set_scene(
     })
 }
 
-/// Renders from a camera of the scene; the default is camera 0. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_set_camera_index(render: *mut luxfer_render, camera: u32) -> luxfer_status {
-    enter(render, |stage| {
-        stage.change(|inputs| {
-            inputs.camera = Viewpoint::OfScene(camera);
-            Ok(())
-        })
-    })
-}
-
-/// Renders from the given camera instead of one of the scene. camera may be NULL for the defaults of
-/// luxfer_camera_params. Any thread.
+/// Sets the camera, such as one that luxfer_scene_get_camera has written. camera may be NULL, the default: the first
+/// camera of the scene. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_camera(
     render: *mut luxfer_render,
     camera: *const luxfer_camera_params,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let camera = params::read(camera)?.camera()?;
+        let camera = if camera.is_null() { None } else { Some(params::read_required(camera)?.camera()?) };
         stage.change(|inputs| {
-            inputs.camera = Viewpoint::Own(camera);
+            inputs.camera = camera;
             Ok(())
         })
     })

@@ -8,7 +8,7 @@
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, lock};
 use super::handle::{self, Handle, Owned, tag};
-use super::image::luxfer_image;
+use super::image::{Pixels, luxfer_image};
 use super::params::{Report, Versioned};
 use super::pointer::{Out, set_optional, text};
 use super::status::luxfer_status;
@@ -303,32 +303,14 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
     })
 }
 
-/// Sets an environment that emits the same radiance from all directions: red, green and blue in cd/m², each finite and
-/// >= 0. It replaces any earlier environment. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_set_environment(
-    scene: *mut luxfer_scene,
-    red: f32,
-    green: f32,
-    blue: f32,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let radiance = colour("environment", red, green, blue)?;
-        object.change(0, |scene| {
-            scene.environment = Some(Environment::Constant(radiance));
-            Ok(())
-        })
-    })
-}
-
-/// Sets an environment from an equirectangular image in linear values, multiplied by (red, green, blue), each finite
-/// and >= 0: radiance in cd/m². The renderer samples it in proportion to its brightness. The centre of the image is
-/// towards -z, its top towards +y, the centre of its right half towards +x. The image is copied and replaces any
-/// earlier environment. Any thread.
+/// Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
+/// or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an image
+/// in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its right
+/// half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_set_environment_image(
+pub unsafe extern "C" fn luxfer_scene_set_environment(
     scene: *mut luxfer_scene,
     image: *mut luxfer_image,
     red: f32,
@@ -336,8 +318,13 @@ pub unsafe extern "C" fn luxfer_scene_set_environment_image(
     blue: f32,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let image = handle::borrow_in(&object.context, image, "image")?;
         let strength = colour("environment", red, green, blue)?;
+        let Some(image) = Pixels::optional(&object.context, image, "image")? else {
+            return object.change(0, |scene| {
+                scene.environment = Some(Environment::Constant(strength));
+                Ok(())
+            });
+        };
         if let Some(v) = image.image().data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
             return Err(Error::argument(format!("a sample of the image is {v}; it must be finite and not negative")));
         }

@@ -67,24 +67,13 @@ pub unsafe extern "C" fn luxfer_scene_load_params_init(
 }
 
 /// Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
-/// The caller releases *scene. Any thread.
+/// params may be NULL for the defaults. The caller releases *scene. Any thread.
 /// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
 /// LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
-/// file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load(
-    context: *mut luxfer_context,
-    path: *const c_char,
-    scene: *mut *mut luxfer_scene,
-) -> luxfer_status {
-    // SAFETY: by the contract of this function.
-    unsafe { luxfer_scene_load_with(context, path, std::ptr::null(), scene) }
-}
-
-/// Loads a scene as luxfer_scene_load does, with settings; params may be NULL for the defaults.
-/// LUXFER_INVALID_ARGUMENT also if a setting is out of range.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_load_with(
     context: *mut luxfer_context,
     path: *const c_char,
     params: *const luxfer_scene_load_params,
@@ -104,20 +93,6 @@ pub unsafe extern "C" fn luxfer_scene_load_with(
 /// base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(
-    context: *mut luxfer_context,
-    data: *const c_void,
-    size: usize,
-    base_path: *const c_char,
-    scene: *mut *mut luxfer_scene,
-) -> luxfer_status {
-    // SAFETY: by the contract of this function.
-    unsafe { luxfer_scene_load_memory_with(context, data, size, base_path, std::ptr::null(), scene) }
-}
-
-/// Loads a scene as luxfer_scene_load_memory does, with settings; params may be NULL for the defaults.
-/// LUXFER_INVALID_ARGUMENT also if a setting is out of range.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_load_memory_with(
     context: *mut luxfer_context,
     data: *const c_void,
     size: usize,

@@ -173,7 +173,7 @@ class Loader:
         out = ctypes.POINTER(abi.luxfer_scene if is_scene else abi.luxfer_image)()
         start = time.monotonic()
         if is_scene:
-            status = self.library.luxfer_scene_load_memory(self.context.handle, data, len(data), None, ctypes.byref(out))
+            status = self.library.luxfer_scene_load_memory(self.context.handle, data, len(data), None, None, ctypes.byref(out))
         else:
             status = self.library.luxfer_image_load_memory(self.context.handle, data, len(data), 1, ctypes.byref(out))
         check(seed, status, start)

@@ -73,12 +73,12 @@ void files() {
     CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
     CHECK_OK(luxfer_scene_export_memory(room, append, &glb));
     for (size_t cut : {size_t{0}, size_t{1}, size_t{12}, size_t{19}, glb.size() / 4, glb.size() / 2, glb.size() - 1})
-        CHECK_STATUS(luxfer_scene_load_memory(context, glb.data(), cut, nullptr, &scene), LUXFER_FORMAT);
+        CHECK_STATUS(luxfer_scene_load_memory(context, glb.data(), cut, nullptr, nullptr, &scene), LUXFER_FORMAT);
     std::vector<unsigned char> lying = glb;
     std::memset(&lying[12], 0xff, 4);
-    CHECK_STATUS(luxfer_scene_load_memory(context, lying.data(), lying.size(), nullptr, &scene), LUXFER_FORMAT);
+    CHECK_STATUS(luxfer_scene_load_memory(context, lying.data(), lying.size(), nullptr, nullptr, &scene), LUXFER_FORMAT);
     CHECK(scene == nullptr);
-    CHECK_OK(luxfer_scene_load_memory(context, glb.data(), glb.size(), nullptr, &scene));
+    CHECK_OK(luxfer_scene_load_memory(context, glb.data(), glb.size(), nullptr, nullptr, &scene));
     CHECK_OK(luxfer_release(scene));
     CHECK_OK(luxfer_release(room));
 }

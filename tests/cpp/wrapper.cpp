@@ -367,9 +367,9 @@ void scenes_come_back() {
     const luxfer::Candidates candidates = ok(copy.candidates());
     CHECK(ok(candidates.count()) > 2);
     const luxfer_candidate likeliest = ok(candidates.candidate(0));
-    CHECK(ok(candidates.name(0)) == "Lamp" && likeliest.kind == LUXFER_CANDIDATE_OBJECT && likeliest.index == 1);
+    CHECK(std::string(likeliest.name) == "Lamp" && likeliest.kind == LUXFER_CANDIDATE_OBJECT && likeliest.index == 1);
     CHECK(likeliest.level_area == likeliest.area && likeliest.score > 0);
-    CHECK(ok(candidates.reason(0)).find("level") != std::string::npos);
+    CHECK(std::string(likeliest.reason).find("level") != std::string::npos);
     CHECK_ERROR(candidates.candidate(99), LUXFER_NOT_FOUND);
     const luxfer_scene_counts counts = ok(copy.counts());
     CHECK(counts.meshes == 2 && counts.cameras == 1 && counts.triangles == 4);
@@ -408,7 +408,7 @@ void layers_have_names() {
     CHECK(std::strstr(error_of([&] { return render.add_expression("slip", "LDXE"); }).what(), "column 3") != nullptr);
     OK(render.add_expression("direct", "C<RD>L"));
     OK(render.set_aovs(LUXFER_AOV_DEPTH));
-    OK(render.set_camera(0));
+    OK(render.clear_camera());
     OK(start(render, 4).wait());
     CHECK(ok(render.layer_count()) == 2 && ok(render.layer_name(0)) == "direct" && ok(render.find_layer("Depth")) == 1);
     CHECK(ok(ok(render.layer(1)).size()).channels == 1);
@@ -436,7 +436,6 @@ void lights_have_names() {
     CHECK_ERROR(luxfer::mix_primaries(context, {}, {1, 1, 1}), LUXFER_INVALID_ARGUMENT);
     const auto fit = ok(luxfer::fit_temperature(context, {1, 1, 1}, {0, 0, 0}, {9, 9, 9}));
     CHECK(fit.kelvin > 6000 && fit.kelvin < 7000 && fit.luminance > 8 && fit.delta_e < 5);
-    CHECK(ok(luxfer::power_density(context, 1200, 120, 10)) == 1);
     CHECK(ok(luxfer::preset_count(context)) > 1 && ok(luxfer::preset(context, 0)).illuminance == 500);
     CHECK(ok(luxfer::preset_name(context, 0)).find("office") == 0);
     CHECK_ERROR(luxfer::preset(context, 1000), LUXFER_NOT_FOUND);

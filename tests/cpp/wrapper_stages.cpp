@@ -164,7 +164,7 @@ void lighting_transfer(const Context &context) {
             const luxfer_warning warning = warnings.warning(i);
             CHECK(warning.stage >= LUXFER_STAGE_VIEW && warning.stage <= LUXFER_STAGE_RENDER);
             CHECK(std::strcmp(luxfer::Warnings::name(warning.code), "LUXFER_WARNING_UNKNOWN") != 0);
-            CHECK(!warnings.message(i).empty() && !warnings.advice(i).empty());
+            CHECK(std::strlen(warning.message) > 0 && std::strlen(warning.advice) > 0);
         }
         luxfer_status beyond = LUXFER_OK;
         try {

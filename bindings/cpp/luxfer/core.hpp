@@ -150,8 +150,8 @@ protected:
     }
 
     /// Calls a C function on the object whose last parameter becomes a new object of class T.
-    template <class T, class... Parameters, class... Arguments>
-    Result<T> make(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
+    template <class T, class Any, class... Parameters, class... Arguments>
+    Result<T> make(luxfer_status (*function)(Any *, Parameters...), Arguments... arguments) const {
         typename T::Object *made = nullptr;
         const luxfer_status status = function(get(), arguments..., &made);
         return detail::finish(context_.get(), status, T(context_, made));

@@ -214,13 +214,6 @@ inline Result<luxfer_temperature_fit> fit_temperature(const Context &context, st
                                                      response.data(), background.data(), target.data());
 }
 
-/// Electric power per floor area in W/m²: lumens, lumens per watt, m².
-inline Result<double> power_density(const Context &context, double flux, double efficacy, double area) {
-    double density = 0;
-    const luxfer_status status = luxfer_power_density(context.get(), flux, efficacy, area, &density);
-    return detail::finish(context.get(), status, density);
-}
-
 inline Result<std::uint32_t> preset_count(const Context &context) {
     std::uint32_t count = 0;
     const luxfer_status status = luxfer_preset_count(context.get(), &count);

@@ -40,7 +40,7 @@ public:
     Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
 
     /// Reasons to doubt the camera, and the plane if it has been unwarped.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_rectify_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 };
 
 /// Strokes for images of one size. A stage copies them: after a change, set them again. See luxfer_strokes.
@@ -117,7 +117,7 @@ public:
     Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
 
     /// Reasons to doubt the features.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_features_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 };
 
 /// Computes a mask from strokes. See luxfer_segment.
@@ -147,7 +147,7 @@ public:
     Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
 
     /// Reasons to doubt the mask.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_segment_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 };
 
 /// Synthesises an emissive texture of any size from unwarped lights. See luxfer_emission.
@@ -201,7 +201,7 @@ public:
     Result<luxfer_emission_report> report() const { return value<luxfer_emission_report>(luxfer_emission_get_report); }
 
     /// Reasons to doubt the texture.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_emission_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     Result<luxfer_luminaire> luminaire(std::uint32_t index) const {
         return value<luxfer_luminaire>(luxfer_emission_get_luminaire, index);

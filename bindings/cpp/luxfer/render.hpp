@@ -23,9 +23,9 @@ public:
 
     Result<> set_scene(const Scene &scene) const { return call(luxfer_render_set_scene, scene.get()); }
 
-    /// Sets the camera: one of the scene, or the given one.
-    Result<> set_camera(std::uint32_t index) const { return call(luxfer_render_set_camera_index, index); }
+    /// Sets the camera; the default is the first camera of the scene.
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_render_set_camera, &camera); }
+    Result<> clear_camera() const { return call(luxfer_render_set_camera, nullptr); }
 
     // Additional layers from the paths of the picture.
 
@@ -147,7 +147,7 @@ public:
     Result<luxfer_relight_report> report() const { return value<luxfer_relight_report>(luxfer_relight_get_report); }
 
     /// Reasons to doubt the solution.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_relight_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 };
 
 } // namespace luxfer

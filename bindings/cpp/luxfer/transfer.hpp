@@ -95,7 +95,7 @@ public:
     }
 
     /// Reasons to doubt the results that there are, in the order of the stages.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_transfer_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     /// Writes all fixtures to a .csv or .json file.
     Result<> save_fixtures(Text path) const { return call(luxfer_transfer_save_fixtures, path.get()); }

@@ -14,16 +14,10 @@ public:
 
     Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_warnings_count); }
 
-    /// Code, stage, figure, limit and place.
+    /// Code, stage, figure, limit, place, defect and remedy. Its strings live as long as the list.
     Result<luxfer_warning> warning(std::uint32_t index) const {
         return value<luxfer_warning>(luxfer_warnings_get, index);
     }
-
-    /// The defect, with its figure.
-    Result<std::string> message(std::uint32_t index) const { return text(luxfer_warnings_get_message, index); }
-
-    /// The remedy.
-    Result<std::string> advice(std::uint32_t index) const { return text(luxfer_warnings_get_advice, index); }
 
     /// The name of a code, such as "LUXFER_WARNING_UNSEEN".
     static const char *name(luxfer_warning_code code) noexcept { return luxfer_warning_name(code); }

@@ -30,7 +30,6 @@ from .photometry import (
     fit_temperature,
     glare,
     mix_primaries,
-    power_density,
     presets,
 )
 from .plan import Plan
@@ -82,7 +81,6 @@ __all__ = [
     "homography",
     "library",
     "mix_primaries",
-    "power_density",
     "presets",
     "print_sheet",
     "types",

@@ -321,7 +321,7 @@ class luxfer_transfer(Structure):
 
 
 class luxfer_warnings(Structure):
-    """A list of warnings. See luxfer_transfer_get_warnings."""
+    """A list of warnings. See luxfer_get_warnings."""
 
 
 class luxfer_plan(Structure):
@@ -628,6 +628,8 @@ class luxfer_candidate(Structure):
         ("normal", c_float * 3),
         ("score", c_float),
         ("reserved", c_uint32),
+        ("name", c_char_p),
+        ("reason", c_char_p),
     ]
     enumerations: dict[str, type] = {"kind": types.CandidateKind}
     result = types.Candidate
@@ -1230,6 +1232,8 @@ class luxfer_warning(Structure):
         ("severity", c_double),
         ("limit", c_double),
         ("place", c_double * 2),
+        ("message", c_char_p),
+        ("advice", c_char_p),
     ]
     enumerations: dict[str, type] = {"code": types.WarningCode, "stage": types.Stage}
     result = types.Warning
@@ -1418,16 +1422,13 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_export": (c_int32, [("scene", POINTER(luxfer_scene)), ("path", c_char_p)]),
     "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),
     "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts))]),
-    "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
-    "luxfer_scene_set_environment_image": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_scene_set_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface))]),
     "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_scene_load_params_init": (c_int32, [("params", POINTER(luxfer_scene_load_params)), ("size", c_size_t)]),
-    "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load_with": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load_memory_with": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_material_params_init": (c_int32, [("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
     "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
@@ -1463,8 +1464,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
     "luxfer_candidates_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
     "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate))]),
-    "luxfer_candidates_get_name": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_candidates_get_reason": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),
@@ -1514,7 +1513,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_params_init": (c_int32, [("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
     "luxfer_render_create": (c_int32, [("context", POINTER(luxfer_context)), ("render", POINTER(POINTER(luxfer_render)))]),
     "luxfer_render_set_scene": (c_int32, [("render", POINTER(luxfer_render)), ("scene", POINTER(luxfer_scene))]),
-    "luxfer_render_set_camera_index": (c_int32, [("render", POINTER(luxfer_render)), ("camera", c_uint32)]),
     "luxfer_render_set_camera": (c_int32, [("render", POINTER(luxfer_render)), ("camera", POINTER(luxfer_camera_params))]),
     "luxfer_render_start": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_render_get_image": (c_int32, [("render", POINTER(luxfer_render)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
@@ -1581,7 +1579,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture))]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit))]),
-    "luxfer_power_density": (c_int32, [("context", POINTER(luxfer_context)), ("flux", c_double), ("efficacy", c_double), ("area", c_double), ("density", POINTER(c_double))]),
     "luxfer_preset_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset))]),
     "luxfer_preset_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
@@ -1608,17 +1605,9 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report))]),
     "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture))]),
     "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
-    "luxfer_transfer_get_warnings": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_rectify_get_warnings": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_features_get_warnings": (c_int32, [("features", POINTER(luxfer_features)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_segment_get_warnings": (c_int32, [("segment", POINTER(luxfer_segment)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_emission_get_warnings": (c_int32, [("emission", POINTER(luxfer_emission)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_relight_get_warnings": (c_int32, [("relight", POINTER(luxfer_relight)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_scene_get_warnings": (c_int32, [("scene", POINTER(luxfer_scene)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_get_warnings": (c_int32, [("handle", c_void_p), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
     "luxfer_warnings_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
     "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning))]),
-    "luxfer_warnings_get_message": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_warnings_get_advice": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_warning_name": (c_char_p, [("code", c_int32)]),
     "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
     "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),

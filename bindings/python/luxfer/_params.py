@@ -151,7 +151,9 @@ def sized(struct: type[ctypes.Structure]) -> Any:
 
 
 def plain(value: Any, params: ctypes.Structure, name: str) -> Any:
-    """A field's value: arrays as tuples, enumerations as their members where the number is one."""
+    """A field's value: texts as str, arrays as tuples, enumerations as their members where the number is one."""
+    if isinstance(value, bytes):
+        return value.decode()
     if isinstance(value, ctypes.Array):
         return tuple(plain(v, params, name) for v in value)
     kind = getattr(params, "enumerations", {}).get(name)

@@ -129,13 +129,6 @@ def fit_temperature(
     return cast(TemperatureFit, _params.report(report))
 
 
-def power_density(context: Context, flux: float, efficacy: float, area: float) -> float:
-    """Electric power per floor area in W/m²: lumens, lumens per watt, m²."""
-    density = ctypes.c_double()
-    call(context, "luxfer_power_density", context, flux, efficacy, area, density)
-    return density.value
-
-
 def presets(context: Context) -> dict[str, Preset]:
     """The requirements of EN 12464-1 for kinds of rooms, by name."""
     count = ctypes.c_uint32()

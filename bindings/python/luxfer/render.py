@@ -52,13 +52,10 @@ class Render(StageBase):
         """Sets the scene; each job renders the scene as it is when the job starts."""
         self._call("set_scene", scene)
 
-    def set_camera_index(self, camera: int) -> None:
-        """Renders from a camera of the scene; the default is 0."""
-        self._call("set_camera_index", camera)
-
-    def set_camera(self, **params: Unpack[CameraParams]) -> None:
-        """Renders from the given camera."""
-        self._call("set_camera", _params.fill(_abi.luxfer_camera_params, params, []))
+    def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
+        """Sets the camera, such as scene.camera(1); without arguments it is the first camera of the scene."""
+        values = {**(camera or {}), **params}
+        self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
 
     def add_expression(self, name: str, expression: str) -> None:
         """Adds a layer of the light that a light path expression selects, such as "LDE" or "C<RD>L"."""

@@ -63,7 +63,7 @@ class Scene(Handle):
     def load(cls, context: Context, path: str | os.PathLike[str], **params: Unpack[SceneLoadParams]) -> Scene:
         """Loads a glTF 2.0 file, .glb or .gltf with the files it names. unit is the length of its unit in metres."""
         settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
-        return cls._made(context, "luxfer_scene_load_with", _params.text(os.fspath(path), "path"), settings)
+        return cls._made(context, "luxfer_scene_load", _params.text(os.fspath(path), "path"), settings)
 
     @classmethod
     def from_bytes(
@@ -76,7 +76,7 @@ class Scene(Handle):
         """Loads a glTF file in memory; files that it names are read from base_path."""
         base = None if base_path is None else _params.text(os.fspath(base_path), "base_path")
         settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
-        return cls._made(context, "luxfer_scene_load_memory_with", data, len(data), base, settings)
+        return cls._made(context, "luxfer_scene_load_memory", data, len(data), base, settings)
 
     @property
     def warnings(self) -> list[StageWarning]:
@@ -212,10 +212,8 @@ class Scene(Handle):
 
     def set_environment(self, colour: Sequence[float], image: ImageLike | None = None) -> None:
         """Sets an environment of one radiance, in cd/m², or an equirectangular image multiplied by it."""
-        if image is None:
-            self._call("set_environment", *_colour(colour))
-        else:
-            self._call("set_environment_image", image_of(self._context, image), *_colour(colour))
+        sky = None if image is None else image_of(self._context, image)
+        self._call("set_environment", sky, *_colour(colour))
 
     def set_emission(self, material: int, colour: Sequence[float]) -> None:
         """Sets the emission of a material, in cd/m²; it multiplies the emission texture."""

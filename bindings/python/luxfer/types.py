@@ -1184,6 +1184,10 @@ class Candidate:
     """Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan
     that it covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts
     too."""
+    name: str
+    """Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates."""
+    reason: str
+    """The reason for the score, in English and with its figures."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -2003,6 +2007,11 @@ class Warning:
     """The limit that the figure has passed."""
     place: tuple[float, float]
     """The place in the photo, x and y in pixels; 0 without one."""
+    message: str
+    """The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
+    luxfer_warnings."""
+    advice: str
+    """The remedy."""
 
 
 class PlanParams(TypedDict, total=False):
