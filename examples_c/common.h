@@ -45,10 +45,9 @@ static inline void print_warnings(luxfer_warnings *warnings) {
     static const char *stages[] = {"view", "features", "plane", "lights", "unwarp", "emission", "relight", "render"};
     luxfer_warning warning;
     uint32_t i, count = 0;
-    warning.struct_size = sizeof warning;
     check(luxfer_warnings_count(warnings, &count), "warnings");
     for (i = 0; i < count; i++) {
-        check(luxfer_warnings_get(warnings, i, &warning), "warning");
+        check(luxfer_warnings_get(warnings, i, &warning, sizeof warning), "warning");
         fprintf(stderr, "%s: %s\n    %s", stages[warning.stage], warning.message, warning.advice);
         if (warning.has_place) fprintf(stderr, " (at %.0f, %.0f)", warning.place[0], warning.place[1]);
         fprintf(stderr, " [%s]\n", luxfer_warning_name(warning.code));

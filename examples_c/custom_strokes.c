@@ -14,10 +14,9 @@ static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last
     luxfer_transfer_report report;
     luxfer_image *confidence = NULL;
     luxfer_job *job = NULL;
-    report.struct_size = sizeof report;
     check(luxfer_transfer_start(transfer, first, last, NULL, &job), "segmentation");
     finish(job, "segmenting");
-    check(luxfer_transfer_get_report(transfer, &report), "report");
+    check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
     if (last == LUXFER_STAGE_PLANE) printf("ceiling: %.1f %% wrong on strokes held out\n", 100 * report.plane_error);
     else printf("lamps:   %.1f %% wrong on strokes held out\n", 100 * report.lights_error);
     check(luxfer_transfer_get_image(transfer, which, &confidence), "confidence");

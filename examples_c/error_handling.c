@@ -62,8 +62,7 @@ int main(void) {
            LUXFER_INVALID_ARGUMENT);
 
     if (luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
-    surface.struct_size = sizeof surface;
-    report("A name with a slip in it:", luxfer_scene_find_surface(scene, "Ceilling", &surface), LUXFER_NOT_FOUND);
+    report("A name with a slip in it:", luxfer_scene_find_surface(scene, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
     luxfer_material_params_init(&material, sizeof material);
     material.roughness = NAN;
     report("A number that is none:", luxfer_scene_add_material(scene, &material, NULL), LUXFER_INVALID_ARGUMENT);

@@ -126,8 +126,7 @@ static void add_headlight(luxfer_scene *scene, const luxfer_camera_params *camer
     luxfer_scene_counts counts;
     luxfer_light_params light;
     int i;
-    counts.struct_size = sizeof counts;
-    check(luxfer_scene_get_counts(scene, &counts), "scene");
+    check(luxfer_scene_get_counts(scene, &counts, sizeof counts), "scene");
     if (counts.lights > 0) return;
     check(luxfer_light_params_init(&light, sizeof light), "light");
     for (i = 0; i < 3; i++) {
@@ -168,11 +167,10 @@ static void write_number(FILE *file, double value) {
 static void write_warnings(FILE *file, const char *const *stages, luxfer_warnings *warnings) {
     luxfer_warning w;
     uint32_t i, count = 0;
-    w.struct_size = sizeof w;
     check(luxfer_warnings_count(warnings, &count), "warnings");
     fprintf(file, "  \"warnings\": [");
     for (i = 0; i < count; i++) {
-        check(luxfer_warnings_get(warnings, i, &w), "warning");
+        check(luxfer_warnings_get(warnings, i, &w, sizeof w), "warning");
         fprintf(file, "%s\n    {\"stage\": \"%s\", \"code\": \"%s\", \"severity\": ", i ? "," : "", stages[w.stage],
                 luxfer_warning_name(w.code));
         write_number(file, w.severity);
@@ -228,8 +226,6 @@ int main(int argc, char **argv) {
     luxfer_warnings *warnings = NULL;
     luxfer_job *job = NULL;
     luxfer_camera_params camera;
-    report.struct_size = sizeof report;
-    solution.struct_size = sizeof solution;
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_transfer_create(context, &transfer), "transfer");
     if (o.photo) load_input(&o, transfer, &photo, &scene);
@@ -252,8 +248,8 @@ int main(int argc, char **argv) {
     check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_EMISSION, &emission), "emission");
     check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_LIT, &lit_scene), "lit scene");
     check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_WHITE, &white_scene), "white scene");
-    check(luxfer_transfer_get_report(transfer, &report), "report");
-    check(luxfer_transfer_get_solution(transfer, &solution), "solution");
+    check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
+    check(luxfer_transfer_get_solution(transfer, &solution, sizeof solution), "solution");
     check(luxfer_image_save(lit, path(&o, "render.exr"), 1), "render.exr");
     check(luxfer_image_save(lit, path(&o, "render.png"), 1 / params.white_luminance), "render.png");
     check(luxfer_image_save(emission, path(&o, "emission.exr"), 1), "emission.exr");
@@ -265,7 +261,7 @@ int main(int argc, char **argv) {
     /* For comparison: the scene before the transfer, with its own lights or a light at the camera, and in white
      * light. */
     check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
-    check(luxfer_scene_get_camera(lit_scene, 0, &camera), "camera");
+    check(luxfer_scene_get_camera(lit_scene, 0, &camera, sizeof camera), "camera");
     add_headlight(scene, &camera);
     before = preview(&o, scene, &camera, 8, "rendering it before");
     white = preview(&o, white_scene, &camera, o.samples / 2 + 1, "rendering it in white");

@@ -29,7 +29,6 @@ int main(void) {
     luxfer_image *image = NULL;
     luxfer_job *job = NULL;
     int x, y;
-    report.struct_size = sizeof report;
 
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
@@ -50,7 +49,7 @@ int main(void) {
     check(luxfer_illuminance_start_grid(illuminance, &grid, &params, &job), "grid");
     finish(job, "measuring");
 
-    check(luxfer_illuminance_get_report(illuminance, &report), "report");
+    check(luxfer_illuminance_get_report(illuminance, &report, sizeof report), "report");
     /* --8<-- [end:grid] */
     printf("mean %.0f lux (+- %.1f, 95 %%), least %.0f, largest %.0f, uniformity %.2f\n", report.mean, 1.96 * report.mean_error,
            report.minimum, report.maximum, report.minimum / report.mean);

@@ -16,10 +16,9 @@ typedef struct watch {
 static int32_t on_progress(void *user, double fraction) {
     watch *w = user;
     luxfer_render_report report;
-    report.struct_size = sizeof report;
     w->calls++;
     /* Results improve while the job runs. The error is unknown before the second path of each pixel. */
-    if (w->calls % 10 == 0 && luxfer_render_get_report(w->render, &report) == LUXFER_OK && report.samples > 1)
+    if (w->calls % 10 == 0 && luxfer_render_get_report(w->render, &report, sizeof report) == LUXFER_OK && report.samples > 1)
         printf("%7.3f %%: %u paths per pixel, standard error %.0f %%\n", 100 * fraction, report.samples, 100 * report.error);
     /* A value other than 0 cancels. */
     return w->calls >= 50;
@@ -37,7 +36,6 @@ int main(void) {
     double fraction = 0;
     int frames = 0;
     watch w = {NULL, 0};
-    report.struct_size = sizeof report;
 
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
@@ -60,7 +58,7 @@ int main(void) {
 
     /* The passes before the cancel give a picture, with its error. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
-    check(luxfer_render_get_report(render, &report), "report");
+    check(luxfer_render_get_report(render, &report, sizeof report), "report");
     check(luxfer_image_save(picture, "progress_and_cancel.png", 1 / 450.0f), "picture");
     printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
     luxfer_release(picture);

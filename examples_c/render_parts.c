@@ -33,8 +33,7 @@ static luxfer_render *describe(luxfer_render_params *params) {
 static void render_part(luxfer_render *render, const luxfer_render_params *params, uint32_t index, const char *file) {
     luxfer_render_part part;
     luxfer_job *job = NULL;
-    part.struct_size = sizeof part;
-    check(luxfer_render_split(render, params, COLUMNS, ROWS, RANGES, index, &part), "part");
+    check(luxfer_render_split(render, params, COLUMNS, ROWS, RANGES, index, &part, sizeof part), "part");
     check(luxfer_render_start_part(render, params, &part, file, &job), file);
     finish(job, file);
 }

@@ -44,10 +44,9 @@ static void show_normals(luxfer_features *features, const char *title, sheet *s,
     luxfer_job *job = NULL;
     float *pixels;
     size_t k;
-    report.struct_size = sizeof report;
     check(luxfer_features_start(features, NULL, &job), title);
     finish(job, title);
-    check(luxfer_features_get_report(features, &report), title);
+    check(luxfer_features_get_report(features, &report, sizeof report), title);
     printf("%-14s trust in the depth %.2f\n", title, report.depth_confidence);
     check(luxfer_features_get_image(features, LUXFER_FEATURES_CHANNELS, &channels), title);
     check(luxfer_image_view_init(&view, sizeof view), title);

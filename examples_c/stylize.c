@@ -111,14 +111,13 @@ int main(int argc, char **argv) {
         luxfer_stylize_report report;
         luxfer_image *artwork = NULL;
         luxfer_job *job = NULL;
-        report.struct_size = sizeof report;
         /* --8<-- [start:paint] */
         check(luxfer_demo_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
         check(luxfer_stylize_set_artwork(stylize, artwork), names[i]);
         check(luxfer_stylize_start(stylize, NULL, &job), names[i]);
         finish(job, names[i]);
         check(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_PICTURE, &image), names[i]);
-        check(luxfer_stylize_get_report(stylize, &report), names[i]);
+        check(luxfer_stylize_get_report(stylize, &report, sizeof report), names[i]);
         /* --8<-- [end:paint] */
         printf("%-8s guide error %.3f, %.0f %% of the artwork used\n", names[i], report.guide_error, 100 * report.used);
         panels_add(&s, 1 + i, 0, artwork, 1);

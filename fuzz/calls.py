@@ -99,7 +99,7 @@ class Program:
 
     def record(self, name: str, fields: dict, base: str) -> bytes:
         members = {f.name: (i, f) for i, f in enumerate(script.STRUCTS[name])}
-        out = bytes([["null", "raw", "init", "size"].index(base), len(fields)])
+        out = bytes([["null", "raw", "init"].index(base), len(fields)])
         for key, value in fields.items():
             at, member = members[key]
             out += bytes([at]) + self.argument(name, member, value)

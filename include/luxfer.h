@@ -126,6 +126,10 @@ const char *luxfer_status_name(luxfer_status status);
  * context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
  * (LUXFER_INVALID_ARGUMENT).
  *
+ * Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
+ * reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was built
+ * with an older header works with a newer library: fields that it does not know keep their defaults.
+ *
  * Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
  * handle in most cases, but not if its memory has been reused.
  *
@@ -374,9 +378,9 @@ luxfer_status luxfer_image_read(luxfer_image *image,
  */
 typedef int32_t luxfer_file_colour;
 
-/** Metadata of the file of a loaded photo. Set struct_size before the call. */
+/** Metadata of the file of a loaded photo. */
 typedef struct luxfer_photo_metadata {
-    /** sizeof(luxfer_photo_metadata), set by the caller. */
+    /** sizeof(luxfer_photo_metadata), set by the function that fills the struct. */
     uint32_t struct_size;
     /**
      * EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied it: 2
@@ -439,10 +443,11 @@ typedef struct luxfer_photo_metadata {
 
 /**
  * Gets the metadata of the file that an image was loaded from. All values are unknown if the image was not loaded
- * from a file, or if the file has no metadata. Any thread.
+ * from a file, or if the file has no metadata. size is sizeof *metadata. Any thread.
  */
 luxfer_status luxfer_image_get_metadata(luxfer_image *image,
-                                        luxfer_photo_metadata *metadata);
+                                        luxfer_photo_metadata *metadata,
+                                        size_t size);
 
 /* ====================================================================================================================
  * Job
@@ -518,9 +523,9 @@ typedef struct luxfer_scene luxfer_scene;
  */
 typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
 
-/** Numbers of the objects in a scene. Set struct_size before the call. */
+/** Numbers of the objects in a scene. */
 typedef struct luxfer_scene_counts {
-    /** sizeof(luxfer_scene_counts), set by the caller. */
+    /** sizeof(luxfer_scene_counts), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below. */
     uint32_t meshes;
@@ -536,9 +541,9 @@ typedef struct luxfer_scene_counts {
     uint64_t triangles;
 } luxfer_scene_counts;
 
-/** A planar surface of a scene. Set struct_size before the call. */
+/** A planar surface of a scene. */
 typedef struct luxfer_surface {
-    /** sizeof(luxfer_surface), set by the caller. */
+    /** sizeof(luxfer_surface), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of triangles. */
     uint32_t triangles;
@@ -578,8 +583,10 @@ luxfer_status luxfer_scene_export(luxfer_scene *scene,
  */
 luxfer_status luxfer_scene_export_memory(luxfer_scene *scene, luxfer_write_fn write, void *user);
 
-/** Gets the numbers of the objects in a scene. Any thread. */
-luxfer_status luxfer_scene_get_counts(luxfer_scene *scene, luxfer_scene_counts *counts);
+/** Gets the numbers of the objects in a scene. size is sizeof *counts. Any thread. */
+luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
+                                      luxfer_scene_counts *counts,
+                                      size_t size);
 
 /**
  * Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
@@ -607,14 +614,15 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
                                         float blue);
 
 /**
- * Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. Any
- * thread.
+ * Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. size is
+ * sizeof *found. Any thread.
  * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
  * there is no planar surface.
  */
 luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
                                         const char *name,
-                                        luxfer_surface *found);
+                                        luxfer_surface *found,
+                                        size_t size);
 
 /**
  * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
@@ -635,7 +643,7 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene files
  *
- * Loads glTF 2.0 files. luxfer_scene_get_warnings and luxfer_scene_requirements_text name the features of a file that
+ * Loads glTF 2.0 files. luxfer_get_warnings and luxfer_scene_requirements_text name the features of a file that
  * are not rendered.
  * ==================================================================================================================== */
 
@@ -736,9 +744,9 @@ typedef int32_t luxfer_wrap;
 /** Purpose of a material's texture: a LUXFER_TEXTURE_ value. */
 typedef int32_t luxfer_texture_role;
 
-/** The texture that a material uses for one purpose. Set struct_size before the call. */
+/** The texture that a material uses for one purpose. */
 typedef struct luxfer_texture_use {
-    /** sizeof(luxfer_texture_use), set by the caller. */
+    /** sizeof(luxfer_texture_use), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0. */
     uint32_t texture;
@@ -806,12 +814,14 @@ luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
                                         const luxfer_material_params *params);
 
 /**
- * Reads a material; set params->struct_size before the call. params->name becomes NULL. Any thread.
+ * Reads a material; set params->struct_size before the call. params->name becomes NULL. size is sizeof *params. Any
+ * thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
 luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
                                         uint32_t index,
-                                        luxfer_material_params *params);
+                                        luxfer_material_params *params,
+                                        size_t size);
 
 /**
  * Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth is alpha; wrap_u and wrap_v are
@@ -840,13 +850,15 @@ luxfer_status luxfer_scene_set_material_texture(luxfer_scene *scene,
                                                 const float *transform);
 
 /**
- * Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread.
+ * Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. size is sizeof *texture_use.
+ * Any thread.
  * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
  */
 luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
                                                 uint32_t material_index,
                                                 luxfer_texture_role role,
-                                                luxfer_texture_use *texture_use);
+                                                luxfer_texture_use *texture_use,
+                                                size_t size);
 
 /**
  * Gets a texture as an image in linear values. The caller releases *image. Any thread.
@@ -955,12 +967,13 @@ luxfer_status luxfer_scene_set_camera(luxfer_scene *scene,
                                       const luxfer_camera_params *params);
 
 /**
- * Reads a camera; set params->struct_size before the call. Any thread.
+ * Reads a camera; set params->struct_size before the call. size is sizeof *params. Any thread.
  * LUXFER_NOT_FOUND if there is no such camera.
  */
 luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
                                       uint32_t index,
-                                      luxfer_camera_params *params);
+                                      luxfer_camera_params *params,
+                                      size_t size);
 
 /* ====================================================================================================================
  * Luminous intensity distributions
@@ -975,9 +988,9 @@ typedef struct luxfer_distribution luxfer_distribution;
 /** A file format of distributions: a LUXFER_DISTRIBUTION_ value. */
 typedef int32_t luxfer_distribution_format;
 
-/** Summary of a distribution. Set struct_size before the call. */
+/** Summary of a distribution. */
 typedef struct luxfer_distribution_report {
-    /** sizeof(luxfer_distribution_report), set by the caller. */
+    /** sizeof(luxfer_distribution_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of C planes. */
     uint32_t planes;
@@ -1028,9 +1041,10 @@ luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
 luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
                                        const char *path);
 
-/** Gets the summary of a distribution. Any thread. */
+/** Gets the summary of a distribution. size is sizeof *report. Any thread. */
 luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
-                                             luxfer_distribution_report *report);
+                                             luxfer_distribution_report *report,
+                                             size_t size);
 
 /**
  * Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
@@ -1233,9 +1247,9 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 /** The environment emits. */
 #define LUXFER_LIGHTS_ENVIRONMENT 32
 
-/** Features that a scene requires of the renderer. Set struct_size before the call. */
+/** Features that a scene requires of the renderer. */
 typedef struct luxfer_requirements {
-    /** sizeof(luxfer_requirements), set by the caller. */
+    /** sizeof(luxfer_requirements), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Kinds of scattering that can occur: LUXFER_SCATTERING_ flags. */
     uint32_t scattering;
@@ -1262,12 +1276,14 @@ typedef struct luxfer_requirements {
 
 /**
  * Gets the features that a scene requires of the renderer; error, in [0, 1), is the share of light for the field
- * bounces. The first call after a change of the scene prepares it for tracing. Any thread.
+ * bounces. The first call after a change of the scene prepares it for tracing. size is sizeof *requirements. Any
+ * thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
  */
 luxfer_status luxfer_scene_requirements(luxfer_scene *scene,
                                         float error,
-                                        luxfer_requirements *requirements);
+                                        luxfer_requirements *requirements,
+                                        size_t size);
 
 /**
  * Describes in words what the renderer skips in a scene, and each extension and feature of its file that is not
@@ -1288,9 +1304,9 @@ luxfer_status luxfer_scene_requirements_text(luxfer_scene *scene,
  * cameras, a host can copy a whole scene.
  * ==================================================================================================================== */
 
-/** A mesh of a scene. Set struct_size before the call. */
+/** A mesh of a scene. */
 typedef struct luxfer_mesh_info {
-    /** sizeof(luxfer_mesh_info), set by the caller. */
+    /** sizeof(luxfer_mesh_info), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Index of the mesh's material. */
     uint32_t material;
@@ -1309,10 +1325,13 @@ typedef struct luxfer_mesh_info {
 } luxfer_mesh_info;
 
 /**
- * Gets the sizes and attributes of a mesh. Any thread.
+ * Gets the sizes and attributes of a mesh. size is sizeof *info. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh.
  */
-luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene, uint32_t index, luxfer_mesh_info *info);
+luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene,
+                                    uint32_t index,
+                                    luxfer_mesh_info *info,
+                                    size_t size);
 
 /**
  * Copies the name of a mesh into buffer, as luxfer_context_last_error copies a message. Any thread.
@@ -1375,9 +1394,9 @@ typedef struct luxfer_candidates luxfer_candidates;
 /** What a candidate is: a LUXFER_CANDIDATE_ value. */
 typedef int32_t luxfer_candidate_kind;
 
-/** An object or a material of a scene. Set struct_size before the call. */
+/** An object or a material of a scene. */
 typedef struct luxfer_candidate {
-    /** sizeof(luxfer_candidate), set by the caller. */
+    /** sizeof(luxfer_candidate), set by the function that fills the struct. */
     uint32_t struct_size;
     /** LUXFER_CANDIDATE_ value. */
     luxfer_candidate_kind kind;
@@ -1428,12 +1447,13 @@ luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,
 luxfer_status luxfer_candidates_count(luxfer_candidates *candidates, uint32_t *count);
 
 /**
- * Gets a candidate of a list. Any thread.
+ * Gets a candidate of a list. size is sizeof *candidate. Any thread.
  * LUXFER_NOT_FOUND if there is no such candidate.
  */
 luxfer_status luxfer_candidates_get(luxfer_candidates *candidates,
                                     uint32_t index,
-                                    luxfer_candidate *candidate);
+                                    luxfer_candidate *candidate,
+                                    size_t size);
 
 /* ====================================================================================================================
  * Plane geometry
@@ -1535,9 +1555,9 @@ typedef int32_t luxfer_rectify_image;
 /** Where a focal length came from: a LUXFER_FOCAL_ value. */
 typedef int32_t luxfer_focal_source;
 
-/** The camera found from the lines of a photo, and the unwarping of the plane. Set struct_size before the call. */
+/** The camera found from the lines of a photo, and the unwarping of the plane. */
 typedef struct luxfer_rectify_report {
-    /** sizeof(luxfer_rectify_report), set by the caller. */
+    /** sizeof(luxfer_rectify_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of line segments found. */
     uint32_t segments;
@@ -1676,10 +1696,12 @@ luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
                                   luxfer_image **warped);
 
 /**
- * Gets the results and their errors. Any thread.
+ * Gets the results and their errors. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
-luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
+luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
+                                        luxfer_rectify_report *report,
+                                        size_t size);
 
 /* ====================================================================================================================
  * Strokes
@@ -1783,9 +1805,9 @@ typedef int32_t luxfer_features_image;
 /** Source of the depth: a LUXFER_DEPTH_FROM_ value. */
 typedef int32_t luxfer_depth_source;
 
-/** Quality of the features. Set struct_size before the call. */
+/** Quality of the features. */
 typedef struct luxfer_features_report {
-    /** sizeof(luxfer_features_report), set by the caller. */
+    /** sizeof(luxfer_features_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** LUXFER_DEPTH_FROM_ value. */
     luxfer_depth_source depth_source;
@@ -1913,11 +1935,12 @@ luxfer_status luxfer_features_get_image(luxfer_features *features,
                                         luxfer_image **image);
 
 /**
- * Gets the quality of the features. Any thread.
+ * Gets the quality of the features. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_features_get_report(luxfer_features *features,
-                                         luxfer_features_report *report);
+                                         luxfer_features_report *report,
+                                         size_t size);
 
 /* ====================================================================================================================
  * Segmentation
@@ -1971,9 +1994,9 @@ typedef struct luxfer_segment_params {
 /** An image of a segmentation: a LUXFER_SEGMENT_ value. */
 typedef int32_t luxfer_segment_image;
 
-/** Quality of a segmentation. Set struct_size before the call. */
+/** Quality of a segmentation. */
 typedef struct luxfer_segment_report {
-    /** sizeof(luxfer_segment_report), set by the caller. */
+    /** sizeof(luxfer_segment_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Channels of the features that were used, bit i for channel i. */
     uint32_t channels;
@@ -2062,10 +2085,12 @@ luxfer_status luxfer_segment_get_image(luxfer_segment *segment,
                                        luxfer_image **image);
 
 /**
- * Gets the quality of the segmentation. Any thread.
+ * Gets the quality of the segmentation. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
-luxfer_status luxfer_segment_get_report(luxfer_segment *segment, luxfer_segment_report *report);
+luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
+                                        luxfer_segment_report *report,
+                                        size_t size);
 
 /* ====================================================================================================================
  * Emission
@@ -2153,9 +2178,9 @@ typedef struct luxfer_emission_params {
 /** An image of the emission: a LUXFER_EMISSION_ value. */
 typedef int32_t luxfer_emission_image;
 
-/** Quality of the texture. Set struct_size before the call. */
+/** Quality of the texture. */
 typedef struct luxfer_emission_report {
-    /** sizeof(luxfer_emission_report), set by the caller. */
+    /** sizeof(luxfer_emission_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of luminaires; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
@@ -2197,9 +2222,9 @@ typedef struct luxfer_emission_report {
     double margin;
 } luxfer_emission_report;
 
-/** A lamp of the texture. Set struct_size before the call. */
+/** A lamp of the texture. */
 typedef struct luxfer_luminaire {
-    /** sizeof(luxfer_luminaire), set by the caller. */
+    /** sizeof(luxfer_luminaire), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of corners of the outline. */
     uint32_t corners;
@@ -2305,21 +2330,23 @@ luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_image **image);
 
 /**
- * Gets the quality of the texture, or the contents of a plan. Any thread.
+ * Gets the quality of the texture, or the contents of a plan. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
-                                         luxfer_emission_report *report);
+                                         luxfer_emission_report *report,
+                                         size_t size);
 
 /**
  * Describes a luminaire of the texture. A plan has no texels yet, so its luminaires are described as the exemplar
  * shows them, cut at the edges of the texture; only lights that cross their whole exemplar are described as in the
- * texture. Any thread.
+ * texture. size is sizeof *luminaire. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
                                             uint32_t index,
-                                            luxfer_luminaire *luminaire);
+                                            luxfer_luminaire *luminaire,
+                                            size_t size);
 
 /**
  * Gets a corner of a luminaire's outline, in texels. Any thread.
@@ -2450,9 +2477,9 @@ typedef struct luxfer_render_params {
 /** An image of a rendering: a LUXFER_RENDER_ value. */
 typedef int32_t luxfer_render_image;
 
-/** Quality of a rendering. Set struct_size before the call. */
+/** Quality of a rendering. */
 typedef struct luxfer_render_report {
-    /** sizeof(luxfer_render_report), set by the caller. */
+    /** sizeof(luxfer_render_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Mean number of paths per pixel so far. */
     uint32_t samples;
@@ -2540,10 +2567,12 @@ luxfer_status luxfer_render_get_image(luxfer_render *render,
                                       luxfer_image **image);
 
 /**
- * Gets the current quality of the rendering. Any thread.
+ * Gets the current quality of the rendering. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before the first pass of a job.
  */
-luxfer_status luxfer_render_get_report(luxfer_render *render, luxfer_render_report *report);
+luxfer_status luxfer_render_get_report(luxfer_render *render,
+                                       luxfer_render_report *report,
+                                       size_t size);
 
 /* ====================================================================================================================
  * Outputs of a rendering
@@ -2727,10 +2756,10 @@ luxfer_status luxfer_render_part_init(luxfer_render_part *part,
                                       size_t size);
 
 /**
- * Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of about
- * equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all rectangles
- * of one range come before the next range. params may be NULL for the defaults; set part->struct_size before the call.
- * Any thread.
+ * Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of
+ * about equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all
+ * rectangles of one range come before the next range. params may be NULL for the defaults; set part->struct_size
+ * before the call. size is sizeof *part. Any thread.
  * LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
  * would be empty.
  */
@@ -2740,7 +2769,8 @@ luxfer_status luxfer_render_split(luxfer_render *render,
                                   uint32_t rows,
                                   uint32_t ranges,
                                   uint32_t index,
-                                  luxfer_render_part *part);
+                                  luxfer_render_part *part,
+                                  size_t size);
 
 /**
  * Starts a job that renders a part, or the whole if part is NULL, and writes it into a file; path is UTF-8, and an
@@ -2831,9 +2861,9 @@ typedef struct luxfer_illuminance_grid {
 /** An image of the calculation: a LUXFER_ILLUMINANCE_ value. */
 typedef int32_t luxfer_illuminance_image;
 
-/** Summary of the illuminance, in lux. Set struct_size before the call. */
+/** Summary of the illuminance, in lux. */
 typedef struct luxfer_illuminance_report {
-    /** sizeof(luxfer_illuminance_report), set by the caller. */
+    /** sizeof(luxfer_illuminance_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of points; on a mesh, the texels that the surface covers. */
     uint32_t points;
@@ -2903,11 +2933,12 @@ luxfer_status luxfer_illuminance_get_image(luxfer_illuminance *illuminance,
                                            luxfer_image **image);
 
 /**
- * Gets the summary of the illuminance. Any thread.
+ * Gets the summary of the illuminance. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
-                                            luxfer_illuminance_report *report);
+                                            luxfer_illuminance_report *report,
+                                            size_t size);
 
 /* ====================================================================================================================
  * Relighting
@@ -2952,9 +2983,9 @@ typedef int32_t luxfer_constraint;
 /** Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value. */
 typedef int32_t luxfer_outcome;
 
-/** The solution and its confidence. Set struct_size before the call. */
+/** The solution and its confidence. */
 typedef struct luxfer_relight_report {
-    /** sizeof(luxfer_relight_report), set by the caller. */
+    /** sizeof(luxfer_relight_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of traced paths. */
     uint32_t paths;
@@ -3066,10 +3097,12 @@ luxfer_status luxfer_relight_start(luxfer_relight *relight,
                                    luxfer_job **job);
 
 /**
- * Gets the solution and its confidence. Any thread.
+ * Gets the solution and its confidence. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
-luxfer_status luxfer_relight_get_report(luxfer_relight *relight, luxfer_relight_report *report);
+luxfer_status luxfer_relight_get_report(luxfer_relight *relight,
+                                        luxfer_relight_report *report,
+                                        size_t size);
 
 /* ====================================================================================================================
  * Lamps
@@ -3244,9 +3277,9 @@ luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
  * The powers found, the light that each goal receives, and the contribution of each lamp to each goal.
  * ==================================================================================================================== */
 
-/** Summary of the result. Set struct_size before the call. */
+/** Summary of the result. */
 typedef struct luxfer_lamps_report {
-    /** sizeof(luxfer_lamps_report), set by the caller. */
+    /** sizeof(luxfer_lamps_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of lamps. */
     uint32_t lamps;
@@ -3260,9 +3293,9 @@ typedef struct luxfer_lamps_report {
     uint32_t met;
 } luxfer_lamps_report;
 
-/** One lamp. Set struct_size before the call. */
+/** One lamp. */
 typedef struct luxfer_lamp {
-    /** sizeof(luxfer_lamp), set by the caller. */
+    /** sizeof(luxfer_lamp), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Index of its group. */
     uint32_t group;
@@ -3274,9 +3307,9 @@ typedef struct luxfer_lamp {
     double half_width[3];
 } luxfer_lamp;
 
-/** The light that a goal receives. Set struct_size before the call. */
+/** The light that a goal receives. */
 typedef struct luxfer_lamps_goal {
-    /** sizeof(luxfer_lamps_goal), set by the caller. */
+    /** sizeof(luxfer_lamps_goal), set by the function that fills the struct. */
     uint32_t struct_size;
     /** LUXFER_OUTCOME_ value of each channel. */
     luxfer_outcome outcome[3];
@@ -3301,9 +3334,9 @@ typedef struct luxfer_lamps_goal {
     double background_lux;
 } luxfer_lamps_goal;
 
-/** The light that one goal receives from one lamp. Set struct_size before the call. */
+/** The light that one goal receives from one lamp. */
 typedef struct luxfer_lamps_response {
-    /** sizeof(luxfer_lamps_response), set by the caller. */
+    /** sizeof(luxfer_lamps_response), set by the function that fills the struct. */
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
@@ -3314,31 +3347,39 @@ typedef struct luxfer_lamps_response {
 } luxfer_lamps_response;
 
 /**
- * Gets the summary of the result. Any thread.
+ * Gets the summary of the result. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
-luxfer_status luxfer_lamps_get_report(luxfer_lamps *lamps, luxfer_lamps_report *report);
+luxfer_status luxfer_lamps_get_report(luxfer_lamps *lamps, luxfer_lamps_report *report, size_t size);
 
 /**
- * Gets the power of a lamp. Any thread.
+ * Gets the power of a lamp. size is sizeof *lamp. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
  */
-luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps, uint32_t index, luxfer_lamp *lamp);
+luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps,
+                                    uint32_t index,
+                                    luxfer_lamp *lamp,
+                                    size_t size);
 
 /**
- * Gets the light that a goal receives. Any thread.
+ * Gets the light that a goal receives. size is sizeof *goal. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
  */
-luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps, uint32_t index, luxfer_lamps_goal *goal);
+luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps,
+                                    uint32_t index,
+                                    luxfer_lamps_goal *goal,
+                                    size_t size);
 
 /**
- * Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. Any thread.
+ * Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. size is sizeof *response.
+ * Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
  */
 luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
                                         uint32_t goal,
                                         uint32_t lamp,
-                                        luxfer_lamps_response *response);
+                                        luxfer_lamps_response *response,
+                                        size_t size);
 
 /**
  * Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes; the text
@@ -3394,9 +3435,9 @@ typedef struct luxfer_importance_params {
     uint64_t seed;
 } luxfer_importance_params;
 
-/** The light that the target receives from a texture. Set struct_size before the call. */
+/** The light that the target receives from a texture. */
 typedef struct luxfer_importance_report {
-    /** sizeof(luxfer_importance_report), set by the caller. */
+    /** sizeof(luxfer_importance_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of paths of the map. */
     uint32_t paths;
@@ -3450,18 +3491,20 @@ luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
 
 /**
  * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps the
- * surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the identity.
- * Takes a few milliseconds. Any thread.
+ * surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the
+ * identity. Takes a few milliseconds. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
  */
 luxfer_status luxfer_importance_respond(luxfer_importance *importance,
                                         luxfer_image *texture,
                                         const double *placement,
-                                        luxfer_importance_report *report);
+                                        luxfer_importance_report *report,
+                                        size_t size);
 
 /**
- * Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each finite
- * and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond. Any thread.
+ * Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each
+ * finite and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond.
+ * size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
  */
 luxfer_status luxfer_importance_solve(luxfer_importance *importance,
@@ -3470,7 +3513,8 @@ luxfer_status luxfer_importance_solve(luxfer_importance *importance,
                                       float red,
                                       float green,
                                       float blue,
-                                      luxfer_relight_report *report);
+                                      luxfer_relight_report *report,
+                                      size_t size);
 
 /* ====================================================================================================================
  * Placement
@@ -3514,9 +3558,9 @@ typedef struct luxfer_placement_params {
     uint64_t seed;
 } luxfer_placement_params;
 
-/** The best placement, and the light that the target then receives. Set struct_size before the call. */
+/** The best placement, and the light that the target then receives. */
 typedef struct luxfer_placement {
-    /** sizeof(luxfer_placement), set by the caller. */
+    /** sizeof(luxfer_placement), set by the function that fills the struct. */
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
@@ -3566,12 +3610,13 @@ luxfer_status luxfer_importance_start_placement(luxfer_importance *importance,
                                                 luxfer_job **job);
 
 /**
- * Gets the placement that was found. Any thread.
+ * Gets the placement that was found. size is sizeof *placement. Any thread.
  * LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
  * started.
  */
 luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
-                                              luxfer_placement *placement);
+                                              luxfer_placement *placement,
+                                              size_t size);
 
 /* ====================================================================================================================
  * Photometry
@@ -3580,9 +3625,9 @@ luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
  * These calls return when their work is done.
  * ==================================================================================================================== */
 
-/** The glare of a view. Set struct_size before the call. */
+/** The glare of a view. */
 typedef struct luxfer_glare_report {
-    /** sizeof(luxfer_glare_report), set by the caller. */
+    /** sizeof(luxfer_glare_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of glare sources. */
     uint32_t sources;
@@ -3624,16 +3669,17 @@ luxfer_status luxfer_colour_of_temperature(luxfer_context *context,
                                            double *rgb);
 
 /**
- * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with the
- * vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
+ * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with
+ * the vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
  * threshold; 0: five times the mean luminance. A wider angle of view gives a better estimate of the background
- * luminance. Any thread.
+ * luminance. size is sizeof *report. Any thread.
  * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
  */
 luxfer_status luxfer_image_glare(luxfer_image *image,
                                  double fov_y,
                                  double threshold,
-                                 luxfer_glare_report *report);
+                                 luxfer_glare_report *report,
+                                 size_t size);
 
 /* ====================================================================================================================
  * False colour
@@ -3702,9 +3748,9 @@ luxfer_status luxfer_image_false_colour(luxfer_image *image,
  * electric power, and the requirements of a standard. These calls return when their work is done.
  * ==================================================================================================================== */
 
-/** A colour mixed from primaries. Set struct_size before the call. */
+/** A colour mixed from primaries. */
 typedef struct luxfer_mixture {
-    /** sizeof(luxfer_mixture), set by the caller. */
+    /** sizeof(luxfer_mixture), set by the function that fills the struct. */
     uint32_t struct_size;
     /**
      * 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
@@ -3719,9 +3765,9 @@ typedef struct luxfer_mixture {
     double delta_e;
 } luxfer_mixture;
 
-/** The blackbody light that fits a target best. Set struct_size before the call. */
+/** The blackbody light that fits a target best. */
 typedef struct luxfer_temperature_fit {
-    /** sizeof(luxfer_temperature_fit), set by the caller. */
+    /** sizeof(luxfer_temperature_fit), set by the function that fills the struct. */
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
@@ -3737,10 +3783,10 @@ typedef struct luxfer_temperature_fit {
 
 /**
  * Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the standard itself
- * is binding. Set struct_size before the call.
+ * is binding.
  */
 typedef struct luxfer_preset {
-    /** sizeof(luxfer_preset), set by the caller. */
+    /** sizeof(luxfer_preset), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Year of the edition of the standard. */
     uint32_t edition;
@@ -3759,10 +3805,10 @@ typedef struct luxfer_preset {
 } luxfer_preset;
 
 /**
- * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
- * linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
- * drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the colour, the one
- * with the smallest sum of squared drive levels is returned. Any thread.
+ * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds
+ * the linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1,
+ * 64]. drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the
+ * colour, the one with the smallest sum of squared drive levels is returned. size is sizeof *mixture. Any thread.
  * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
@@ -3771,28 +3817,34 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    double max_drive,
                                    const double *colour,
                                    double *drives,
-                                   luxfer_mixture *mixture);
+                                   luxfer_mixture *mixture,
+                                   size_t size);
 
 /**
  * Finds the temperature and luminance of the blackbody light that brings a target nearest to a mean radiance. Each
  * array holds three channels: response is the response to a white emission, from luxfer_relight_get_report or
- * luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. Any thread.
+ * luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. size is
+ * sizeof *fit. Any thread.
  * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,
                                      const double *response,
                                      const double *background,
                                      const double *target,
-                                     luxfer_temperature_fit *fit);
+                                     luxfer_temperature_fit *fit,
+                                     size_t size);
 
 /** Gets the number of presets. Any thread. */
 luxfer_status luxfer_preset_count(luxfer_context *context, uint32_t *count);
 
 /**
- * Gets the requirements of a preset. Any thread.
+ * Gets the requirements of a preset. size is sizeof *preset. Any thread.
  * LUXFER_NOT_FOUND if there is no such preset.
  */
-luxfer_status luxfer_preset_get(luxfer_context *context, uint32_t index, luxfer_preset *preset);
+luxfer_status luxfer_preset_get(luxfer_context *context,
+                                uint32_t index,
+                                luxfer_preset *preset,
+                                size_t size);
 
 /**
  * Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
@@ -4093,9 +4145,9 @@ typedef int32_t luxfer_transfer_image;
 /** A scene of the transfer: a LUXFER_SCENE_ value. */
 typedef int32_t luxfer_transfer_scene;
 
-/** Time and error of each stage. Set struct_size before the call. The error of a stage without a result is NaN. */
+/** Time and error of each stage. The error of a stage without a result is NaN. */
 typedef struct luxfer_transfer_report {
-    /** sizeof(luxfer_transfer_report), set by the caller. */
+    /** sizeof(luxfer_transfer_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /**
      * Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has
@@ -4150,9 +4202,9 @@ typedef struct luxfer_transfer_report {
     double proposed_white_high;
 } luxfer_transfer_report;
 
-/** One lamp of the lit scene. Set struct_size before the call. */
+/** One lamp of the lit scene. */
 typedef struct luxfer_fixture {
-    /** sizeof(luxfer_fixture), set by the caller. */
+    /** sizeof(luxfer_fixture), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Centre in metres. */
     float position[3];
@@ -4243,30 +4295,38 @@ luxfer_status luxfer_transfer_get_scene(luxfer_transfer *transfer,
                                         luxfer_scene **scene);
 
 /**
- * Gets time and error of each stage. Any thread.
+ * Gets time and error of each stage. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before the first stage has ended.
  */
-luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer, luxfer_transfer_report *report);
+luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer,
+                                         luxfer_transfer_report *report,
+                                         size_t size);
 
 /**
- * Gets the camera that was found from the lines of the photo, and the unwarping of the plane. Any thread.
+ * Gets the camera that was found from the lines of the photo, and the unwarping of the plane. size is sizeof *view.
+ * Any thread.
  * LUXFER_NOT_READY before the stage VIEW has ended.
  */
-luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer, luxfer_rectify_report *view);
+luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer,
+                                       luxfer_rectify_report *view,
+                                       size_t size);
 
 /**
- * Gets the solved colour and intensity and their confidence. Any thread.
+ * Gets the solved colour and intensity and their confidence. size is sizeof *solution. Any thread.
  * LUXFER_NOT_READY before the stage RELIGHT has ended.
  */
-luxfer_status luxfer_transfer_get_solution(luxfer_transfer *transfer, luxfer_relight_report *solution);
+luxfer_status luxfer_transfer_get_solution(luxfer_transfer *transfer,
+                                           luxfer_relight_report *solution,
+                                           size_t size);
 
 /**
- * Describes a lamp of the lit scene. Any thread.
+ * Describes a lamp of the lit scene. size is sizeof *fixture. Any thread.
  * LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_NOT_FOUND if there is no such fixture.
  */
 luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
                                           uint32_t index,
-                                          luxfer_fixture *fixture);
+                                          luxfer_fixture *fixture,
+                                          size_t size);
 
 /**
  * Writes the luminaire schedule, a list of all lamps of the lit scene, to a .csv or .json file: position, normal,
@@ -4293,9 +4353,9 @@ typedef struct luxfer_warnings luxfer_warnings;
 /** The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added. */
 typedef int32_t luxfer_warning_code;
 
-/** A reason to doubt a result. Set struct_size before the call. */
+/** A reason to doubt a result. */
 typedef struct luxfer_warning {
-    /** sizeof(luxfer_warning), set by the caller. */
+    /** sizeof(luxfer_warning), set by the function that fills the struct. */
     uint32_t struct_size;
     /** LUXFER_WARNING_ value. */
     luxfer_warning_code code;
@@ -4426,12 +4486,13 @@ luxfer_status luxfer_get_warnings(void *handle, luxfer_warnings **warnings);
 luxfer_status luxfer_warnings_count(luxfer_warnings *warnings, uint32_t *count);
 
 /**
- * Gets a warning of a list. Any thread.
+ * Gets a warning of a list. size is sizeof *warning. Any thread.
  * LUXFER_NOT_FOUND if there is no such warning.
  */
 luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
                                   uint32_t index,
-                                  luxfer_warning *warning);
+                                  luxfer_warning *warning,
+                                  size_t size);
 
 /**
  * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
@@ -4470,9 +4531,9 @@ typedef struct luxfer_plan_params {
     uint32_t reserved;
 } luxfer_plan_params;
 
-/** Times and errors that a plan predicts. Set struct_size before the call. */
+/** Times and errors that a plan predicts. */
 typedef struct luxfer_plan_report {
-    /** sizeof(luxfer_plan_report), set by the caller. */
+    /** sizeof(luxfer_plan_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** 1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation. */
     uint32_t relights;
@@ -4535,28 +4596,32 @@ luxfer_status luxfer_plan_start_transfer(luxfer_plan *plan,
                                          luxfer_job **job);
 
 /**
- * Gets the predictions of the plan. Any thread.
+ * Gets the predictions of the plan. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
-luxfer_status luxfer_plan_get_report(luxfer_plan *plan, luxfer_plan_report *report);
+luxfer_status luxfer_plan_get_report(luxfer_plan *plan,
+                                     luxfer_plan_report *report,
+                                     size_t size);
 
 /**
  * Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
  * rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths and sets
  * time_budget_ms to a quarter more than they should take, so that every run gives an equal picture unless the machine
- * becomes slower. Set params->struct_size before the call. Any thread.
+ * becomes slower. Set params->struct_size before the call. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
  */
 luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
-                                            luxfer_render_params *params);
+                                            luxfer_render_params *params,
+                                            size_t size);
 
 /**
  * Gets the settings to relight with: the given settings with the choices of the plan. Set params->struct_size before
- * the call. Any thread.
+ * the call. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
  */
 luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
-                                             luxfer_relight_params *params);
+                                             luxfer_relight_params *params,
+                                             size_t size);
 
 /* ====================================================================================================================
  * Guides
@@ -4831,11 +4896,12 @@ luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *params,
                                          size_t size);
 
 /**
- * Sets *params, filled before by luxfer_stylize_params_init, to a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER.
+ * Fills *params with a preset instead: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
  * LUXFER_INVALID_ARGUMENT for another value.
  */
 luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
-                                           luxfer_stylize_preset preset);
+                                           luxfer_stylize_preset preset,
+                                           size_t size);
 
 /* ====================================================================================================================
  * Stylisation
@@ -4986,9 +5052,9 @@ luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
 /** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
 typedef int32_t luxfer_stylize_image;
 
-/** Quality of a stylisation. Set struct_size before the call. */
+/** Quality of a stylisation. */
 typedef struct luxfer_stylize_report {
-    /** sizeof(luxfer_stylize_report), set by the caller. */
+    /** sizeof(luxfer_stylize_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0. */
     uint32_t finished;
@@ -5017,9 +5083,9 @@ typedef struct luxfer_stylize_report {
     uint64_t broken_target;
 } luxfer_stylize_report;
 
-/** One round of matching and painting. Set struct_size before the call. */
+/** One round of matching and painting. */
 typedef struct luxfer_stylize_round {
-    /** sizeof(luxfer_stylize_round), set by the caller. */
+    /** sizeof(luxfer_stylize_round), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of matching passes under the error budget; see luxfer_stylize_get_pass. */
     uint32_t passes;
@@ -5027,9 +5093,9 @@ typedef struct luxfer_stylize_round {
     double energy;
 } luxfer_stylize_round;
 
-/** One matching pass under the error budget. Set struct_size before the call. */
+/** One matching pass under the error budget. */
 typedef struct luxfer_stylize_pass {
-    /** sizeof(luxfer_stylize_pass), set by the caller. */
+    /** sizeof(luxfer_stylize_pass), set by the function that fills the struct. */
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
@@ -5073,10 +5139,12 @@ luxfer_status luxfer_stylize_get_image(luxfer_stylize *stylize,
                                        luxfer_image **image);
 
 /**
- * Gets the current quality of the result. Any thread.
+ * Gets the current quality of the result. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished.
  */
-luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize, luxfer_stylize_report *report);
+luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize,
+                                        luxfer_stylize_report *report,
+                                        size_t size);
 
 /**
  * Gets the size of a level and the number of its rounds; level 0 is the coarsest. width, height and rounds may be
@@ -5090,16 +5158,17 @@ luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
                                        uint32_t *rounds);
 
 /**
- * Describes a round of a level. Any thread.
+ * Describes a round of a level. size is sizeof *round. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
  */
 luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
                                        uint32_t level,
                                        uint32_t index,
-                                       luxfer_stylize_round *round);
+                                       luxfer_stylize_round *round,
+                                       size_t size);
 
 /**
- * Describes a pass of a round. Any thread.
+ * Describes a pass of a round. size is sizeof *pass. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
  * pass.
  */
@@ -5107,7 +5176,8 @@ luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
                                       uint32_t level,
                                       uint32_t round,
                                       uint32_t index,
-                                      luxfer_stylize_pass *pass);
+                                      luxfer_stylize_pass *pass,
+                                      size_t size);
 
 /* ====================================================================================================================
  * Planning of stylisations
@@ -5135,11 +5205,12 @@ luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
 
 /**
  * Gets the settings to stylise with: the given settings with the choices of the plan. Set params->struct_size before
- * the call. Any thread.
+ * the call. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
  */
 luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan,
-                                             luxfer_stylize_params *params);
+                                             luxfer_stylize_params *params,
+                                             size_t size);
 
 /* ====================================================================================================================
  * Print sheets
@@ -5169,9 +5240,9 @@ typedef struct luxfer_sheet_params {
     double contrast;
 } luxfer_sheet_params;
 
-/** Quality of the alignment of a photo. Set struct_size before the call. */
+/** Quality of the alignment of a photo. */
 typedef struct luxfer_sheet_report {
-    /** sizeof(luxfer_sheet_report), set by the caller. */
+    /** sizeof(luxfer_sheet_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of marks found, of 10; at least 6 are needed. */
     uint32_t marks;
@@ -5204,10 +5275,10 @@ luxfer_status luxfer_sheet_print(luxfer_image *picture,
                                  luxfer_image **sheet);
 
 /**
- * Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of width
- * x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
- * perspective. params may be NULL for the defaults, report may be NULL. Takes up to a few seconds. The caller releases
- * *artwork. Any thread.
+ * Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of
+ * width x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
+ * perspective. params may be NULL for the defaults. size is sizeof *report; report may be NULL, then size does not
+ * matter. Takes up to a few seconds. The caller releases *artwork. Any thread.
  * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_sheet_align(luxfer_image *photo,
@@ -5215,7 +5286,8 @@ luxfer_status luxfer_sheet_align(luxfer_image *photo,
                                  uint32_t height,
                                  const luxfer_sheet_params *params,
                                  luxfer_image **artwork,
-                                 luxfer_sheet_report *report);
+                                 luxfer_sheet_report *report,
+                                 size_t size);
 
 /* ====================================================================================================================
  * Demonstration

@@ -330,15 +330,18 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(luxfer_scene_set_emission(scene, 7, 1.0, 1.0, 1.0), LUXFER_NOT_FOUND);
 
         let mut counts = std::mem::zeroed::<luxfer_scene_counts>();
-        assert_eq!(luxfer_scene_get_counts(scene, &mut counts), LUXFER_INVALID_ARGUMENT);
-        counts.struct_size = size_of_val(&counts) as u32;
-        assert_eq!(luxfer_scene_get_counts(scene, &mut counts), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_counts(scene, &mut counts, 0), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("sizeof(luxfer_scene_counts), 32 bytes"), "{}", message(context));
+        assert_eq!(luxfer_scene_get_counts(scene, &mut counts, size_of_val(&counts)), LUXFER_OK);
+        assert_eq!(counts.struct_size, 32);
         assert_eq!((counts.meshes, counts.materials, counts.cameras, counts.triangles), (2, 2, 1, 14));
 
         let mut surface = std::mem::zeroed::<luxfer_surface>();
-        surface.struct_size = size_of_val(&surface) as u32;
-        assert_eq!(luxfer_scene_find_surface(scene, c"Sky".as_ptr(), &mut surface), LUXFER_NOT_FOUND);
-        assert_eq!(luxfer_scene_find_surface(scene, c"Lamp".as_ptr(), &mut surface), LUXFER_OK);
+        assert_eq!(
+            luxfer_scene_find_surface(scene, c"Sky".as_ptr(), &mut surface, size_of_val(&surface)),
+            LUXFER_NOT_FOUND
+        );
+        assert_eq!(luxfer_scene_find_surface(scene, c"Lamp".as_ptr(), &mut surface, size_of_val(&surface)), LUXFER_OK);
         assert!((surface.area - 1.0).abs() < 1e-5 && surface.triangles == 2);
 
         // Save and load again; an error of the writing function ends the save.
@@ -355,7 +358,8 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(luxfer_scene_export_memory(scene, None, null_mut()), LUXFER_INVALID_ARGUMENT);
         let again =
             made(|out| luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), null(), out));
-        assert_eq!(luxfer_scene_get_counts(again, &mut counts), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_counts(again, &mut counts, size_of_val(&counts)), LUXFER_OK);
+        assert_eq!(counts.struct_size, 32);
         assert_eq!((counts.meshes, counts.triangles), (2, 14));
         assert_eq!(luxfer_release(again.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);

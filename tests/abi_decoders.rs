@@ -243,12 +243,11 @@ fn quick_calls(context: *mut luxfer_context) {
     let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
     let mut hits = vec![luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 }; 10_000];
     let mut needs = unsafe { std::mem::zeroed::<luxfer_requirements>() };
-    needs.struct_size = size_of_val(&needs) as u32;
     let mut sheet = unsafe { std::mem::zeroed::<luxfer_sheet_params>() };
     let mut file = Vec::<u8>::new();
     unsafe {
         assert_eq!(luxfer_scene_intersect(scene, vec![ray; 10_000].as_ptr(), 10_000, hits.as_mut_ptr()), LUXFER_OK);
-        assert_eq!(luxfer_scene_requirements(scene, 0.1, &mut needs), LUXFER_OK);
+        assert_eq!(luxfer_scene_requirements(scene, 0.1, &mut needs, size_of_val(&needs)), LUXFER_OK);
         let made = |make: &dyn Fn(*mut *mut luxfer_image) -> luxfer_status| {
             assert_eq!(luxfer_release(host::made(make).cast()), LUXFER_OK);
         };
@@ -257,7 +256,7 @@ fn quick_calls(context: *mut luxfer_context) {
         assert_eq!(luxfer_sheet_params_init(&mut sheet, size_of_val(&sheet)), LUXFER_OK);
         let sheet = luxfer_sheet_params { paper_width: 100.0, paper_height: 80.0, dpi: 50.0, ..sheet };
         let printed = host::made(|out| luxfer_sheet_print(image, &sheet, out));
-        made(&|out| luxfer_sheet_align(printed, 32, 24, &sheet, out, null_mut()));
+        made(&|out| luxfer_sheet_align(printed, 32, 24, &sheet, out, null_mut(), 0));
         assert_eq!(luxfer_release(printed.cast()), LUXFER_OK);
         assert_eq!(luxfer_scene_export_memory(scene, Some(collect), (&raw mut file).cast()), LUXFER_OK);
         assert_eq!(load_scene(context, &file), LUXFER_OK);

@@ -103,8 +103,8 @@ fn progress_rises_and_ends_at_one() {
         assert_eq!(luxfer_job_status(job), LUXFER_OK);
         assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
         assert_eq!(luxfer_job_wait(job, 0, None, null_mut()), LUXFER_OK);
-        let mut report = luxfer_render_report { struct_size: 40, ..std::mem::zeroed() };
-        assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
+        let mut report = std::mem::zeroed::<luxfer_render_report>();
+        assert_eq!(luxfer_render_get_report(render, &mut report, size_of_val(&report)), LUXFER_OK);
         assert_eq!(report.samples, 64);
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(render.cast()), LUXFER_OK);

@@ -109,8 +109,7 @@ fn new_image(context: *mut luxfer_context, make: impl FnOnce(*mut *mut luxfer_im
 
 fn requirements(scene: *mut luxfer_scene) {
     let mut found = unsafe { std::mem::zeroed::<luxfer_requirements>() };
-    found.struct_size = size_of_val(&found) as u32;
-    assert_eq!(unsafe { luxfer_scene_requirements(scene, 0.1, &mut found) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_scene_requirements(scene, 0.1, &mut found, size_of_val(&found)) }, LUXFER_OK);
 }
 
 /// Every quick call that works in parallel and needs no long preparation, by name.
@@ -134,7 +133,7 @@ const CALLS: [(&str, fn(&Objects)); 9] = [
         new_image(o.context, |out| unsafe { luxfer_sheet_print(o.image, &o.sheet_params, out) });
     }),
     ("luxfer_sheet_align", |o| {
-        new_image(o.context, |out| unsafe { luxfer_sheet_align(o.sheet, 32, 24, &o.sheet_params, out, null_mut()) });
+        new_image(o.context, |out| unsafe { luxfer_sheet_align(o.sheet, 32, 24, &o.sheet_params, out, null_mut(), 0) });
     }),
     ("luxfer_render_get_image", |o| {
         new_image(o.context, |out| unsafe { luxfer_render_get_image(o.render, LUXFER_RENDER_INTERVAL, out) });

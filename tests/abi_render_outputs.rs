@@ -134,8 +134,7 @@ fn illuminance_comes_with_its_error() {
         let error = pixels(made(|out| luxfer_illuminance_get_image(stage, LUXFER_ILLUMINANCE_ERROR, out)));
         assert_eq!((lux.0, lux.1.len(), error.1.len()), (1, 12, 12));
         let mut report = std::mem::zeroed::<luxfer_illuminance_report>();
-        report.struct_size = size_of_val(&report) as u32;
-        assert_eq!(luxfer_illuminance_get_report(stage, &mut report), LUXFER_OK);
+        assert_eq!(luxfer_illuminance_get_report(stage, &mut report, size_of_val(&report)), LUXFER_OK);
         let mean = lux.1.iter().map(|&v| f64::from(v)).sum::<f64>() / 12.0;
         assert!(report.points == 12 && (report.mean - mean).abs() < 1e-4 * mean && report.minimum > 0.0);
         assert!(report.mean_error > 0.0 && report.mean_error < 0.1 * mean);
@@ -159,8 +158,7 @@ fn rendered(render: *mut luxfer_render, params: &luxfer_render_params) -> (Vec<f
     unsafe {
         assert_eq!(finish(made(|out| luxfer_render_start(render, params, out))), LUXFER_OK);
         let mut report = std::mem::zeroed::<luxfer_render_report>();
-        report.struct_size = size_of_val(&report) as u32;
-        assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
+        assert_eq!(luxfer_render_get_report(render, &mut report, size_of_val(&report)), LUXFER_OK);
         (pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out))).1, report)
     }
 }
@@ -198,9 +196,8 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
 
         // In a closed room of albedo up to 0.84, little light is left after the needed number of bounces, and much
         // after one.
-        let mut needed =
-            luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
-        assert_eq!(luxfer_scene_requirements(scene, 0.01, &mut needed), LUXFER_OK);
+        let mut needed = std::mem::zeroed::<luxfer_requirements>();
+        assert_eq!(luxfer_scene_requirements(scene, 0.01, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert!((10..40).contains(&needed.bounces), "{}", needed.bounces);
         let (most, _) = rendered(render, &luxfer_render_params { bounce_error: 0.01, ..params });
         let (least, _) = rendered(render, &luxfer_render_params { bounce_error: 0.99, ..params });
@@ -242,9 +239,8 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
         assert_eq!(luxfer_scene_set_environment(scene, sky, f32::MAX, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_scene_set_environment(scene, scene.cast(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_scene_set_environment(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
-        let mut needed =
-            luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
-        assert_eq!(luxfer_scene_requirements(scene, 0.0, &mut needed), LUXFER_OK);
+        let mut needed = std::mem::zeroed::<luxfer_requirements>();
+        assert_eq!(luxfer_scene_requirements(scene, 0.0, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert_eq!(needed.lights, LUXFER_LIGHTS_ENVIRONMENT);
         assert_eq!(luxfer_illuminance_grid_init(&mut grid, size_of_val(&grid)), LUXFER_OK);
         assert_eq!(luxfer_illuminance_set_scene(stage, scene), LUXFER_OK);

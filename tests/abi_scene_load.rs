@@ -60,8 +60,7 @@ fn warnings(scene: *mut luxfer_scene) -> Vec<(luxfer_warning_code, f64, String)>
     assert_eq!(unsafe { luxfer_warnings_count(list, &mut count) }, LUXFER_OK);
     let read = |index| {
         let mut warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
-        warning.struct_size = size_of_val(&warning) as u32;
-        assert_eq!(unsafe { luxfer_warnings_get(list, index, &mut warning) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_warnings_get(list, index, &mut warning, size_of_val(&warning)) }, LUXFER_OK);
         assert_eq!((warning.stage, warning.has_place), (LUXFER_STAGE_SCENE, 0));
         let [message, advice] =
             [warning.message, warning.advice].map(|text| unsafe { CStr::from_ptr(text) }.to_str().unwrap());

@@ -55,8 +55,7 @@ fn params() -> luxfer_stylize_params {
 
 fn report(stylize: *mut luxfer_stylize) -> luxfer_stylize_report {
     let mut report = unsafe { std::mem::zeroed::<luxfer_stylize_report>() };
-    report.struct_size = size_of_val(&report) as u32;
-    assert_eq!(unsafe { luxfer_stylize_get_report(stylize, &mut report) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_stylize_get_report(stylize, &mut report, size_of_val(&report)) }, LUXFER_OK);
     report
 }
 
@@ -127,19 +126,19 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_level(stylize, 0, &mut width, null_mut(), &mut rounds), LUXFER_OK);
         // One round under the error budget and three rounds of polish, which have no passes.
         assert_eq!((width, rounds), (70, 4));
-        let mut round = luxfer_stylize_round { struct_size: 16, passes: 0, energy: 0.0 };
-        assert_eq!(luxfer_stylize_get_round(stylize, 0, 3, &mut round), LUXFER_OK);
+        let mut round = std::mem::zeroed::<luxfer_stylize_round>();
+        assert_eq!(luxfer_stylize_get_round(stylize, 0, 3, &mut round, size_of_val(&round)), LUXFER_OK);
         assert!(round.passes == 0 && round.energy == all.energy);
-        assert_eq!(luxfer_stylize_get_round(stylize, 0, 0, &mut round), LUXFER_OK);
+        assert_eq!(luxfer_stylize_get_round(stylize, 0, 0, &mut round, size_of_val(&round)), LUXFER_OK);
         assert!(round.passes > 0 && round.energy >= all.energy);
         let mut covered = 0.0;
         for index in 0..round.passes {
-            let mut pass = luxfer_stylize_pass { struct_size: 32, ..std::mem::zeroed() };
-            assert_eq!(luxfer_stylize_get_pass(stylize, 0, 0, index, &mut pass), LUXFER_OK);
+            let mut pass = std::mem::zeroed::<luxfer_stylize_pass>();
+            assert_eq!(luxfer_stylize_get_pass(stylize, 0, 0, index, &mut pass, size_of_val(&pass)), LUXFER_OK);
             assert!(pass.coverage >= covered && pass.coverage <= 1.0);
             covered = pass.coverage;
         }
-        assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round, size_of_val(&round)), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_stylize_get_level(stylize, 1, null_mut(), null_mut(), null_mut()), LUXFER_NOT_FOUND);
 
         // Every pixel is copied from the artwork, and the sources state its place.
@@ -155,8 +154,8 @@ fn a_target_is_stylised_and_reported_level_by_level() {
 
         // The preview preset makes half the size.
         let mut preview = params();
-        assert_eq!(luxfer_stylize_params_preset(&mut preview, LUXFER_STYLIZE_PREVIEW), LUXFER_OK);
-        assert_eq!(luxfer_stylize_params_preset(&mut preview, 4), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_stylize_params_preset(&mut preview, LUXFER_STYLIZE_PREVIEW, 104), LUXFER_OK);
+        assert_eq!(luxfer_stylize_params_preset(&mut preview, 4, 104), LUXFER_INVALID_ARGUMENT);
         assert_eq!(run(stylize, &preview), LUXFER_OK);
         let half = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         assert_eq!(pixels(half).0, 35);

@@ -39,8 +39,7 @@ fn run(segment: *mut luxfer_segment) {
 }
 
 fn empty() -> luxfer_warning {
-    let mut warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
-    warning.struct_size = size_of::<luxfer_warning>() as u32;
+    let warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
     warning
 }
 
@@ -49,7 +48,7 @@ fn list(warnings: *mut luxfer_warnings) -> Vec<luxfer_warning> {
     assert_eq!(unsafe { luxfer_warnings_count(warnings, &mut count) }, LUXFER_OK);
     let read = |index| {
         let mut warning = empty();
-        assert_eq!(unsafe { luxfer_warnings_get(warnings, index, &mut warning) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_warnings_get(warnings, index, &mut warning, size_of_val(&warning)) }, LUXFER_OK);
         warning
     };
     (0..count).map(read).collect()
@@ -124,12 +123,11 @@ fn wrong_arguments_are_errors() {
     let count = list(warnings).len() as u32;
     let mut warning = empty();
     unsafe {
-        assert_eq!(luxfer_warnings_get(warnings, count, &mut warning), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_warnings_get(warnings, count, &mut warning, size_of_val(&warning)), LUXFER_NOT_FOUND);
         assert!(message(context).contains("warning"), "{}", message(context));
-        assert_eq!(luxfer_warnings_get(warnings, u32::MAX, &mut warning), LUXFER_NOT_FOUND);
-        warning.struct_size = 20;
-        assert_eq!(luxfer_warnings_get(warnings, 0, &mut warning), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_warnings_get(warnings, 0, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get(warnings, u32::MAX, &mut warning, size_of_val(&warning)), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_warnings_get(warnings, 0, &mut warning, 20), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get(warnings, 0, null_mut(), 0), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_warnings_count(warnings, null_mut()), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_warnings_count(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_get_warnings(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);

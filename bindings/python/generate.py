@@ -187,7 +187,7 @@ class Writer:
         self.header = header
         self.enums = enumerations(header)
         self.is_output = {
-            s for s in header.structs if re.search(r"Set struct_size before|An element of arrays", header.docs[s])
+            s for s in header.structs if f"{s}_init" not in header.functions
         }
 
     def prose(self, text: str) -> str:
@@ -204,7 +204,7 @@ class Writer:
 
     def comment(self, text: str, indent: str) -> str:
         """A docstring of it, wrapped."""
-        text = re.sub(r"\s*(Fill (it|them)|Set struct_size) [^.]*\.(?=$|\s)", "", " ".join(self.prose(text).split()))
+        text = re.sub(r"\s*Fill (it|them) [^.]*\.(?=$|\s)", "", " ".join(self.prose(text).split()))
         if not text:
             return ""
         return (

@@ -208,7 +208,7 @@ impl Arguments<'_> {
     }
 
     fn record(&mut self, record: &'static Record) -> *mut u8 {
-        let base = self.number::<u8>() % 4;
+        let base = self.number::<u8>() % 3;
         if base == 0 {
             return std::ptr::null_mut();
         }

@@ -92,8 +92,7 @@ pub fn scene(data: &[u8]) {
         let mut hits: [luxfer_hit; 2] = std::mem::zeroed();
         check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, hits.as_mut_ptr()));
         let mut needs: luxfer_requirements = std::mem::zeroed();
-        needs.struct_size = size_of_val(&needs) as u32;
-        check("luxfer_scene_requirements", luxfer_scene_requirements(scene, 0.01, &mut needs));
+        check("luxfer_scene_requirements", luxfer_scene_requirements(scene, 0.01, &mut needs, size_of_val(&needs)));
         check("luxfer_scene_export_memory", luxfer_scene_export_memory(scene, Some(take), null_mut()));
         luxfer_release(scene.cast());
     }

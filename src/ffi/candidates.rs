@@ -7,7 +7,7 @@
 use super::context::Context;
 use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, c_string};
 use super::scene::{luxfer_scene, missing};
 use super::status::luxfer_status;
@@ -28,11 +28,11 @@ pub const LUXFER_CANDIDATE_OBJECT: luxfer_candidate_kind = 0;
 /// All triangles of one material.
 pub const LUXFER_CANDIDATE_MATERIAL: luxfer_candidate_kind = 1;
 
-/// An object or a material of a scene. Set struct_size before the call.
+/// An object or a material of a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_candidate {
-    /// sizeof(luxfer_candidate), set by the caller.
+    /// sizeof(luxfer_candidate), set by the function that fills the struct.
     pub struct_size: u32,
     /// LUXFER_CANDIDATE_ value.
     pub kind: luxfer_candidate_kind,
@@ -65,29 +65,24 @@ pub struct luxfer_candidate {
 
 const SIZE: usize = 72;
 
-// SAFETY: plain numbers and pointers.
-unsafe impl Versioned for luxfer_candidate {
-    const NAME: &'static str = "luxfer_candidate";
-    const SIZES: &'static [usize] = &[SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: SIZE as u32,
-            kind: LUXFER_CANDIDATE_OBJECT,
-            index: 0,
-            triangles: 0,
-            area: 0.0,
-            level_area: 0.0,
-            height: 0.0,
-            low: 0.0,
-            high: 0.0,
-            normal: [0.0; 3],
-            score: 0.0,
-            reserved: 0,
-            name: std::ptr::null(),
-            reason: std::ptr::null(),
-        }
+versioned!(luxfer_candidate, [SIZE], {
+    Self {
+        struct_size: SIZE as u32,
+        kind: LUXFER_CANDIDATE_OBJECT,
+        index: 0,
+        triangles: 0,
+        area: 0.0,
+        level_area: 0.0,
+        height: 0.0,
+        low: 0.0,
+        high: 0.0,
+        normal: [0.0; 3],
+        score: 0.0,
+        reserved: 0,
+        name: std::ptr::null(),
+        reason: std::ptr::null(),
     }
-}
+});
 
 /// The candidates behind a handle.
 pub(super) struct Candidates {
@@ -152,16 +147,17 @@ pub unsafe extern "C" fn luxfer_candidates_count(candidates: *mut luxfer_candida
     })
 }
 
-/// Gets a candidate of a list. Any thread.
+/// Gets a candidate of a list. size is sizeof *candidate. Any thread.
 /// LUXFER_NOT_FOUND if there is no such candidate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_candidates_get(
     candidates: *mut luxfer_candidates,
     index: u32,
     candidate: *mut luxfer_candidate,
+    size: usize,
 ) -> luxfer_status {
     enter(candidates, |object| {
-        let out = Report::new(candidate)?;
+        let out = Report::new(candidate, size)?;
         let entry = object.get(index)?;
         let found = &entry.candidate;
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);

@@ -4,6 +4,10 @@
 //! context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
 //! (LUXFER_INVALID_ARGUMENT).
 //!
+//! Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
+//! reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was built
+//! with an older header works with a newer library: fields that it does not know keep their defaults.
+//!
 //! Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
 //! handle in most cases, but not if its memory has been reused.
 //!
@@ -30,7 +34,7 @@ pub(super) use super::shared_context::{Charge, Context};
 
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::{Out, copy_text};
 use super::shared_context::INHERITED;
 use super::status::luxfer_status;
@@ -58,14 +62,7 @@ pub struct luxfer_context_params {
     pub memory_budget_mib: u64,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_context_params {
-    const NAME: &'static str = "luxfer_context_params";
-    const SIZES: &'static [usize] = &[16];
-    fn defaults() -> Self {
-        Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 }
-    }
-}
+versioned!(luxfer_context_params, [16], { Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 } });
 
 /// A handle's own reference to its context.
 pub(super) struct ContextObject(Arc<Context>);

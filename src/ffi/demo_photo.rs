@@ -8,7 +8,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::Out;
 use super::stage::Stage;
 use super::status::luxfer_status;
@@ -45,15 +45,10 @@ pub struct luxfer_demo_photo_params {
     pub seed: u64,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_demo_photo_params {
-    const NAME: &'static str = "luxfer_demo_photo_params";
-    const SIZES: &'static [usize] = &[24];
-    fn defaults() -> Self {
-        let d = photo::Params::default();
-        Self { struct_size: 24, width: d.width as u32, height: d.height as u32, samples: d.samples, seed: d.seed }
-    }
-}
+versioned!(luxfer_demo_photo_params, [24], {
+    let d = photo::Params::default();
+    Self { struct_size: 24, width: d.width as u32, height: d.height as u32, samples: d.samples, seed: d.seed }
+});
 
 /// The photo and the drawing of its strokes.
 pub(super) struct Taken {

@@ -10,7 +10,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::{Out, text};
 use super::rectify::luxfer_rectify;
 use super::stage::{Stage, need};
@@ -94,15 +94,10 @@ pub struct luxfer_features_params {
     pub normal_radius: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_features_params {
-    const NAME: &'static str = "luxfer_features_params";
-    const SIZES: &'static [usize] = &[16];
-    fn defaults() -> Self {
-        let features::Params { near, far, normal_radius } = features::Params::default();
-        Self { struct_size: 16, near_plane: near, far_plane: far, normal_radius: normal_radius as u32 }
-    }
-}
+versioned!(luxfer_features_params, [16], {
+    let features::Params { near, far, normal_radius } = features::Params::default();
+    Self { struct_size: 16, near_plane: near, far_plane: far, normal_radius: normal_radius as u32 }
+});
 
 impl luxfer_features_params {
     pub(super) fn params(&self) -> features::Params {
@@ -110,11 +105,11 @@ impl luxfer_features_params {
     }
 }
 
-/// Quality of the features. Set struct_size before the call.
+/// Quality of the features.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_features_report {
-    /// sizeof(luxfer_features_report), set by the caller.
+    /// sizeof(luxfer_features_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// LUXFER_DEPTH_FROM_ value.
     pub depth_source: luxfer_depth_source,
@@ -125,14 +120,9 @@ pub struct luxfer_features_report {
     pub replaced_pixels: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_features_report {
-    const NAME: &'static str = "luxfer_features_report";
-    const SIZES: &'static [usize] = &[24];
-    fn defaults() -> Self {
-        Self { struct_size: 24, depth_source: 0, depth_confidence: 0.0, replaced_pixels: 0 }
-    }
-}
+versioned!(luxfer_features_report, [24], {
+    Self { struct_size: 24, depth_source: 0, depth_confidence: 0.0, replaced_pixels: 0 }
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -389,15 +379,16 @@ pub unsafe extern "C" fn luxfer_features_get_image(
     })
 }
 
-/// Gets the quality of the features. Any thread.
+/// Gets the quality of the features. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_get_report(
     features: *mut luxfer_features,
     report: *mut luxfer_features_report,
+    size: usize,
 ) -> luxfer_status {
     enter(features, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?.features.clone();
         let confidence = &output.depth_confidence.data;
         out.set(luxfer_features_report {

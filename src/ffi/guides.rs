@@ -9,7 +9,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::Out;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::stage::{Stage, need};
@@ -66,23 +66,18 @@ pub struct luxfer_guides_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_guides_params {
-    const NAME: &'static str = "luxfer_guides_params";
-    const SIZES: &'static [usize] = &[32];
-    fn defaults() -> Self {
-        let d = guides::Params::default();
-        Self {
-            struct_size: 32,
-            width: d.width as u32,
-            height: d.height as u32,
-            samples: d.samples,
-            camera: 0,
-            smooth: u32::from(d.smooth),
-            seed: d.seed,
-        }
+versioned!(luxfer_guides_params, [32], {
+    let d = guides::Params::default();
+    Self {
+        struct_size: 32,
+        width: d.width as u32,
+        height: d.height as u32,
+        samples: d.samples,
+        camera: 0,
+        smooth: u32::from(d.smooth),
+        seed: d.seed,
     }
-}
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {

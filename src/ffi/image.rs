@@ -7,7 +7,7 @@
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::{Out, bytes, bytes_mut, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -76,27 +76,22 @@ pub struct luxfer_image_view {
 
 const VIEW_SIZE: usize = 32 + 4 * size_of::<usize>();
 
-// SAFETY: integers, and a pointer that is checked before use.
-unsafe impl Versioned for luxfer_image_view {
-    const NAME: &'static str = "luxfer_image_view";
-    const SIZES: &'static [usize] = &[VIEW_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: VIEW_SIZE as u32,
-            channels: 3,
-            sample: LUXFER_SAMPLE_F32,
-            colour_space: LUXFER_COLOUR_LINEAR,
-            width: 0,
-            height: 0,
-            flags: 0,
-            reserved: 0,
-            pixel_stride: 0,
-            row_stride: 0,
-            byte_size: 0,
-            data: std::ptr::null_mut(),
-        }
+versioned!(luxfer_image_view, [VIEW_SIZE], {
+    Self {
+        struct_size: VIEW_SIZE as u32,
+        channels: 3,
+        sample: LUXFER_SAMPLE_F32,
+        colour_space: LUXFER_COLOUR_LINEAR,
+        width: 0,
+        height: 0,
+        flags: 0,
+        reserved: 0,
+        pixel_stride: 0,
+        row_stride: 0,
+        byte_size: 0,
+        data: std::ptr::null_mut(),
     }
-}
+});
 
 impl luxfer_image_view {
     fn layout(&self) -> Result<Layout> {

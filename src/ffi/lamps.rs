@@ -9,7 +9,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
 use super::lamp_goal::StoredGoal;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::Out;
 use super::query::LUXFER_NONE;
 use super::scene::{SceneObject, luxfer_scene, missing};
@@ -80,28 +80,23 @@ pub struct luxfer_lamps_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamps_params {
-    const NAME: &'static str = "luxfer_lamps_params";
-    const SIZES: &'static [usize] = &[64];
-    fn defaults() -> Self {
-        let (tracing, groups) = (relight::Params::default(), GroupParams::default());
-        Self {
-            struct_size: 64,
-            group: LUXFER_GROUP_EACH,
-            row_tolerance: 0.01,
-            free_colour: 0,
-            max_scale: f64::INFINITY,
-            regularisation: groups.regularisation,
-            tolerance: groups.tolerance,
-            paths: tracing.paths,
-            target_error: tracing.target_error,
-            time_budget_ms: tracing.time_budget_ms,
-            reserved: 0,
-            seed: tracing.seed,
-        }
+versioned!(luxfer_lamps_params, [64], {
+    let (tracing, groups) = (relight::Params::default(), GroupParams::default());
+    Self {
+        struct_size: 64,
+        group: LUXFER_GROUP_EACH,
+        row_tolerance: 0.01,
+        free_colour: 0,
+        max_scale: f64::INFINITY,
+        regularisation: groups.regularisation,
+        tolerance: groups.tolerance,
+        paths: tracing.paths,
+        target_error: tracing.target_error,
+        time_budget_ms: tracing.time_budget_ms,
+        reserved: 0,
+        seed: tracing.seed,
     }
-}
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {

@@ -8,7 +8,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::scene_parts::luxfer_camera_params;
@@ -81,14 +81,7 @@ pub struct luxfer_render_params {
     pub relative_error: f32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_render_params {
-    const NAME: &'static str = "luxfer_render_params";
-    const SIZES: &'static [usize] = &[48];
-    fn defaults() -> Self {
-        Self::of(&render::Params::default())
-    }
-}
+versioned!(luxfer_render_params, [48], { Self::of(&render::Params::default()) });
 
 impl luxfer_render_params {
     pub(super) fn of(d: &render::Params) -> Self {
@@ -124,11 +117,11 @@ impl luxfer_render_params {
     }
 }
 
-/// Quality of a rendering. Set struct_size before the call.
+/// Quality of a rendering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_render_report {
-    /// sizeof(luxfer_render_report), set by the caller.
+    /// sizeof(luxfer_render_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Mean number of paths per pixel so far.
     pub samples: u32,
@@ -146,14 +139,9 @@ pub struct luxfer_render_report {
     pub relative_error: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_render_report {
-    const NAME: &'static str = "luxfer_render_report";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self { struct_size: 40, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0, relative_error: 0.0 }
-    }
-}
+versioned!(luxfer_render_report, [40], {
+    Self { struct_size: 40, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0, relative_error: 0.0 }
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -318,15 +306,16 @@ pub unsafe extern "C" fn luxfer_render_get_image(
     })
 }
 
-/// Gets the current quality of the rendering. Any thread.
+/// Gets the current quality of the rendering. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_report(
     render: *mut luxfer_render,
     report: *mut luxfer_render_report,
+    size: usize,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         out.set(luxfer_render_report {
             samples: output.samples,

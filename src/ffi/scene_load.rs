@@ -1,12 +1,12 @@
 //! Scene files
 //!
-//! Loads glTF 2.0 files. luxfer_scene_get_warnings and luxfer_scene_requirements_text name the features of a file that
+//! Loads glTF 2.0 files. luxfer_get_warnings and luxfer_scene_requirements_text name the features of a file that
 //! are not rendered.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::{Out, bytes, text};
 use super::scene::{SceneObject, luxfer_scene};
 use super::status::luxfer_status;
@@ -36,14 +36,7 @@ const SIZE: usize = 16;
 /// Units that can be meant: a micrometre to a thousand kilometres. [convention]
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_scene_load_params {
-    const NAME: &'static str = "luxfer_scene_load_params";
-    const SIZES: &'static [usize] = &[SIZE];
-    fn defaults() -> Self {
-        Self { struct_size: SIZE as u32, outside: 0, unit: 1.0 }
-    }
-}
+versioned!(luxfer_scene_load_params, [SIZE], { Self { struct_size: SIZE as u32, outside: 0, unit: 1.0 } });
 
 impl luxfer_scene_load_params {
     fn options(self, budget: &dyn gltf::Budget) -> Result<gltf::Options<'_>> {

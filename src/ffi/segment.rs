@@ -8,7 +8,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
@@ -73,25 +73,20 @@ pub struct luxfer_segment_params {
     pub reserved: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_segment_params {
-    const NAME: &'static str = "luxfer_segment_params";
-    const SIZES: &'static [usize] = &[48];
-    fn defaults() -> Self {
-        let defaults = segment::Params::default();
-        Self {
-            struct_size: 48,
-            samples_per_class: defaults.samples_per_class as u32,
-            channels: defaults.channels,
-            refine_radius: defaults.refine_radius as u32,
-            ridge: defaults.ridge,
-            seed: defaults.seed,
-            refine_tolerance: defaults.refine_tolerance,
-            subject: LUXFER_SUBJECT_AUTO,
-            reserved: 0,
-        }
+versioned!(luxfer_segment_params, [48], {
+    let defaults = segment::Params::default();
+    Self {
+        struct_size: 48,
+        samples_per_class: defaults.samples_per_class as u32,
+        channels: defaults.channels,
+        refine_radius: defaults.refine_radius as u32,
+        ridge: defaults.ridge,
+        seed: defaults.seed,
+        refine_tolerance: defaults.refine_tolerance,
+        subject: LUXFER_SUBJECT_AUTO,
+        reserved: 0,
     }
-}
+});
 
 impl luxfer_segment_params {
     pub(super) fn params(&self) -> Result<segment::Params> {
@@ -119,11 +114,11 @@ fn subject(value: luxfer_subject) -> Result<Subject> {
     }
 }
 
-/// Quality of a segmentation. Set struct_size before the call.
+/// Quality of a segmentation.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_segment_report {
-    /// sizeof(luxfer_segment_report), set by the caller.
+    /// sizeof(luxfer_segment_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Channels of the features that were used, bit i for channel i.
     pub channels: u32,
@@ -137,21 +132,9 @@ pub struct luxfer_segment_report {
     pub contradictory_pixels: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_segment_report {
-    const NAME: &'static str = "luxfer_segment_report";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 40,
-            channels: 0,
-            error: 0.0,
-            negative_samples: 0,
-            positive_samples: 0,
-            contradictory_pixels: 0,
-        }
-    }
-}
+versioned!(luxfer_segment_report, [40], {
+    Self { struct_size: 40, channels: 0, error: 0.0, negative_samples: 0, positive_samples: 0, contradictory_pixels: 0 }
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -281,15 +264,16 @@ pub unsafe extern "C" fn luxfer_segment_get_image(
     })
 }
 
-/// Gets the quality of the segmentation. Any thread.
+/// Gets the quality of the segmentation. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_report(
     segment: *mut luxfer_segment,
     report: *mut luxfer_segment_report,
+    size: usize,
 ) -> luxfer_status {
     enter(segment, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         out.set(luxfer_segment_report {
             channels: output.channels,

@@ -6,7 +6,7 @@
 use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::Out;
 use super::scene::missing;
 use super::status::luxfer_status;
@@ -28,11 +28,11 @@ pub const LUXFER_STYLIZE_IMAGE_GUIDE_ERROR: luxfer_stylize_image = 1;
 /// channels.
 pub const LUXFER_STYLIZE_IMAGE_SOURCES: luxfer_stylize_image = 2;
 
-/// Quality of a stylisation. Set struct_size before the call.
+/// Quality of a stylisation.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_report {
-    /// sizeof(luxfer_stylize_report), set by the caller.
+    /// sizeof(luxfer_stylize_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0.
     pub finished: u32,
@@ -59,27 +59,22 @@ pub struct luxfer_stylize_report {
     pub broken_target: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_stylize_report {
-    const NAME: &'static str = "luxfer_stylize_report";
-    const SIZES: &'static [usize] = &[72];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 72,
-            finished: 0,
-            levels: 0,
-            halvings: 0,
-            patch: 0,
-            max_uses: 0,
-            energy: 0.0,
-            used: 0.0,
-            entropy: 0.0,
-            guide_error: 0.0,
-            broken_source: 0,
-            broken_target: 0,
-        }
+versioned!(luxfer_stylize_report, [72], {
+    Self {
+        struct_size: 72,
+        finished: 0,
+        levels: 0,
+        halvings: 0,
+        patch: 0,
+        max_uses: 0,
+        energy: 0.0,
+        used: 0.0,
+        entropy: 0.0,
+        guide_error: 0.0,
+        broken_source: 0,
+        broken_target: 0,
     }
-}
+});
 
 impl luxfer_stylize_report {
     /// The numbers of a finished run.
@@ -98,11 +93,11 @@ impl luxfer_stylize_report {
     }
 }
 
-/// One round of matching and painting. Set struct_size before the call.
+/// One round of matching and painting.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_round {
-    /// sizeof(luxfer_stylize_round), set by the caller.
+    /// sizeof(luxfer_stylize_round), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of matching passes under the error budget; see luxfer_stylize_get_pass.
     pub passes: u32,
@@ -110,20 +105,13 @@ pub struct luxfer_stylize_round {
     pub energy: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_stylize_round {
-    const NAME: &'static str = "luxfer_stylize_round";
-    const SIZES: &'static [usize] = &[16];
-    fn defaults() -> Self {
-        Self { struct_size: 16, passes: 0, energy: 0.0 }
-    }
-}
+versioned!(luxfer_stylize_round, [16], { Self { struct_size: 16, passes: 0, energy: 0.0 } });
 
-/// One matching pass under the error budget. Set struct_size before the call.
+/// One matching pass under the error budget.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_pass {
-    /// sizeof(luxfer_stylize_pass), set by the caller.
+    /// sizeof(luxfer_stylize_pass), set by the function that fills the struct.
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
@@ -136,14 +124,7 @@ pub struct luxfer_stylize_pass {
     pub gained: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_stylize_pass {
-    const NAME: &'static str = "luxfer_stylize_pass";
-    const SIZES: &'static [usize] = &[32];
-    fn defaults() -> Self {
-        Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, gained: 0 }
-    }
-}
+versioned!(luxfer_stylize_pass, [32], { Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, gained: 0 } });
 
 /// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
 /// the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
@@ -169,15 +150,16 @@ pub unsafe extern "C" fn luxfer_stylize_get_image(
     })
 }
 
-/// Gets the current quality of the result. Any thread.
+/// Gets the current quality of the result. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_report(
     stylize: *mut luxfer_stylize,
     report: *mut luxfer_stylize_report,
+    size: usize,
 ) -> luxfer_status {
     enter(stylize, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         let finished = output.finished.as_ref().map_or_else(luxfer_stylize_report::defaults, luxfer_stylize_report::of);
         out.set(luxfer_stylize_report {
@@ -211,7 +193,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_level(
     })
 }
 
-/// Describes a round of a level. Any thread.
+/// Describes a round of a level. size is sizeof *round. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_round(
@@ -219,9 +201,10 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     level: u32,
     index: u32,
     round: *mut luxfer_stylize_round,
+    size: usize,
 ) -> luxfer_status {
     enter(stylize, |stage| {
-        let out = Report::new(round)?;
+        let out = Report::new(round, size)?;
         let output = stage.output()?;
         let level = output.level(level)?;
         let energy = level.energy.get(index as usize).ok_or_else(|| missing("round", index, level.energy.len()))?;
@@ -231,7 +214,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     })
 }
 
-/// Describes a pass of a round. Any thread.
+/// Describes a pass of a round. size is sizeof *pass. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
 /// pass.
 #[unsafe(no_mangle)]
@@ -241,9 +224,10 @@ pub unsafe extern "C" fn luxfer_stylize_get_pass(
     round: u32,
     index: u32,
     pass: *mut luxfer_stylize_pass,
+    size: usize,
 ) -> luxfer_status {
     enter(stylize, |stage| {
-        let out = Report::new(pass)?;
+        let out = Report::new(pass, size)?;
         let output = stage.output()?;
         let level = output.level(level)?;
         let passes = level.passes.get(round as usize).ok_or_else(|| missing("round", round, level.passes.len()))?;

@@ -12,7 +12,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pattern::luxfer_pattern_params;
 use super::pointer::{Out, bytes, text};
 use super::rectify::{luxfer_rectify, luxfer_rectify_params};
@@ -107,29 +107,24 @@ pub struct luxfer_transfer_params {
 
 const PARAMS_SIZE: usize = 24 + 8 * size_of::<usize>();
 
-// SAFETY: numbers, and pointers that are checked before use.
-unsafe impl Versioned for luxfer_transfer_params {
-    const NAME: &'static str = "luxfer_transfer_params";
-    const SIZES: &'static [usize] = &[PARAMS_SIZE];
-    fn defaults() -> Self {
-        let d = transfer::Params::default();
-        Self {
-            struct_size: PARAMS_SIZE as u32,
-            max_texels: d.max_texels as u32,
-            plane_distance: d.plane_distance,
-            white_luminance: d.white_luminance,
-            target: LUXFER_TARGET_SURFACE,
-            rectify: std::ptr::null(),
-            features: std::ptr::null(),
-            plane: std::ptr::null(),
-            lights: std::ptr::null(),
-            emission: std::ptr::null(),
-            relight: std::ptr::null(),
-            render: std::ptr::null(),
-            pattern: std::ptr::null(),
-        }
+versioned!(luxfer_transfer_params, [PARAMS_SIZE], {
+    let d = transfer::Params::default();
+    Self {
+        struct_size: PARAMS_SIZE as u32,
+        max_texels: d.max_texels as u32,
+        plane_distance: d.plane_distance,
+        white_luminance: d.white_luminance,
+        target: LUXFER_TARGET_SURFACE,
+        rectify: std::ptr::null(),
+        features: std::ptr::null(),
+        plane: std::ptr::null(),
+        lights: std::ptr::null(),
+        emission: std::ptr::null(),
+        relight: std::ptr::null(),
+        render: std::ptr::null(),
+        pattern: std::ptr::null(),
     }
-}
+});
 
 impl luxfer_transfer_params {
     fn params(&self) -> Result<transfer::Params> {

@@ -10,7 +10,7 @@ use super::emission::luxfer_emission;
 use super::features::luxfer_features;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, c_string};
 use super::rectify::luxfer_rectify;
 use super::relight::luxfer_relight;
@@ -82,11 +82,11 @@ pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// objects that have it; the severity is their number.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 
-/// A reason to doubt a result. Set struct_size before the call.
+/// A reason to doubt a result.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_warning {
-    /// sizeof(luxfer_warning), set by the caller.
+    /// sizeof(luxfer_warning), set by the function that fills the struct.
     pub struct_size: u32,
     /// LUXFER_WARNING_ value.
     pub code: luxfer_warning_code,
@@ -107,24 +107,19 @@ pub struct luxfer_warning {
     pub advice: *const c_char,
 }
 
-// SAFETY: plain numbers and pointers.
-unsafe impl Versioned for luxfer_warning {
-    const NAME: &'static str = "luxfer_warning";
-    const SIZES: &'static [usize] = &[64];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 64,
-            code: 0,
-            stage: 0,
-            has_place: 0,
-            severity: 0.0,
-            limit: 0.0,
-            place: [0.0; 2],
-            message: std::ptr::null(),
-            advice: std::ptr::null(),
-        }
+versioned!(luxfer_warning, [64], {
+    Self {
+        struct_size: 64,
+        code: 0,
+        stage: 0,
+        has_place: 0,
+        severity: 0.0,
+        limit: 0.0,
+        place: [0.0; 2],
+        message: std::ptr::null(),
+        advice: std::ptr::null(),
     }
-}
+});
 
 /// The warnings behind a handle, each with its stage.
 pub(super) struct Warnings {
@@ -294,16 +289,17 @@ pub unsafe extern "C" fn luxfer_warnings_count(warnings: *mut luxfer_warnings, c
     })
 }
 
-/// Gets a warning of a list. Any thread.
+/// Gets a warning of a list. size is sizeof *warning. Any thread.
 /// LUXFER_NOT_FOUND if there is no such warning.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_warnings_get(
     warnings: *mut luxfer_warnings,
     index: u32,
     warning: *mut luxfer_warning,
+    size: usize,
 ) -> luxfer_status {
     enter(warnings, |object| {
-        let out = Report::new(warning)?;
+        let out = Report::new(warning, size)?;
         let entry = object.get(index)?;
         let found = &entry.warning;
         out.set(luxfer_warning {

@@ -236,11 +236,10 @@ class Loader:
             ray.direction[axis] = -1
             ray.t_max = 1e9
         needs = abi.luxfer_requirements()
-        needs.struct_size = ctypes.sizeof(needs)
         # A scene may be valid as a file and still not be one that can be traced.
         start = time.monotonic()
         check(seed, library.luxfer_scene_intersect(thing, rays, 2, (abi.luxfer_hit * 2)()), start)
-        check(seed, library.luxfer_scene_requirements(thing, 0.01, ctypes.byref(needs)), start)
+        check(seed, library.luxfer_scene_requirements(thing, 0.01, ctypes.byref(needs), ctypes.sizeof(needs)), start)
         check(seed, library.luxfer_scene_export_memory(thing, abi.luxfer_write_fn(lambda user, data, size: 0), None), start)
         library.luxfer_release(thing)
 

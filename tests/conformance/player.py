@@ -107,13 +107,11 @@ class Player:
 
     def struct(self, name: str, fields: dict, base: str) -> int:
         kind = getattr(abi, name)
-        # More than the struct, as struct_size may say so.
+        # More than the struct, as its size may say so.
         room = ctypes.create_string_buffer(ROOM)
         value = kind.from_buffer(room)
         if base == "init":
             getattr(library, f"{name}_init")(address(value), ctypes.sizeof(kind))
-        elif base == "size":
-            value.struct_size = ctypes.sizeof(kind)
         self.kept.append((room, value))
         members = {f.name: f for f in STRUCTS[name]}
         for field, argument in fields.items():

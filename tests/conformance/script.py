@@ -9,7 +9,7 @@ A program is a list of calls, a call [function, argument...]. Arguments:
     ["bytes", hex]             text or a file: these bytes, and a zero behind them
     ["array", type, [n...]]    numbers of a ctypes type
     ["room", byte]             memory for results, filled with that byte
-    ["struct", name, {field: argument}, base]   base is "init" (the defaults), "size" (only struct_size) or "raw" (zeros)
+    ["struct", name, {field: argument}, base]   base is "init" (the defaults) or "raw" (zeros)
     ["junk", offset]           memory that holds no handle
 """
 
@@ -51,6 +51,11 @@ def plain(value) -> Argument:
 
 def struct(kind: str, base: str = "init", /, **fields) -> Argument:
     return ["struct", f"luxfer_{kind}", {k: plain(v) for k, v in fields.items()}, base]
+
+
+def report(kind: str) -> tuple[Argument, int]:
+    """A struct for results, and its size: more than any version has, as a newer host may pass."""
+    return struct(kind, "raw"), 1024
 
 
 def array(kind: str, *numbers) -> Argument:

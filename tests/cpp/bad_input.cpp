@@ -146,8 +146,7 @@ void strokes_and_surfaces() {
     // A surface of another name, and what is called too early.
     CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
     luxfer_surface surface;
-    surface.struct_size = sizeof surface;
-    CHECK_STATUS(luxfer_scene_find_surface(room, "Ceilling", &surface), LUXFER_NOT_FOUND);
+    CHECK_STATUS(luxfer_scene_find_surface(room, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
     CHECK(says({"Ceilling", "Ceiling"}));
     CHECK_OK(luxfer_transfer_set_scene(transfer, room, "Ceiling"));
     CHECK_STATUS(run(transfer, LUXFER_STAGE_RELIGHT, LUXFER_STAGE_RENDER), LUXFER_INVALID_OPERATION);

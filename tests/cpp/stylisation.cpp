@@ -198,28 +198,26 @@ void sheets() {
     const Size paper = size_of(sheet);
     CHECK(std::fabs(paper.width / (297 / 25.4 * 60) - 1) < 0.01 && std::fabs(paper.height / (210 / 25.4 * 60) - 1) < 0.01);
     luxfer_sheet_report report = {};
-    report.struct_size = sizeof report;
-    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report));
+    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report, sizeof report));
     CHECK(report.marks == 10 && report.residual < 0.5 && report.error < 0.5);
     const std::vector<float> aligned = pixels_of(artwork);
     CHECK(aligned.size() == pixels.size());
     auto at = [&](uint32_t x, uint32_t y) { return aligned[3 * (size_t{y} * WIDTH + x)]; };
     CHECK(at(10, 36) < at(48, 36) && at(48, 36) < at(86, 36));
     CHECK_OK(luxfer_release(artwork));
-    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, nullptr));
+    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, nullptr, 0));
     CHECK_OK(luxfer_release(artwork));
 
     // What cannot be.
     artwork = nullptr;
-    CHECK_STATUS(luxfer_sheet_align(sheet, 0, HEIGHT, &params, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, 1u << 31, &params, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_sheet_align(nullptr, WIDTH, HEIGHT, &params, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, nullptr, nullptr), LUXFER_INVALID_ARGUMENT);
-    report.struct_size = 5;
-    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, 0, HEIGHT, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, 1u << 31, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(nullptr, WIDTH, HEIGHT, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, nullptr, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report, 5), LUXFER_INVALID_ARGUMENT);
     for (float blank : {0.0f, 1.0f, NAN_F}) {
         luxfer_image *photo = flat({200, 150, 3}, blank);
-        CHECK_STATUS(luxfer_sheet_align(photo, WIDTH, HEIGHT, &params, &artwork, nullptr), LUXFER_DEGENERATE);
+        CHECK_STATUS(luxfer_sheet_align(photo, WIDTH, HEIGHT, &params, &artwork, nullptr, 0), LUXFER_DEGENERATE);
         CHECK(!check::message(context).empty());
         CHECK_OK(luxfer_release(photo));
     }
@@ -230,7 +228,7 @@ void sheets() {
             luxfer_sheet_params bad = params;
             bad.*field = value;
             CHECK_STATUS(luxfer_sheet_print(picture, &bad, &artwork), LUXFER_INVALID_ARGUMENT);
-            CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &bad, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
+            CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &bad, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
         }
     }
     luxfer_sheet_params bad = params;

@@ -33,7 +33,7 @@ class Drift(Case):
         """All but those of ABI_ONLY; references are counted by Python's own objects."""
         source = "".join(p.read_text() for p in (PACKAGE / "luxfer").glob("*.py") if p.name not in ("_abi.py", "types.py"))
         kinds = re.findall(r'kind = "(\w+)"', source)
-        verbs = set(re.findall(r'_(?:call|read|job|get_image|get_text|add)\(\s*"(\w+)"', source))
+        verbs = set(re.findall(r'_(?:call|read|fill|job|get_image|get_text|add)\(\s*"(\w+)"', source))
         unused = []
         for name in abi.FUNCTIONS:
             kind = max((k for k in kinds if name.startswith(f"luxfer_{k}_")), key=len, default=None)

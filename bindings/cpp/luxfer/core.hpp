@@ -51,13 +51,15 @@ struct IsVersioned : std::false_type {};
 template <class T>
 struct IsVersioned<T, std::void_t<decltype(T::struct_size)>> : std::true_type {};
 
-/// Calls a C function whose last parameter is a plain value or a versioned struct, and returns this value.
+/// Calls a C function that fills a plain value, or a versioned struct of the size that follows it, and returns it.
 template <class T, class... Parameters, class... Arguments>
 Result<T> get_value(luxfer_context *context, luxfer_status (*function)(Parameters...), Arguments... arguments) {
     T value = T();
+    luxfer_status status = LUXFER_OK;
     if constexpr (IsVersioned<T>::value)
-        value.struct_size = sizeof value;
-    const luxfer_status status = function(arguments..., &value);
+        status = function(arguments..., &value, sizeof value);
+    else
+        status = function(arguments..., &value);
     return finish(context, status, value);
 }
 

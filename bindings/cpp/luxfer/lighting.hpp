@@ -200,10 +200,9 @@ inline Result<Mixture> mix_primaries(const Context &context, const std::vector<s
     std::vector<double> flat;
     for (const auto &primary : primaries) flat.insert(flat.end(), primary.begin(), primary.end());
     Mixture mixture = {std::vector<double>(primaries.size()), {}};
-    mixture.light.struct_size = sizeof mixture.light;
     const luxfer_status status =
         luxfer_mix_primaries(context.get(), flat.data(), static_cast<std::uint32_t>(primaries.size()), max_drive,
-                             colour.data(), mixture.drives.data(), &mixture.light);
+                             colour.data(), mixture.drives.data(), &mixture.light, sizeof mixture.light);
     return detail::finish(context.get(), status, std::move(mixture));
 }
 

@@ -16,7 +16,7 @@ struct StylizeParams : Params<luxfer_stylize_params, luxfer_stylize_params_init>
 
     /// Any other value than a preset is refused when the settings are used.
     explicit StylizeParams(luxfer_stylize_preset preset) noexcept {
-        if (luxfer_stylize_params_preset(this, preset) != LUXFER_OK)
+        if (luxfer_stylize_params_preset(this, preset, sizeof(luxfer_stylize_params)) != LUXFER_OK)
             struct_size = 0;
     }
 };
@@ -141,8 +141,8 @@ public:
                                  const luxfer_sheet_params &params = SheetParams()) {
         luxfer_image *artwork = nullptr;
         luxfer_sheet_report report = {};
-        report.struct_size = sizeof report;
-        const luxfer_status status = luxfer_sheet_align(photo.get(), width, height, &params, &artwork, &report);
+        const luxfer_status status =
+            luxfer_sheet_align(photo.get(), width, height, &params, &artwork, &report, sizeof report);
         return detail::finish(photo.context().get(), status, Aligned{Image(photo.context(), artwork), report});
     }
 };

@@ -96,9 +96,13 @@ class Handle:
 
     def _read(self, verb: str, struct: Any, *arguments: Any) -> Any:
         """A report, as its dataclass."""
-        out = _params.sized(struct)
-        self._call(verb, *arguments, out)
-        return _params.report(out)
+        return _params.report(self._fill(verb, struct, *arguments))
+
+    def _fill(self, verb: str, struct: Any, *arguments: Any) -> Any:
+        """A struct that the library has filled."""
+        out = struct()
+        self._call(verb, *arguments, out, ctypes.sizeof(out))
+        return out
 
     def _get_image(self, verb: str, *arguments: Any) -> Image:
         from .image import Image

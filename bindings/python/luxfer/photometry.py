@@ -90,8 +90,8 @@ def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tu
 
 def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0) -> GlareReport:
     """The unified glare rating of a luminance image in cd/m²; threshold 0 is five times its mean."""
-    report = _params.sized(_abi.luxfer_glare_report)
-    call(context, "luxfer_image_glare", image_of(context, image), fov_y, threshold, report)
+    report = _abi.luxfer_glare_report()
+    call(context, "luxfer_image_glare", image_of(context, image), fov_y, threshold, report, ctypes.sizeof(report))
     return cast(GlareReport, _params.report(report))
 
 
@@ -112,9 +112,9 @@ def mix_primaries(
     """
     flat = [float(v) for primary in primaries for v in primary]
     drives = (ctypes.c_double * len(primaries))()
-    report = _params.sized(_abi.luxfer_mixture)
+    report = _abi.luxfer_mixture()
     leds, wanted = (ctypes.c_double * len(flat))(*flat), _three(colour)
-    call(context, "luxfer_mix_primaries", context, leds, len(primaries), max_drive, wanted, drives, report)
+    call(context, "luxfer_mix_primaries", context, leds, len(primaries), max_drive, wanted, drives, report, ctypes.sizeof(report))
     return list(drives), cast(Mixture, _params.report(report))
 
 
@@ -123,9 +123,9 @@ def fit_temperature(
 ) -> TemperatureFit:
     """The blackbody light that brings a target nearest to a mean radiance; response is the response to white light of
     1 cd/m²."""
-    report = _params.sized(_abi.luxfer_temperature_fit)
+    report = _abi.luxfer_temperature_fit()
     vectors = (_three(v) for v in (response, background, target))
-    call(context, "luxfer_fit_temperature", context, *vectors, report)
+    call(context, "luxfer_fit_temperature", context, *vectors, report, ctypes.sizeof(report))
     return cast(TemperatureFit, _params.report(report))
 
 
@@ -135,8 +135,8 @@ def presets(context: Context) -> dict[str, Preset]:
     call(context, "luxfer_preset_count", context, count)
     found = {}
     for index in range(count.value):
-        report = _params.sized(_abi.luxfer_preset)
-        call(context, "luxfer_preset_get", context, index, report)
+        report = _abi.luxfer_preset()
+        call(context, "luxfer_preset_get", context, index, report, ctypes.sizeof(report))
         name = ctypes.create_string_buffer(200)
         call(context, "luxfer_preset_name", context, index, name, len(name), None)
         found[name.value.decode()] = cast(Preset, _params.report(report))

@@ -90,9 +90,8 @@ class Render(StageBase):
         >>> Render(context).split(2, 1, 4, 3, width=64, height=32, samples=16)["x"]
         32
         """
-        part = _params.sized(_abi.luxfer_render_part)
         settings = _params.fill(_abi.luxfer_render_params, params, [])
-        self._call("split", settings, columns, rows, ranges, index, part)
+        part = self._fill("split", _abi.luxfer_render_part, settings, columns, rows, ranges, index)
         return cast("RenderPart", _params.settings(part))
 
     def start_part(self, path: str | os.PathLike[str], part: RenderPart, **params: Unpack[RenderParams]) -> Job[Render]:

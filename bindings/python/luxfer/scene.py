@@ -240,14 +240,12 @@ class Scene(Handle):
 
     def camera(self, index: int = 0) -> CameraParams:
         """The settings of a camera, as for add_camera."""
-        params = _params.sized(_abi.luxfer_camera_params)
-        self._call("get_camera", index, params)
+        params = self._fill("get_camera", _abi.luxfer_camera_params, index)
         return cast(CameraParams, _params.settings(params))
 
     def material(self, index: int) -> MaterialParams:
         """The settings of a material, as for add_material, without its name."""
-        params = _params.sized(_abi.luxfer_material_params)
-        self._call("get_material", index, params)
+        params = self._fill("get_material", _abi.luxfer_material_params, index)
         return cast(MaterialParams, _params.settings(params))
 
     def material_texture(self, index: int, role: TextureRole | str) -> TextureUse:
@@ -311,8 +309,7 @@ class Scene(Handle):
 
     def requirements(self, error: float = 0.01) -> Requirements:
         """The features that the scene requires of the renderer; error is the share of light for the field bounces."""
-        out = _params.sized(_abi.luxfer_requirements)
-        self._call("requirements", error, out)
+        out = self._fill("requirements", _abi.luxfer_requirements, error)
         return cast(Requirements, _params.report(out))
 
     def requirements_text(self) -> str:
