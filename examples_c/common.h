@@ -19,8 +19,8 @@ static luxfer_context *context;
 static inline void check(luxfer_status status, const char *what) {
     char message[1024] = "";
     if (status == LUXFER_OK) return;
-    if (context) luxfer_context_last_error(context, message, sizeof message, NULL);
-    fprintf(stderr, "\n%s: %s (%s)\n", what, message, luxfer_status_name(status));
+    if (context) luxfer_context_get_last_error(context, message, sizeof message, NULL);
+    fprintf(stderr, "\n%s: %s (%s)\n", what, message, luxfer_status_get_name(status));
     exit(1);
 }
 
@@ -45,12 +45,12 @@ static inline void print_warnings(luxfer_warnings *warnings) {
     static const char *stages[] = {"view", "features", "plane", "lights", "unwarp", "emission", "relight", "render"};
     luxfer_warning warning;
     uint32_t i, count = 0;
-    check(luxfer_warnings_count(warnings, &count), "warnings");
+    check(luxfer_warnings_get_count(warnings, &count), "warnings");
     for (i = 0; i < count; i++) {
         check(luxfer_warnings_get(warnings, i, &warning, sizeof warning), "warning");
         fprintf(stderr, "%s: %s\n    %s", stages[warning.stage], warning.message, warning.advice);
         if (warning.has_place) fprintf(stderr, " (at %.0f, %.0f)", warning.place[0], warning.place[1]);
-        fprintf(stderr, " [%s]\n", luxfer_warning_name(warning.code));
+        fprintf(stderr, " [%s]\n", luxfer_warning_get_name(warning.code));
     }
     check(luxfer_release(warnings), "warnings");
 }

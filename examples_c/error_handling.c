@@ -17,11 +17,11 @@ static void report(const char *attempt, luxfer_status status, luxfer_status expe
     char *message;
     size_t needed = 0;
     /* A message may have any length, so get its length first. The library keeps it until the thread's next failure. */
-    luxfer_context_last_error(context, NULL, 0, &needed);
+    luxfer_context_get_last_error(context, NULL, 0, &needed);
     message = malloc(needed);
     if (!message) exit(1);
-    luxfer_context_last_error(context, message, needed, NULL);
-    printf("%s\n  %s: %s\n", attempt, luxfer_status_name(status), message);
+    luxfer_context_get_last_error(context, message, needed, NULL);
+    printf("%s\n  %s: %s\n", attempt, luxfer_status_get_name(status), message);
     free(message);
     if (status != expected) exit(1);
 }
@@ -40,9 +40,9 @@ int main(void) {
 
     /* --8<-- [start:version] */
     /* Check that the loaded library is compatible with this header. Before 1.0 the minor versions must be equal. */
-    if (luxfer_version() / 100 != LUXFER_VERSION / 100) {
+    if (luxfer_get_version() / 100 != LUXFER_VERSION / 100) {
         fprintf(stderr, "built for luxfer %d.%d, loaded %s\n", LUXFER_VERSION_MAJOR, LUXFER_VERSION_MINOR,
-                luxfer_version_string());
+                luxfer_get_version_string());
         return 1;
     }
     /* --8<-- [end:version] */
@@ -61,7 +61,7 @@ int main(void) {
     report("Pixels of 2 x 2 that are said to be 2 x 3:", luxfer_image_create(context, &view, &image),
            LUXFER_INVALID_ARGUMENT);
 
-    if (luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
+    if (luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
     report("A name with a slip in it:", luxfer_scene_find_surface(scene, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
     luxfer_material_params_init(&material, sizeof material);
     material.roughness = NAN;

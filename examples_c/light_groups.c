@@ -48,7 +48,7 @@ int main(void) {
     sheet s = panels_begin(3, 2, 240, 180);
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
     add_spot(scene);
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");

@@ -74,7 +74,7 @@ static char *read_text(const char *name) {
 static luxfer_strokes *strokes_for(luxfer_image *photo) {
     luxfer_strokes *strokes = NULL;
     uint32_t width, height;
-    check(luxfer_image_size(photo, &width, &height, NULL), "photo");
+    check(luxfer_image_get_size(photo, &width, &height, NULL), "photo");
     check(luxfer_strokes_create(context, width, height, &strokes), "strokes");
     return strokes;
 }
@@ -116,7 +116,7 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     check(luxfer_strokes_add_image(strokes, drawing), "strokes");
     check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
     luxfer_release(strokes);
-    check(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, scene), "demo scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, scene), "demo scene");
     luxfer_release(drawing);
     luxfer_release(demo);
 }
@@ -167,12 +167,12 @@ static void write_number(FILE *file, double value) {
 static void write_warnings(FILE *file, const char *const *stages, luxfer_warnings *warnings) {
     luxfer_warning w;
     uint32_t i, count = 0;
-    check(luxfer_warnings_count(warnings, &count), "warnings");
+    check(luxfer_warnings_get_count(warnings, &count), "warnings");
     fprintf(file, "  \"warnings\": [");
     for (i = 0; i < count; i++) {
         check(luxfer_warnings_get(warnings, i, &w, sizeof w), "warning");
         fprintf(file, "%s\n    {\"stage\": \"%s\", \"code\": \"%s\", \"severity\": ", i ? "," : "", stages[w.stage],
-                luxfer_warning_name(w.code));
+                luxfer_warning_get_name(w.code));
         write_number(file, w.severity);
         fprintf(file, ", \"limit\": %.6g", w.limit);
         if (w.has_place) fprintf(file, ", \"place\": [%.1f, %.1f]", w.place[0], w.place[1]);
@@ -199,7 +199,7 @@ static void write_report(const options *o, const luxfer_transfer_report *r, cons
     errors[0] = r->view_error, errors[1] = 1 - r->depth_confidence, errors[2] = r->plane_error;
     errors[3] = r->lights_error, errors[4] = r->unwarp_error, errors[5] = r->emission_error;
     errors[6] = r->relight_error, errors[7] = r->render_error;
-    fprintf(file, "{\n  \"luxfer\": \"%s\",\n  \"stages\": {\n", luxfer_version_string());
+    fprintf(file, "{\n  \"luxfer\": \"%s\",\n  \"stages\": {\n", luxfer_get_version_string());
     for (i = 0; i < 8; i++) {
         fprintf(file, "    \"%s\": {\"seconds\": %.4f, \"error\": ", stages[i], r->seconds[i]);
         write_number(file, errors[i]);

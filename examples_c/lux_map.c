@@ -31,7 +31,7 @@ int main(void) {
     int x, y;
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
     check(luxfer_illuminance_create(context, &illuminance), "illuminance");
     check(luxfer_illuminance_set_scene(illuminance, scene), "illuminance");
 

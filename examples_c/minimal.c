@@ -28,7 +28,7 @@ int main(int argc, char **argv) {
 
     /* Every call returns a status. A call whose input is missing fails too, so report the first failure. */
     status = argc > 1 ? luxfer_scene_load(context, argv[1], NULL, &scene)
-                      : luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene);
+                      : luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene);
     if (status == LUXFER_OK) status = luxfer_render_create(context, &render);
     if (status == LUXFER_OK) status = luxfer_render_set_scene(render, scene);
 
@@ -44,8 +44,8 @@ int main(int argc, char **argv) {
         printf("look at minimal.png\n");
     } else {
         char message[512] = "";
-        luxfer_context_last_error(context, message, sizeof message, NULL);
-        fprintf(stderr, "%s: %s\n", luxfer_status_name(status), message);
+        luxfer_context_get_last_error(context, message, sizeof message, NULL);
+        fprintf(stderr, "%s: %s\n", luxfer_status_get_name(status), message);
     }
 
     /* Release in any order; releasing NULL does nothing. */

@@ -17,7 +17,7 @@ int main(void) {
     int i;
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
 

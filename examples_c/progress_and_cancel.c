@@ -38,7 +38,7 @@ int main(void) {
     watch w = {NULL, 0};
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
     check(luxfer_render_params_init(&params, sizeof params), "render");
@@ -51,7 +51,7 @@ int main(void) {
     w.render = render;
     check(luxfer_render_start(render, &params, &job), "start");
     status = luxfer_job_wait(job, -1, on_progress, &w);
-    printf("the wait ended with %s\n", luxfer_status_name(status));
+    printf("the wait ended with %s\n", luxfer_status_get_name(status));
     /* --8<-- [end:wait] */
     luxfer_release(job);
     if (status != LUXFER_CANCELLED) return 1;
@@ -67,12 +67,12 @@ int main(void) {
     check(luxfer_render_start(render, &params, &job), "start");
     /* --8<-- [start:loop] */
     while ((status = luxfer_job_wait(job, 16, NULL, NULL)) == LUXFER_NOT_READY) {
-        check(luxfer_job_poll(job, &fraction, NULL), "poll");
+        check(luxfer_job_get_progress(job, &fraction, NULL), "poll");
         /* Any thread may cancel; the work ends within about 100 ms. Releasing the job cancels it too. */
         if (++frames == 20) check(luxfer_job_cancel(job), "cancel");
     }
     /* --8<-- [end:loop] */
-    printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_name(status));
+    printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_get_name(status));
     luxfer_release(job);
 
     luxfer_release(render);

@@ -15,7 +15,7 @@ enum { COLUMNS = 3, ROWS = 2, RANGES = 2, PARTS = COLUMNS * ROWS * RANGES };
 static luxfer_render *describe(luxfer_render_params *params) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
-    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene"); /* luxfer_scene_load(context, file, NULL, &scene) */
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene"); /* luxfer_scene_load(context, file, NULL, &scene) */
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
     check(luxfer_render_add_expression(render, "direct", "LDE"), "layer");
@@ -57,7 +57,7 @@ static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     luxfer_image *image = NULL;
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
     check(luxfer_image_view_init(view, sizeof *view), "picture");
-    check(luxfer_image_size(image, &view->width, &view->height, &view->channels), "picture");
+    check(luxfer_image_get_size(image, &view->width, &view->height, &view->channels), "picture");
     view->byte_size = (size_t)view->width * view->height * view->channels * sizeof(float);
     view->data = malloc(view->byte_size);
     if (!view->data) exit(1);

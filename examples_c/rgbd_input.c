@@ -19,7 +19,7 @@ static luxfer_image *measure_depth(void) {
     luxfer_image *depth = NULL;
     luxfer_job *job = NULL;
     uint32_t layer = 0;
-    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &office), "depth");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &office), "depth");
     check(luxfer_render_create(context, &render), "depth");
     check(luxfer_render_set_scene(render, office), "depth");
     check(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH), "depth");
@@ -50,7 +50,7 @@ static void show_normals(luxfer_features *features, const char *title, sheet *s,
     printf("%-14s trust in the depth %.2f\n", title, report.depth_confidence);
     check(luxfer_features_get_image(features, LUXFER_FEATURES_CHANNELS, &channels), title);
     check(luxfer_image_view_init(&view, sizeof view), title);
-    check(luxfer_image_size(channels, &view.width, &view.height, NULL), title);
+    check(luxfer_image_get_size(channels, &view.width, &view.height, NULL), title);
     view.byte_size = (size_t)view.width * view.height * 3 * sizeof *pixels;
     view.data = pixels = malloc(view.byte_size);
     if (!pixels) exit(1);

@@ -22,7 +22,7 @@ static luxfer_guides *render(luxfer_demo which, const luxfer_guides_params *para
     luxfer_scene *scene = NULL;
     luxfer_guides *guides = NULL;
     luxfer_job *job = NULL;
-    check(luxfer_demo_scene(context, which, &scene), title);
+    check(luxfer_demo_create_scene(context, which, &scene), title);
     check(luxfer_guides_create(context, &guides), title);
     check(luxfer_guides_set_scene(guides, scene), title);
     check(luxfer_guides_start(guides, params, &job), title);
@@ -112,7 +112,7 @@ int main(int argc, char **argv) {
         luxfer_image *artwork = NULL;
         luxfer_job *job = NULL;
         /* --8<-- [start:paint] */
-        check(luxfer_demo_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
+        check(luxfer_demo_create_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
         check(luxfer_stylize_set_artwork(stylize, artwork), names[i]);
         check(luxfer_stylize_start(stylize, NULL, &job), names[i]);
         finish(job, names[i]);

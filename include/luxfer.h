@@ -10,7 +10,7 @@
  *     if (luxfer_context_create(NULL, &context) != LUXFER_OK) return 1;
  *     if (luxfer_image_load(context, "photo.jpg", LUXFER_COLOUR_SRGB, &photo) != LUXFER_OK) {
  *         char message[512];
- *         luxfer_context_last_error(context, message, sizeof message, NULL);
+ *         luxfer_context_get_last_error(context, message, sizeof message, NULL);
  *         fprintf(stderr, "%s\n", message);
  *     }
  *     luxfer_release(photo);
@@ -39,8 +39,8 @@ extern "C" {
  * version.
  *
  * A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
- * luxfer_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that the
- * library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
+ * luxfer_get_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that
+ * the library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
  * ==================================================================================================================== */
 
 /** The version of this header. */
@@ -48,20 +48,20 @@ extern "C" {
 #define LUXFER_VERSION_MINOR 1
 #define LUXFER_VERSION_PATCH 0
 
-/** The version of this header as one number, comparable with luxfer_version(). */
+/** The version of this header as one number, comparable with luxfer_get_version(). */
 #define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + LUXFER_VERSION_PATCH)
 
 /** The version of the loaded library, comparable with LUXFER_VERSION. Any thread. */
-uint32_t luxfer_version(void);
+uint32_t luxfer_get_version(void);
 
 /** The version of the loaded library as text, such as "0.1.0". The string is static: never free it. Any thread. */
-const char *luxfer_version_string(void);
+const char *luxfer_get_version_string(void);
 
 /* ====================================================================================================================
  * Status
  *
  * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added. A
- * function writes its outputs only when it returns LUXFER_OK. luxfer_context_last_error describes the failure in
+ * function writes its outputs only when it returns LUXFER_OK. luxfer_context_get_last_error describes the failure in
  * words.
  * ==================================================================================================================== */
 
@@ -117,7 +117,7 @@ typedef int32_t luxfer_status;
  * The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The string is
  * static: never free it. Any thread.
  */
-const char *luxfer_status_name(luxfer_status status);
+const char *luxfer_status_get_name(luxfer_status status);
 
 /* ====================================================================================================================
  * Context
@@ -127,8 +127,8 @@ const char *luxfer_status_name(luxfer_status status);
  * (LUXFER_INVALID_ARGUMENT).
  *
  * Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
- * reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was built
- * with an older header works with a newer library: fields that it does not know keep their defaults.
+ * reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was
+ * built with an older header works with a newer library: fields that it does not know keep their defaults.
  *
  * Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
  * handle in most cases, but not if its memory has been reused.
@@ -143,8 +143,8 @@ const char *luxfer_status_name(luxfer_status status);
  * allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
  *
  * Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
- * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and luxfer_release
- * returns LUXFER_OK and frees nothing. A child may create contexts of its own.
+ * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
+ * luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
  *
  * Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
  *
@@ -196,10 +196,10 @@ luxfer_status luxfer_context_create(const luxfer_context_params *params,
  * that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
  * valid leaves no message. Any thread.
  */
-luxfer_status luxfer_context_last_error(luxfer_context *context,
-                                        char *buffer,
-                                        size_t capacity,
-                                        size_t *needed);
+luxfer_status luxfer_context_get_last_error(luxfer_context *context,
+                                            char *buffer,
+                                            size_t capacity,
+                                            size_t *needed);
 
 /* ====================================================================================================================
  * References
@@ -218,9 +218,9 @@ luxfer_status luxfer_retain(void *handle);
  * Removes a reference to an object of any kind; NULL does nothing. Any thread.
  *
  * An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
- * long as its job, which continues. Two releases take time. The last reference to a job cancels the job and waits until
- * it has ended; the last reference to a context and all objects created in it waits until the worker threads have
- * ended.
+ * long as its job, which continues. Two releases take time. The last reference to a job cancels the job and waits
+ * until it has ended; the last reference to a context and all objects created in it waits until the worker threads
+ * have ended.
  * LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
  */
 luxfer_status luxfer_release(void *handle);
@@ -347,10 +347,10 @@ luxfer_status luxfer_image_save(luxfer_image *image,
                                 float exposure);
 
 /** Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
-luxfer_status luxfer_image_size(luxfer_image *image,
-                                uint32_t *width,
-                                uint32_t *height,
-                                uint32_t *channels);
+luxfer_status luxfer_image_get_size(luxfer_image *image,
+                                    uint32_t *width,
+                                    uint32_t *height,
+                                    uint32_t *channels);
 
 /**
  * Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
@@ -485,18 +485,13 @@ luxfer_status luxfer_job_wait(luxfer_job *job,
                               void *user);
 
 /**
- * Gets the progress of a job without waiting. *fraction receives the progress in [0, 1]; *finished receives 1 if the
- * job has ended, with or without success, else 0. Either may be NULL. Any thread.
+ * Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1]; *outcome
+ * receives the status with which the job has ended, as luxfer_job_wait returns it, or LUXFER_NOT_READY while the job
+ * runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any thread.
  */
-luxfer_status luxfer_job_poll(luxfer_job *job,
-                              double *fraction,
-                              int32_t *finished);
-
-/**
- * Gets the status with which a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any
- * thread.
- */
-luxfer_status luxfer_job_status(luxfer_job *job);
+luxfer_status luxfer_job_get_progress(luxfer_job *job,
+                                      double *fraction,
+                                      luxfer_status *outcome);
 
 /**
  * Asks a job to end early and returns at once; the work ends within about 100 ms. A request cannot be withdrawn; a
@@ -590,9 +585,9 @@ luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
 
 /**
  * Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
- * or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an image
- * in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its right
- * half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
+ * or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
+ * image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
+ * right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
@@ -643,7 +638,7 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene files
  *
- * Loads glTF 2.0 files. luxfer_get_warnings and luxfer_scene_requirements_text name the features of a file that
+ * Loads glTF 2.0 files. luxfer_get_warnings and luxfer_scene_get_requirements_text name the features of a file that
  * are not rendered.
  * ==================================================================================================================== */
 
@@ -656,7 +651,7 @@ typedef struct luxfer_scene_load_params {
      * this gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices or
      * addresses on a network.
      */
-    uint32_t outside;
+    uint32_t allow_external_files;
     /**
      * Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
      * leaves intensities and luminances as they are. 0.001: the file is in millimetres.
@@ -676,8 +671,8 @@ luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_params *params,
  * params may be NULL for the defaults. The caller releases *scene. Any thread.
  * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
  * LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
- * file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out of
- * range.
+ * file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out
+ * of range.
  */
 luxfer_status luxfer_scene_load(luxfer_context *context,
                                 const char *path,
@@ -1280,10 +1275,10 @@ typedef struct luxfer_requirements {
  * thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
  */
-luxfer_status luxfer_scene_requirements(luxfer_scene *scene,
-                                        float error,
-                                        luxfer_requirements *requirements,
-                                        size_t size);
+luxfer_status luxfer_scene_get_requirements(luxfer_scene *scene,
+                                            float error,
+                                            luxfer_requirements *requirements,
+                                            size_t size);
 
 /**
  * Describes in words what the renderer skips in a scene, and each extension and feature of its file that is not
@@ -1292,10 +1287,10 @@ luxfer_status luxfer_scene_requirements(luxfer_scene *scene,
  * capacity is 0. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
-luxfer_status luxfer_scene_requirements_text(luxfer_scene *scene,
-                                             char *buffer,
-                                             size_t capacity,
-                                             size_t *needed);
+luxfer_status luxfer_scene_get_requirements_text(luxfer_scene *scene,
+                                                 char *buffer,
+                                                 size_t capacity,
+                                                 size_t *needed);
 
 /* ====================================================================================================================
  * Scene read-back
@@ -1334,7 +1329,7 @@ luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene,
                                     size_t size);
 
 /**
- * Copies the name of a mesh into buffer, as luxfer_context_last_error copies a message. Any thread.
+ * Copies the name of a mesh into buffer, as luxfer_context_get_last_error copies a message. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh.
  */
 luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
@@ -1373,7 +1368,8 @@ luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
 /**
  * Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
  * number of vertices. Any thread.
- * LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+ * LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too
+ * small.
  */
 luxfer_status luxfer_scene_read_mesh_colours(luxfer_scene *scene,
                                              uint32_t index,
@@ -1444,7 +1440,7 @@ luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,
                                           luxfer_candidates **candidates);
 
 /** Counts the candidates of a list. Any thread. */
-luxfer_status luxfer_candidates_count(luxfer_candidates *candidates, uint32_t *count);
+luxfer_status luxfer_candidates_get_count(luxfer_candidates *candidates, uint32_t *count);
 
 /**
  * Gets a candidate of a list. size is sizeof *candidate. Any thread.
@@ -1724,8 +1720,8 @@ typedef int32_t luxfer_phase;
 #define LUXFER_PHASE_LIGHTS 1
 
 /**
- * Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes. Any
- * thread.
+ * Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes.
+ * Any thread.
  * LUXFER_INVALID_ARGUMENT if width or height is not in [1, 65536].
  */
 luxfer_status luxfer_strokes_create(luxfer_context *context,
@@ -1735,9 +1731,9 @@ luxfer_status luxfer_strokes_create(luxfer_context *context,
 
 /**
  * Adds a stroke along a polyline. phase is a LUXFER_PHASE_ value; positive is 1 on the plane or on lights, 0 beside
- * them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5, 0.5);
- * radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later stroke
- * counts. Any thread.
+ * them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5,
+ * 0.5); radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later
+ * stroke counts. Any thread.
  */
 luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
                                  luxfer_phase phase,
@@ -1910,8 +1906,8 @@ luxfer_status luxfer_features_set_view(luxfer_features *features,
  * Sets strokes on the photo, of which the fit of a room takes those for LUXFER_PHASE_PLANE and the positive strokes on
  * lights: on one plane of the room, such as the ceiling that carries the lights, or off this plane. They affect only a
  * room that is fitted to lines (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one
- * face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL: no
- * strokes. Any thread.
+ * face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL:
+ * no strokes. Any thread.
  * LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
  */
 luxfer_status luxfer_features_set_strokes(luxfer_features *features,
@@ -2028,9 +2024,9 @@ typedef struct luxfer_segment_report {
 #define LUXFER_SUBJECT_SURFACE 1
 
 /**
- * Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
- * without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as well. Negative strokes are
- * not needed. The first three channels of the features must be CIELAB.
+ * Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or
+ * more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as
+ * well. Negative strokes are not needed. The first three channels of the features must be CIELAB.
  */
 #define LUXFER_SUBJECT_LAMPS 2
 
@@ -2058,8 +2054,8 @@ luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
                                         luxfer_image *region);
 
 /**
- * Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier strokes;
- * strokes may be NULL: no strokes. Any thread.
+ * Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier
+ * strokes; strokes may be NULL: no strokes. Any thread.
  * LUXFER_INVALID_ARGUMENT if they are for images of another size than the features.
  */
 luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
@@ -2127,7 +2123,7 @@ typedef struct luxfer_emission_params {
      * Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
      * continued exactly; at 1 no repetition is, and patches may lie anywhere.
      */
-    float least_regularity;
+    float min_regularity;
     /** 1, the default: every lamp stays in one piece; 0: seams may cut lamps. */
     uint32_t whole_lamps;
     /**
@@ -2264,7 +2260,7 @@ typedef struct luxfer_luminaire {
 /** The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better. */
 #define LUXFER_LAW_BEST 0
 
-/** The law that the correlation of the lights tells, by least_regularity. */
+/** The law that the correlation of the lights tells, by min_regularity. */
 #define LUXFER_LAW_CORRELATION 1
 
 /** A lattice of two periods. */
@@ -2457,7 +2453,7 @@ typedef struct luxfer_render_params {
     float pixel_error;
     /**
      * Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light that
-     * surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number of
+     * surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the number of
      * bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased.
      */
     float bounce_error;
@@ -2750,7 +2746,8 @@ typedef struct luxfer_render_part {
 } luxfer_render_part;
 
 /**
- * Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is wrong.
+ * Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is
+ * wrong.
  */
 luxfer_status luxfer_render_part_init(luxfer_render_part *part,
                                       size_t size);
@@ -3076,9 +3073,9 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
 luxfer_status luxfer_relight_set_target(luxfer_relight *relight, float red, float green, float blue);
 
 /**
- * Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips should be
- * LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
- * respects the limit, else the scale that reaches the limit. Any thread.
+ * Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips
+ * should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their
+ * target if this respects the limit, else the scale that reaches the limit. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
  */
 luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
@@ -3171,19 +3168,19 @@ typedef struct luxfer_lamps_params {
 #define LUXFER_GROUP_EACH 1
 
 /** Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes. */
-#define LUXFER_GROUP_FIRST 2
+#define LUXFER_GROUP_BY_X 2
 
 /** Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes. */
-#define LUXFER_GROUP_SECOND 3
+#define LUXFER_GROUP_BY_Y 3
 
 /** Lamps whose centres agree in their third coordinate form a group: z of meshes. */
-#define LUXFER_GROUP_THIRD 4
+#define LUXFER_GROUP_BY_Z 4
 
 /**
  * Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
  * luminaires of one distribution.
  */
-#define LUXFER_GROUP_TYPE 5
+#define LUXFER_GROUP_BY_TYPE 5
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -3247,9 +3244,9 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     double weight);
 
 /**
- * Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must be
- * equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL. Any
- * thread.
+ * Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must
+ * be equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL.
+ * Any thread.
  * LUXFER_NOT_FOUND if there is no such goal.
  */
 luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
@@ -3290,7 +3287,7 @@ typedef struct luxfer_lamps_report {
     /** Number of paths traced for each goal. */
     uint32_t paths;
     /** 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason. */
-    uint32_t met;
+    uint32_t all_goals_met;
 } luxfer_lamps_report;
 
 /** One lamp. */
@@ -3533,7 +3530,7 @@ typedef int32_t luxfer_aim;
 typedef struct luxfer_placement_params {
     /** sizeof(luxfer_placement_params), set by luxfer_placement_params_init. */
     uint32_t struct_size;
-    /** LUXFER_AIM_ value; default LUXFER_AIM_MOST. */
+    /** LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE. */
     luxfer_aim aim;
     /** Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0. */
     float radiance[3];
@@ -3584,10 +3581,10 @@ typedef struct luxfer_placement {
 } luxfer_placement;
 
 /** The largest luminance of the target. */
-#define LUXFER_AIM_MOST 0
+#define LUXFER_AIM_MAX_LUMINANCE 0
 
 /** The smallest luminance of the target. */
-#define LUXFER_AIM_LEAST 1
+#define LUXFER_AIM_MIN_LUMINANCE 1
 
 /** The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included. */
 #define LUXFER_AIM_RADIANCE 2
@@ -3650,12 +3647,12 @@ typedef struct luxfer_glare_report {
  * colours. Any thread.
  * LUXFER_DEGENERATE if the colour is black or not finite.
  */
-luxfer_status luxfer_colour_temperature(luxfer_context *context,
-                                        double red,
-                                        double green,
-                                        double blue,
-                                        double *kelvin,
-                                        double *duv);
+luxfer_status luxfer_colour_to_temperature(luxfer_context *context,
+                                           double red,
+                                           double green,
+                                           double blue,
+                                           double *kelvin,
+                                           double *duv);
 
 /**
  * Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
@@ -3663,7 +3660,7 @@ luxfer_status luxfer_colour_temperature(luxfer_context *context,
  * Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
-luxfer_status luxfer_colour_of_temperature(luxfer_context *context,
+luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
                                            double kelvin,
                                            double duv,
                                            double *rgb);
@@ -3675,11 +3672,11 @@ luxfer_status luxfer_colour_of_temperature(luxfer_context *context,
  * luminance. size is sizeof *report. Any thread.
  * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
  */
-luxfer_status luxfer_image_glare(luxfer_image *image,
-                                 double fov_y,
-                                 double threshold,
-                                 luxfer_glare_report *report,
-                                 size_t size);
+luxfer_status luxfer_image_get_glare(luxfer_image *image,
+                                     double fov_y,
+                                     double threshold,
+                                     luxfer_glare_report *report,
+                                     size_t size);
 
 /* ====================================================================================================================
  * False colour
@@ -3756,7 +3753,7 @@ typedef struct luxfer_mixture {
      * 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
      * mixture.
      */
-    uint32_t reached;
+    uint32_t in_gamut;
     /** Linear colour of the mixture. */
     double colour[3];
     /**
@@ -3835,7 +3832,7 @@ luxfer_status luxfer_fit_temperature(luxfer_context *context,
                                      size_t size);
 
 /** Gets the number of presets. Any thread. */
-luxfer_status luxfer_preset_count(luxfer_context *context, uint32_t *count);
+luxfer_status luxfer_preset_get_count(luxfer_context *context, uint32_t *count);
 
 /**
  * Gets the requirements of a preset. size is sizeof *preset. Any thread.
@@ -3851,11 +3848,11 @@ luxfer_status luxfer_preset_get(luxfer_context *context,
  * capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
  * LUXFER_NOT_FOUND if there is no such preset.
  */
-luxfer_status luxfer_preset_name(luxfer_context *context,
-                                 uint32_t index,
-                                 char *buffer,
-                                 size_t capacity,
-                                 size_t *needed);
+luxfer_status luxfer_preset_get_name(luxfer_context *context,
+                                     uint32_t index,
+                                     char *buffer,
+                                     size_t capacity,
+                                     size_t *needed);
 
 /* ====================================================================================================================
  * Pattern
@@ -4192,8 +4189,8 @@ typedef struct luxfer_transfer_report {
      */
     double plane_distance_error;
     /**
-     * Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file states,
-     * as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
+     * Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file
+     * states, as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
      */
     double proposed_white;
     /** Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor. */
@@ -4373,7 +4370,8 @@ typedef struct luxfer_warning {
     /** The place in the photo, x and y in pixels; 0 without one. */
     double place[2];
     /**
-     * The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the luxfer_warnings.
+     * The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
+     * luxfer_warnings.
      */
     const char *message;
     /** The remedy. */
@@ -4483,7 +4481,7 @@ typedef struct luxfer_warning {
 luxfer_status luxfer_get_warnings(void *handle, luxfer_warnings **warnings);
 
 /** Counts the warnings of a list. Any thread. */
-luxfer_status luxfer_warnings_count(luxfer_warnings *warnings, uint32_t *count);
+luxfer_status luxfer_warnings_get_count(luxfer_warnings *warnings, uint32_t *count);
 
 /**
  * Gets a warning of a list. size is sizeof *warning. Any thread.
@@ -4498,7 +4496,7 @@ luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
  * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
  * string is static: never free it. Any thread.
  */
-const char *luxfer_warning_name(luxfer_warning_code code);
+const char *luxfer_warning_get_name(luxfer_warning_code code);
 
 /* ====================================================================================================================
  * Planning
@@ -4720,9 +4718,9 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
  * visible. The caller releases *motion. Any thread.
  * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
-luxfer_status luxfer_guides_motion(luxfer_guides *guides,
-                                   luxfer_guides *before,
-                                   luxfer_image **motion);
+luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
+                                       luxfer_guides *before,
+                                       luxfer_image **motion);
 
 /* ====================================================================================================================
  * Settings of a stylisation
@@ -5057,7 +5055,7 @@ typedef struct luxfer_stylize_report {
     /** sizeof(luxfer_stylize_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0. */
-    uint32_t finished;
+    uint32_t is_complete;
     /** Number of finished levels; see luxfer_stylize_get_level. */
     uint32_t levels;
     /** Number of times that the sides of the target were halved to get the size of the picture. */
@@ -5107,7 +5105,7 @@ typedef struct luxfer_stylize_pass {
     /** Share of the target with a match after this pass, in [0, 1]. */
     double coverage;
     /** Number of target patches that received a match in this pass. */
-    uint64_t gained;
+    uint64_t new_matches;
 } luxfer_stylize_pass;
 
 /**
@@ -5329,7 +5327,7 @@ typedef int32_t luxfer_artwork;
  * Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
  * LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
-luxfer_status luxfer_demo_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
+luxfer_status luxfer_demo_create_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
 
 /**
  * Draws an artwork of a scene in place of an artist, of the size of its guides and aligned with them; designed for
@@ -5337,9 +5335,9 @@ luxfer_status luxfer_demo_scene(luxfer_context *context, luxfer_demo which, luxf
  * *image. Any thread.
  * LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
  */
-luxfer_status luxfer_demo_artwork(luxfer_guides *guides,
-                                  luxfer_artwork style,
-                                  luxfer_image **image);
+luxfer_status luxfer_demo_create_artwork(luxfer_guides *guides,
+                                         luxfer_artwork style,
+                                         luxfer_image **image);
 
 /* ====================================================================================================================
  * Demonstration photo

@@ -17,7 +17,7 @@ fn handles_that_are_none_are_errors() {
     unsafe {
         for bad in [null_mut(), garbage.as_ptr().cast_mut().cast(), unaligned.cast_mut().cast(), context.cast()] {
             let bad: *mut luxfer_image = bad;
-            assert_eq!(luxfer_image_size(bad, null_mut(), null_mut(), null_mut()), LUXFER_INVALID_ARGUMENT);
+            assert_eq!(luxfer_image_get_size(bad, null_mut(), null_mut(), null_mut()), LUXFER_INVALID_ARGUMENT);
             assert_eq!(luxfer_job_cancel(bad.cast()), LUXFER_INVALID_ARGUMENT);
             if bad != context.cast() {
                 assert_eq!(luxfer_retain(bad.cast()), LUXFER_INVALID_ARGUMENT);
@@ -57,7 +57,7 @@ fn references_are_counted() {
         }
         for _ in 0..3 {
             assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
-            assert_eq!(luxfer_image_size(image, null_mut(), &mut height, null_mut()), LUXFER_OK);
+            assert_eq!(luxfer_image_get_size(image, null_mut(), &mut height, null_mut()), LUXFER_OK);
         }
         assert_eq!(height, 3);
         assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
@@ -238,16 +238,16 @@ fn messages_are_kept_for_each_thread_and_cut_to_fit() {
 
     let mut needed = 0;
     unsafe {
-        assert_eq!(luxfer_context_last_error(context, null_mut(), 0, &mut needed), LUXFER_OK);
+        assert_eq!(luxfer_context_get_last_error(context, null_mut(), 0, &mut needed), LUXFER_OK);
         assert_eq!(needed, whole.len() + 1);
         for capacity in 1..needed + 3 {
             let mut buffer = vec![0x7f as c_char; needed + 8];
-            assert_eq!(luxfer_context_last_error(context, buffer.as_mut_ptr(), capacity, null_mut()), LUXFER_OK);
+            assert_eq!(luxfer_context_get_last_error(context, buffer.as_mut_ptr(), capacity, null_mut()), LUXFER_OK);
             let text = CStr::from_ptr(buffer.as_ptr()).to_str().unwrap();
             assert_eq!(text, &whole[..whole.len().min(capacity - 1)]);
             assert!(buffer[capacity.min(needed)..].iter().all(|&b| b == 0x7f));
         }
-        assert_eq!(luxfer_context_last_error(context, null_mut(), 5, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_context_get_last_error(context, null_mut(), 5, null_mut()), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

@@ -99,7 +99,7 @@ fn the_readme_program_compiles() {
 
 #[test]
 fn the_header_compiles_as_c99_and_as_cpp17_without_a_warning() {
-    let source = "#include \"luxfer.h\"\n#include \"luxfer.h\"\nint main(void) { return (int)(luxfer_version() - LUXFER_VERSION); }\n";
+    let source = "#include \"luxfer.h\"\n#include \"luxfer.h\"\nint main(void) { return (int)(luxfer_get_version() - LUXFER_VERSION); }\n";
     for (compiler, standard, name) in [("cc", "-std=c99", "alone.c"), ("c++", "-std=c++17", "alone.cpp")] {
         let file = scratch(name);
         std::fs::write(&file, source).unwrap();
@@ -191,9 +191,9 @@ fn the_library_exports_the_header_and_nothing_else_under_its_soname() {
 #[test]
 fn the_version_is_cargos() {
     let [major, minor, patch] = version().map(|v| v.parse::<u32>().unwrap());
-    assert_eq!(luxfer_version(), 10_000 * major + 100 * minor + patch);
+    assert_eq!(luxfer_get_version(), 10_000 * major + 100 * minor + patch);
     // SAFETY: a static string.
-    let text = unsafe { std::ffi::CStr::from_ptr(luxfer_version_string()) };
+    let text = unsafe { std::ffi::CStr::from_ptr(luxfer_get_version_string()) };
     assert_eq!(text.to_str().unwrap(), env!("CARGO_PKG_VERSION"));
     let header = header();
     for (name, value) in [("MAJOR", major), ("MINOR", minor), ("PATCH", patch)] {
@@ -290,7 +290,7 @@ fn version_macros() -> String {
     format!(
         "/** The version of this header. */\n#define LUXFER_VERSION_MAJOR {major}\n#define LUXFER_VERSION_MINOR {minor}\n\
          #define LUXFER_VERSION_PATCH {patch}\n\n/** The version of this header as one number, comparable with \
-         luxfer_version(). */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
+         luxfer_get_version(). */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
          LUXFER_VERSION_PATCH)\n\n"
     )
 }
@@ -346,7 +346,7 @@ layouts! {
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
-    luxfer_scene_load_params: struct_size outside unit;
+    luxfer_scene_load_params: struct_size allow_external_files unit;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
@@ -369,7 +369,7 @@ layouts! {
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
         distortion distortion_error squareness squareness_errors;
-    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
+    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed min_regularity
         whole_lamps offset clip_level even_lamps tileable centred candidates reserved law clean_lamps max_magnification;
     luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error law runner_up
         law_score margin;
@@ -387,7 +387,7 @@ layouts! {
     luxfer_relight_report: struct_size paths scale half_width response background outcome reserved error delta_e;
     luxfer_lamps_params: struct_size group row_tolerance free_colour max_scale regularisation tolerance paths target_error
         time_budget_ms reserved seed;
-    luxfer_lamps_report: struct_size lamps groups goals paths met;
+    luxfer_lamps_report: struct_size lamps groups goals paths all_goals_met;
     luxfer_lamp: struct_size group centre scale half_width;
     luxfer_lamps_goal: struct_size outcome target achieved half_width background target_lux achieved_lux half_width_lux
         background_lux;
@@ -399,7 +399,7 @@ layouts! {
     luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
-    luxfer_mixture: struct_size reached colour delta_e;
+    luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
     luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
     luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
@@ -419,9 +419,9 @@ layouts! {
     luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish sweeps
         coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
         seed coarse_guides coarse_iterations occurrence reserved;
-    luxfer_stylize_report: struct_size finished levels halvings patch max_uses energy used entropy guide_error
+    luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
         broken_source broken_target;
     luxfer_stylize_round: struct_size passes energy;
-    luxfer_stylize_pass: struct_size reserved knee coverage gained;
+    luxfer_stylize_pass: struct_size reserved knee coverage new_matches;
     luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;
 }

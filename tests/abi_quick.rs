@@ -40,7 +40,7 @@ impl Endless {
         let (render, job) = start_render(context, 1 << 20);
         let mut fraction = 0.0;
         while fraction == 0.0 {
-            assert_eq!(unsafe { luxfer_job_poll(job, &mut fraction, null_mut()) }, LUXFER_OK);
+            assert_eq!(unsafe { luxfer_job_get_progress(job, &mut fraction, null_mut()) }, LUXFER_OK);
             std::thread::sleep(Duration::from_millis(1));
         }
         Self { render, job }
@@ -109,15 +109,15 @@ fn new_image(context: *mut luxfer_context, make: impl FnOnce(*mut *mut luxfer_im
 
 fn requirements(scene: *mut luxfer_scene) {
     let mut found = unsafe { std::mem::zeroed::<luxfer_requirements>() };
-    assert_eq!(unsafe { luxfer_scene_requirements(scene, 0.1, &mut found, size_of_val(&found)) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_scene_get_requirements(scene, 0.1, &mut found, size_of_val(&found)) }, LUXFER_OK);
 }
 
 /// Every quick call that works in parallel and needs no long preparation, by name.
 const CALLS: [(&str, fn(&Objects)); 9] = [
     ("luxfer_scene_intersect, 1 ray", |o| assert_eq!(trace(o.scene, 1), 2.0)),
     ("luxfer_scene_intersect, 10000 rays", |o| assert_eq!(trace(o.scene, 10_000), 2.0)),
-    ("luxfer_scene_requirements", |o| requirements(o.scene)),
-    ("luxfer_scene_requirements of a new scene", |o| {
+    ("luxfer_scene_get_requirements", |o| requirements(o.scene)),
+    ("luxfer_scene_get_requirements of a new scene", |o| {
         let scene = scene(o.context);
         requirements(scene);
         assert_eq!(unsafe { luxfer_release(scene.cast()) }, LUXFER_OK);

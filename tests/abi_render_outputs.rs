@@ -10,7 +10,7 @@ use std::ptr::{null, null_mut};
 fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
     let (mut width, mut height, mut channels) = (0, 0, 0);
     unsafe {
-        assert_eq!(luxfer_image_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
+        assert_eq!(luxfer_image_get_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
         let mut data = vec![0.0f32; (width * height * channels) as usize];
         let view = luxfer_image_view { channels, ..host::view(width, height, &mut data) };
         assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
@@ -197,7 +197,7 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
         // In a closed room of albedo up to 0.84, little light is left after the needed number of bounces, and much
         // after one.
         let mut needed = std::mem::zeroed::<luxfer_requirements>();
-        assert_eq!(luxfer_scene_requirements(scene, 0.01, &mut needed, size_of_val(&needed)), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_requirements(scene, 0.01, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert!((10..40).contains(&needed.bounces), "{}", needed.bounces);
         let (most, _) = rendered(render, &luxfer_render_params { bounce_error: 0.01, ..params });
         let (least, _) = rendered(render, &luxfer_render_params { bounce_error: 0.99, ..params });
@@ -240,7 +240,7 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
         assert_eq!(luxfer_scene_set_environment(scene, scene.cast(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_scene_set_environment(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
         let mut needed = std::mem::zeroed::<luxfer_requirements>();
-        assert_eq!(luxfer_scene_requirements(scene, 0.0, &mut needed, size_of_val(&needed)), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_requirements(scene, 0.0, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert_eq!(needed.lights, LUXFER_LIGHTS_ENVIRONMENT);
         assert_eq!(luxfer_illuminance_grid_init(&mut grid, size_of_val(&grid)), LUXFER_OK);
         assert_eq!(luxfer_illuminance_set_scene(stage, scene), LUXFER_OK);

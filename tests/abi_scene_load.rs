@@ -47,9 +47,9 @@ impl Drop for Folder {
 }
 
 fn params() -> luxfer_scene_load_params {
-    let mut params = luxfer_scene_load_params { struct_size: 0, outside: 7, unit: 7.0 };
+    let mut params = luxfer_scene_load_params { struct_size: 0, allow_external_files: 7, unit: 7.0 };
     assert_eq!(unsafe { luxfer_scene_load_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
-    assert_eq!((params.outside, params.unit), (0, 1.0));
+    assert_eq!((params.allow_external_files, params.unit), (0, 1.0));
     params
 }
 
@@ -57,7 +57,7 @@ fn params() -> luxfer_scene_load_params {
 fn warnings(scene: *mut luxfer_scene) -> Vec<(luxfer_warning_code, f64, String)> {
     let list = made(|out| unsafe { luxfer_get_warnings(scene.cast(), out) });
     let mut count = 0;
-    assert_eq!(unsafe { luxfer_warnings_count(list, &mut count) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_warnings_get_count(list, &mut count) }, LUXFER_OK);
     let read = |index| {
         let mut warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
         assert_eq!(unsafe { luxfer_warnings_get(list, index, &mut warning, size_of_val(&warning)) }, LUXFER_OK);
@@ -94,7 +94,7 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
     unsafe {
         let status = luxfer_scene_read_mesh(scene, 0, 3, positions.as_mut_ptr(), null_mut(), 0, null_mut());
         assert_eq!((status, positions[3]), (LUXFER_OK, 2.7));
-        let status = luxfer_scene_requirements_text(scene, text.as_mut_ptr(), text.len(), null_mut());
+        let status = luxfer_scene_get_requirements_text(scene, text.as_mut_ptr(), text.len(), null_mut());
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let text = CStr::from_ptr(text.as_ptr()).to_str().unwrap();
         assert!(text.lines().any(|l| l.starts_with("KHR_materials_clearcoat: not rendered")), "{text}");
@@ -110,8 +110,8 @@ fn files_outside_the_folder_are_read_only_with_leave() {
     let mut scene = null_mut();
     unsafe {
         assert_eq!(luxfer_scene_load(context, file.as_ptr(), null(), &mut scene), LUXFER_UNSUPPORTED);
-        assert!(message(context).contains("luxfer_scene_load_params.outside"), "{}", message(context));
-        let open = luxfer_scene_load_params { outside: 1, ..params() };
+        assert!(message(context).contains("luxfer_scene_load_params.allow_external_files"), "{}", message(context));
+        let open = luxfer_scene_load_params { allow_external_files: 1, ..params() };
         assert_eq!(luxfer_scene_load(context, file.as_ptr(), &open, &mut scene), LUXFER_OK);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         // Load from memory too, with the folder as base.
@@ -137,7 +137,7 @@ fn settings_out_of_range_are_refused() {
         assert_eq!(load(luxfer_scene_load_params { unit, ..params() }), LUXFER_INVALID_ARGUMENT, "{unit}");
         assert!(message(context).contains("unit is"), "{}", message(context));
     }
-    assert_eq!(load(luxfer_scene_load_params { outside: 2, ..params() }), LUXFER_INVALID_ARGUMENT);
+    assert_eq!(load(luxfer_scene_load_params { allow_external_files: 2, ..params() }), LUXFER_INVALID_ARGUMENT);
     assert_eq!(load(luxfer_scene_load_params { struct_size: 3, ..params() }), LUXFER_INVALID_ARGUMENT);
     assert!(scene.is_null());
     assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);

@@ -77,7 +77,7 @@ fn materials_and_textures_come_back() {
         // A texture outlives its scene.
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         let (mut width, mut height) = (0, 0);
-        assert_eq!(luxfer_image_size(texture, &mut width, &mut height, null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_image_get_size(texture, &mut width, &mut height, null_mut()), LUXFER_OK);
         assert_eq!((width, height), (5, 3));
         assert_eq!(luxfer_release(texture.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(light.cast()), LUXFER_OK);
@@ -133,7 +133,7 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
     unsafe {
         let mut scene = null_mut();
         for which in [-1, 4, i32::MAX] {
-            assert_eq!(luxfer_demo_scene(context, which, &mut scene), LUXFER_INVALID_ARGUMENT);
+            assert_eq!(luxfer_demo_create_scene(context, which, &mut scene), LUXFER_INVALID_ARGUMENT);
         }
         let source = image(context, 4, 4, 0.5);
         let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];

@@ -26,7 +26,7 @@ fn drawn(
 fn pixels(image: *mut luxfer_image) -> (u32, u32, Vec<f32>) {
     let (mut width, mut height, mut channels) = (0, 0, 0);
     unsafe {
-        assert_eq!(luxfer_image_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
+        assert_eq!(luxfer_image_get_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
         let mut data = vec![0.0f32; (width * height * channels) as usize];
         let view = luxfer_image_view { channels, ..view(width, height, &mut data) };
         assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
@@ -118,7 +118,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_image(stylize, 0, &mut null_mut()), LUXFER_NOT_READY);
         assert_eq!(run(stylize, &params()), LUXFER_OK, "{}", message(context));
         let all = report(stylize);
-        assert!(all.finished == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
+        assert!(all.is_complete == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
 
         // Read the rounds of the level and their passes, whose coverage rises.
@@ -188,7 +188,7 @@ fn a_cancelled_run_keeps_the_picture_of_its_last_level() {
         assert_eq!(luxfer_job_wait(job, -1, Some(cancel_at_first_picture), stylize.cast()), LUXFER_CANCELLED);
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         let so_far = report(stylize);
-        assert!(so_far.finished == 0 && so_far.levels >= 1 && so_far.halvings >= 1 && so_far.energy > 0.0);
+        assert!(so_far.is_complete == 0 && so_far.levels >= 1 && so_far.halvings >= 1 && so_far.energy > 0.0);
         let picture = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         assert_eq!(pixels(picture).0, 2000 >> so_far.halvings);
         assert_eq!(luxfer_release(picture.cast()), LUXFER_OK);

@@ -45,7 +45,7 @@ fn empty() -> luxfer_warning {
 
 fn list(warnings: *mut luxfer_warnings) -> Vec<luxfer_warning> {
     let mut count = u32::MAX;
-    assert_eq!(unsafe { luxfer_warnings_count(warnings, &mut count) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_warnings_get_count(warnings, &mut count) }, LUXFER_OK);
     let read = |index| {
         let mut warning = empty();
         assert_eq!(unsafe { luxfer_warnings_get(warnings, index, &mut warning, size_of_val(&warning)) }, LUXFER_OK);
@@ -128,8 +128,8 @@ fn wrong_arguments_are_errors() {
         assert_eq!(luxfer_warnings_get(warnings, u32::MAX, &mut warning, size_of_val(&warning)), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_warnings_get(warnings, 0, &mut warning, 20), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_warnings_get(warnings, 0, null_mut(), 0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_warnings_count(warnings, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_warnings_count(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get_count(warnings, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get_count(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_get_warnings(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
 
         // Only stages and scenes have warnings.

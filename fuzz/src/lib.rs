@@ -51,8 +51,8 @@ fn context() -> *mut luxfer_context {
 /// A scene to render, as seeds.py has it.
 fn demo() -> *mut luxfer_scene {
     static SCENE: LazyLock<Shared<luxfer_scene>> = LazyLock::new(|| {
-        let make = |out| unsafe { luxfer_demo_scene(context(), LUXFER_DEMO_SPHERE_ON_TABLE, out) };
-        Shared(made("luxfer_demo_scene", make).expect("a scene"))
+        let make = |out| unsafe { luxfer_demo_create_scene(context(), LUXFER_DEMO_SPHERE_ON_TABLE, out) };
+        Shared(made("luxfer_demo_create_scene", make).expect("a scene"))
     });
     SCENE.0
 }
@@ -92,7 +92,7 @@ pub fn scene(data: &[u8]) {
         let mut hits: [luxfer_hit; 2] = std::mem::zeroed();
         check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, hits.as_mut_ptr()));
         let mut needs: luxfer_requirements = std::mem::zeroed();
-        check("luxfer_scene_requirements", luxfer_scene_requirements(scene, 0.01, &mut needs, size_of_val(&needs)));
+        check("luxfer_scene_get_requirements", luxfer_scene_get_requirements(scene, 0.01, &mut needs, size_of_val(&needs)));
         check("luxfer_scene_export_memory", luxfer_scene_export_memory(scene, Some(take), null_mut()));
         luxfer_release(scene.cast());
     }

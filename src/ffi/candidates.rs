@@ -140,7 +140,10 @@ pub unsafe extern "C" fn luxfer_scene_get_candidates(
 
 /// Counts the candidates of a list. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_count(candidates: *mut luxfer_candidates, count: *mut u32) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_candidates_get_count(
+    candidates: *mut luxfer_candidates,
+    count: *mut u32,
+) -> luxfer_status {
     enter(candidates, |object| {
         Out::new(count, "count")?.set(u32::try_from(object.list.len()).unwrap_or(u32::MAX));
         Ok(())

@@ -5,8 +5,8 @@
 //! (LUXFER_INVALID_ARGUMENT).
 //!
 //! Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
-//! reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was built
-//! with an older header works with a newer library: fields that it does not know keep their defaults.
+//! reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was
+//! built with an older header works with a newer library: fields that it does not know keep their defaults.
 //!
 //! Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
 //! handle in most cases, but not if its memory has been reused.
@@ -21,8 +21,8 @@
 //! allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
 //!
 //! Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
-//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and luxfer_release
-//! returns LUXFER_OK and frees nothing. A child may create contexts of its own.
+//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
+//! luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
 //!
 //! Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
 //!
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn luxfer_context_create(
 /// that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
 /// valid leaves no message. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_context_last_error(
+pub unsafe extern "C" fn luxfer_context_get_last_error(
     context: *mut luxfer_context,
     buffer: *mut c_char,
     capacity: usize,

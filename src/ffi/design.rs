@@ -25,14 +25,14 @@ pub struct luxfer_mixture {
     pub struct_size: u32,
     /// 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
     /// mixture.
-    pub reached: u32,
+    pub in_gamut: u32,
     /// Linear colour of the mixture.
     pub colour: [f64; 3],
     /// CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
     pub delta_e: f64,
 }
 
-versioned!(luxfer_mixture, [40], { Self { struct_size: 40, reached: 0, colour: [0.0; 3], delta_e: 0.0 } });
+versioned!(luxfer_mixture, [40], { Self { struct_size: 40, in_gamut: 0, colour: [0.0; 3], delta_e: 0.0 } });
 
 /// The blackbody light that fits a target best.
 #[repr(C)]
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
             place.copy_from_slice(&drive.to_ne_bytes());
         }
         out.set(luxfer_mixture {
-            reached: u32::from(mixed.reached),
+            in_gamut: u32::from(mixed.reached),
             colour: mixed.colour.to_array(),
             delta_e: mixed.delta_e,
             ..luxfer_mixture::defaults()
@@ -162,7 +162,7 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
 
 /// Gets the number of presets. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_preset_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_preset_get_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
     enter(context, |_| {
         Out::new(count, "count")?.set(PRESETS.len() as u32);
         Ok(())
@@ -199,7 +199,7 @@ pub unsafe extern "C" fn luxfer_preset_get(
 /// capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
 /// LUXFER_NOT_FOUND if there is no such preset.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_preset_name(
+pub unsafe extern "C" fn luxfer_preset_get_name(
     context: *mut luxfer_context,
     index: u32,
     buffer: *mut c_char,

@@ -43,7 +43,7 @@ pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 pub type luxfer_emission_law = i32;
 /// The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that the correlation of the lights tells, by least_regularity.
+/// The law that the correlation of the lights tells, by min_regularity.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// A lattice of two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
@@ -78,7 +78,7 @@ pub struct luxfer_emission_params {
     pub seed: u64,
     /// Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
     /// continued exactly; at 1 no repetition is, and patches may lie anywhere.
-    pub least_regularity: f32,
+    pub min_regularity: f32,
     /// 1, the default: every lamp stays in one piece; 0: seams may cut lamps.
     pub whole_lamps: u32,
     /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
@@ -123,7 +123,7 @@ versioned!(luxfer_emission_params, [104], {
         working_side: d.working_side as u32,
         metadata_weight: d.metadata_weight,
         seed: d.seed,
-        least_regularity: d.least_regularity,
+        min_regularity: d.least_regularity,
         whole_lamps: u32::from(d.whole_lamps),
         offset: d.offset.to_array(),
         clip_level: d.clip_level,
@@ -151,7 +151,7 @@ impl luxfer_emission_params {
             working_side: self.working_side as usize,
             metadata_weight: self.metadata_weight,
             offset: DVec2::from_array(self.offset),
-            least_regularity: self.least_regularity,
+            least_regularity: self.min_regularity,
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
             even_lamps: params::flag(self.even_lamps, "even_lamps")?,
             tileable: params::flag(self.tileable, "tileable")?,

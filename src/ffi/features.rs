@@ -302,8 +302,8 @@ pub unsafe extern "C" fn luxfer_features_set_view(
 /// Sets strokes on the photo, of which the fit of a room takes those for LUXFER_PHASE_PLANE and the positive strokes on
 /// lights: on one plane of the room, such as the ceiling that carries the lights, or off this plane. They affect only a
 /// room that is fitted to lines (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one
-/// face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL: no
-/// strokes. Any thread.
+/// face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL:
+/// no strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(

@@ -187,7 +187,7 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 /// visible. The caller releases *motion. Any thread.
 /// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_guides_motion(
+pub unsafe extern "C" fn luxfer_guides_get_motion(
     guides: *mut luxfer_guides,
     before: *mut luxfer_guides,
     motion: *mut *mut luxfer_image,

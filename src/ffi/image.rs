@@ -373,7 +373,7 @@ fn encode_exr(image: &Image) -> Result<Vec<u8>> {
 
 /// Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_size(
+pub unsafe extern "C" fn luxfer_image_get_size(
     image: *mut luxfer_image,
     width: *mut u32,
     height: *mut u32,

@@ -36,14 +36,14 @@ pub const LUXFER_GROUP_ALL: luxfer_group = 0;
 /// Each lamp is a group of its own.
 pub const LUXFER_GROUP_EACH: luxfer_group = 1;
 /// Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes.
-pub const LUXFER_GROUP_FIRST: luxfer_group = 2;
+pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
 /// Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes.
-pub const LUXFER_GROUP_SECOND: luxfer_group = 3;
+pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 /// Lamps whose centres agree in their third coordinate form a group: z of meshes.
-pub const LUXFER_GROUP_THIRD: luxfer_group = 4;
+pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
 /// Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
 /// luminaires of one distribution.
-pub const LUXFER_GROUP_TYPE: luxfer_group = 5;
+pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
 /// Settings of the calculation. Fill them with luxfer_lamps_params_init.
 #[repr(C)]
@@ -219,7 +219,7 @@ impl luxfer_lamps_params {
         if self.free_colour > 1 || self.reserved != 0 {
             return Err(Error::argument("free_colour must be 0 or 1, and reserved 0"));
         }
-        if !(LUXFER_GROUP_ALL..=LUXFER_GROUP_TYPE).contains(&self.group) {
+        if !(LUXFER_GROUP_ALL..=LUXFER_GROUP_BY_TYPE).contains(&self.group) {
             return Err(Error::argument(format!("group is {}; it must be a LUXFER_GROUP_ value", self.group)));
         }
         if !(self.row_tolerance >= 0.0) {
@@ -240,8 +240,8 @@ impl luxfer_lamps_params {
         match self.group {
             LUXFER_GROUP_ALL => lamps.together(),
             LUXFER_GROUP_EACH => lamps.each(),
-            LUXFER_GROUP_TYPE => lamps.types(),
-            other => lamps.rows((other - LUXFER_GROUP_FIRST) as usize, self.row_tolerance),
+            LUXFER_GROUP_BY_TYPE => lamps.types(),
+            other => lamps.rows((other - LUXFER_GROUP_BY_X) as usize, self.row_tolerance),
         }
     }
 

@@ -33,10 +33,12 @@ pub struct luxfer_lamps_report {
     /// Number of paths traced for each goal.
     pub paths: u32,
     /// 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason.
-    pub met: u32,
+    pub all_goals_met: u32,
 }
 
-versioned!(luxfer_lamps_report, [24], { Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, met: 0 } });
+versioned!(luxfer_lamps_report, [24], {
+    Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, all_goals_met: 0 }
+});
 
 /// One lamp.
 #[repr(C)]
@@ -135,7 +137,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_report(
             groups: o.solution.scale.len() as u32,
             goals: o.targets.len() as u32,
             paths: o.responses.paths,
-            met: u32::from(o.solution.unreachable.is_none()),
+            all_goals_met: u32::from(o.solution.unreachable.is_none()),
             ..luxfer_lamps_report::defaults()
         });
         Ok(())

@@ -42,7 +42,7 @@ versioned!(luxfer_glare_report, [40], {
 /// colours. Any thread.
 /// LUXFER_DEGENERATE if the colour is black or not finite.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_colour_temperature(
+pub unsafe extern "C" fn luxfer_colour_to_temperature(
     context: *mut luxfer_context,
     red: f64,
     green: f64,
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn luxfer_colour_temperature(
 /// Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_colour_of_temperature(
+pub unsafe extern "C" fn luxfer_temperature_to_colour(
     context: *mut luxfer_context,
     kelvin: f64,
     duv: f64,
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn luxfer_colour_of_temperature(
 /// luminance. size is sizeof *report. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_glare(
+pub unsafe extern "C" fn luxfer_image_get_glare(
     image: *mut luxfer_image,
     fov_y: f64,
     threshold: f64,

@@ -17,9 +17,9 @@ use glam::{DVec2, Vec3};
 /// Objective of a placement: a LUXFER_AIM_ value.
 pub type luxfer_aim = i32;
 /// The largest luminance of the target.
-pub const LUXFER_AIM_MOST: luxfer_aim = 0;
+pub const LUXFER_AIM_MAX_LUMINANCE: luxfer_aim = 0;
 /// The smallest luminance of the target.
-pub const LUXFER_AIM_LEAST: luxfer_aim = 1;
+pub const LUXFER_AIM_MIN_LUMINANCE: luxfer_aim = 1;
 /// The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 
@@ -30,7 +30,7 @@ pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 pub struct luxfer_placement_params {
     /// sizeof(luxfer_placement_params), set by luxfer_placement_params_init.
     pub struct_size: u32,
-    /// LUXFER_AIM_ value; default LUXFER_AIM_MOST.
+    /// LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE.
     pub aim: luxfer_aim,
     /// Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0.
     pub radiance: [f32; 3],
@@ -57,7 +57,7 @@ versioned!(luxfer_placement_params, [112], {
     let d = PlaceParams::default();
     Self {
         struct_size: 112,
-        aim: LUXFER_AIM_MOST,
+        aim: LUXFER_AIM_MAX_LUMINANCE,
         radiance: [0.0; 3],
         starts: d.starts as u32,
         min_offset: d.min.offset.to_array(),
@@ -79,8 +79,8 @@ impl luxfer_placement_params {
         };
         Ok(PlaceParams {
             aim: match self.aim {
-                LUXFER_AIM_MOST => Aim::Brightest,
-                LUXFER_AIM_LEAST => Aim::Darkest,
+                LUXFER_AIM_MAX_LUMINANCE => Aim::Brightest,
+                LUXFER_AIM_MIN_LUMINANCE => Aim::Darkest,
                 LUXFER_AIM_RADIANCE => Aim::Radiance(Vec3::from_array(self.radiance)),
                 other => return Err(Error::argument(format!("aim is {other}; it must be a LUXFER_AIM_ value"))),
             },

@@ -280,9 +280,9 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
     })
 }
 
-/// Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips should be
-/// LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
-/// respects the limit, else the scale that reaches the limit. Any thread.
+/// Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips
+/// should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their
+/// target if this respects the limit, else the scale that reaches the limit. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_constraint(

@@ -69,7 +69,7 @@ pub struct luxfer_render_params {
     /// 0: no target.
     pub pixel_error: f32,
     /// Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light that
-    /// surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number of
+    /// surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the number of
     /// bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased.
     pub bounce_error: f32,
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default

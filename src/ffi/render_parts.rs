@@ -62,7 +62,8 @@ impl luxfer_render_part {
     }
 }
 
-/// Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is wrong.
+/// Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is
+/// wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_part_init(part: *mut luxfer_render_part, size: usize) -> luxfer_status {
     guard(|| params::init(part, size))

@@ -80,7 +80,7 @@ versioned!(luxfer_requirements, [40], {
 /// thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_requirements(
+pub unsafe extern "C" fn luxfer_scene_get_requirements(
     scene: *mut luxfer_scene,
     error: f32,
     requirements: *mut luxfer_requirements,
@@ -121,7 +121,7 @@ pub unsafe extern "C" fn luxfer_scene_requirements(
 /// capacity is 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_requirements_text(
+pub unsafe extern "C" fn luxfer_scene_get_requirements_text(
     scene: *mut luxfer_scene,
     buffer: *mut c_char,
     capacity: usize,

@@ -295,9 +295,9 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
 }
 
 /// Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
-/// or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an image
-/// in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its right
-/// half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
+/// or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
+/// image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
+/// right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]

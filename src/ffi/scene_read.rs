@@ -77,7 +77,7 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh(
     })
 }
 
-/// Copies the name of a mesh into buffer, as luxfer_context_last_error copies a message. Any thread.
+/// Copies the name of a mesh into buffer, as luxfer_context_get_last_error copies a message. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
@@ -147,7 +147,8 @@ pub unsafe extern "C" fn luxfer_scene_read_mesh_uvs(
 
 /// Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
 /// number of vertices. Any thread.
-/// LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+/// LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too
+/// small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_read_mesh_colours(
     scene: *mut luxfer_scene,

@@ -38,9 +38,9 @@ pub type luxfer_subject = i32;
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is judged by its features.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
-/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
-/// without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as well. Negative strokes are
-/// not needed. The first three channels of the features must be CIELAB.
+/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or
+/// more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as
+/// well. Negative strokes are not needed. The first three channels of the features must be CIELAB.
 pub const LUXFER_SUBJECT_LAMPS: luxfer_subject = 2;
 
 /// Settings of a segmentation. Fill them with luxfer_segment_params_init.
@@ -200,8 +200,8 @@ pub unsafe extern "C" fn luxfer_segment_set_region(
     })
 }
 
-/// Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier strokes;
-/// strokes may be NULL: no strokes. Any thread.
+/// Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier
+/// strokes; strokes may be NULL: no strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if they are for images of another size than the features.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_strokes(

@@ -133,8 +133,8 @@ fn stroke(
     }
 }
 
-/// Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes. Any
-/// thread.
+/// Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes.
+/// Any thread.
 /// LUXFER_INVALID_ARGUMENT if width or height is not in [1, 65536].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_create(
@@ -157,9 +157,9 @@ pub unsafe extern "C" fn luxfer_strokes_create(
 }
 
 /// Adds a stroke along a polyline. phase is a LUXFER_PHASE_ value; positive is 1 on the plane or on lights, 0 beside
-/// them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5, 0.5);
-/// radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later stroke
-/// counts. Any thread.
+/// them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5,
+/// 0.5); radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later
+/// stroke counts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add(
     strokes: *mut luxfer_strokes,

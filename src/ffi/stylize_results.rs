@@ -35,7 +35,7 @@ pub struct luxfer_stylize_report {
     /// sizeof(luxfer_stylize_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0.
-    pub finished: u32,
+    pub is_complete: u32,
     /// Number of finished levels; see luxfer_stylize_get_level.
     pub levels: u32,
     /// Number of times that the sides of the target were halved to get the size of the picture.
@@ -62,7 +62,7 @@ pub struct luxfer_stylize_report {
 versioned!(luxfer_stylize_report, [72], {
     Self {
         struct_size: 72,
-        finished: 0,
+        is_complete: 0,
         levels: 0,
         halvings: 0,
         patch: 0,
@@ -80,7 +80,7 @@ impl luxfer_stylize_report {
     /// The numbers of a finished run.
     fn of(finished: &Finished) -> Self {
         Self {
-            finished: 1,
+            is_complete: 1,
             patch: finished.patch as u32,
             max_uses: finished.usage.max_uses,
             used: finished.usage.used,
@@ -121,10 +121,12 @@ pub struct luxfer_stylize_pass {
     /// Share of the target with a match after this pass, in [0, 1].
     pub coverage: f64,
     /// Number of target patches that received a match in this pass.
-    pub gained: u64,
+    pub new_matches: u64,
 }
 
-versioned!(luxfer_stylize_pass, [32], { Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, gained: 0 } });
+versioned!(luxfer_stylize_pass, [32], {
+    Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, new_matches: 0 }
+});
 
 /// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
 /// the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
@@ -235,7 +237,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_pass(
         out.set(luxfer_stylize_pass {
             knee: found.knee,
             coverage: found.coverage,
-            gained: found.gained as u64,
+            new_matches: found.gained as u64,
             ..luxfer_stylize_pass::defaults()
         });
         Ok(())

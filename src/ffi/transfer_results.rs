@@ -99,8 +99,8 @@ pub struct luxfer_transfer_report {
     /// Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.25
     /// for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
     pub plane_distance_error: f64,
-    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file states,
-    /// as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
+    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file
+    /// states, as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
     pub proposed_white: f64,
     /// Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor.
     pub proposed_white_low: f64,

@@ -101,7 +101,8 @@ pub struct luxfer_warning {
     pub limit: f64,
     /// The place in the photo, x and y in pixels; 0 without one.
     pub place: [f64; 2],
-    /// The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the luxfer_warnings.
+    /// The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
+    /// luxfer_warnings.
     pub message: *const c_char,
     /// The remedy.
     pub advice: *const c_char,
@@ -282,7 +283,7 @@ pub unsafe extern "C" fn luxfer_get_warnings(
 
 /// Counts the warnings of a list. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_warnings_get_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
     enter(warnings, |object| {
         Out::new(count, "count")?.set(object.list.len() as u32);
         Ok(())
@@ -320,7 +321,7 @@ pub unsafe extern "C" fn luxfer_warnings_get(
 /// The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
 /// string is static: never free it. Any thread.
 #[unsafe(no_mangle)]
-pub extern "C" fn luxfer_warning_name(code: luxfer_warning_code) -> *const c_char {
+pub extern "C" fn luxfer_warning_get_name(code: luxfer_warning_code) -> *const c_char {
     let name = match code {
         LUXFER_WARNING_FOCAL_ASSUMED => c"LUXFER_WARNING_FOCAL_ASSUMED",
         LUXFER_WARNING_VIEW_UNCERTAIN => c"LUXFER_WARNING_VIEW_UNCERTAIN",
@@ -358,10 +359,10 @@ mod tests {
     fn every_code_has_its_constant_and_name() {
         for code in Code::ALL {
             // SAFETY: a static string.
-            let name = unsafe { CStr::from_ptr(luxfer_warning_name(code as i32)) }.to_str().unwrap();
+            let name = unsafe { CStr::from_ptr(luxfer_warning_get_name(code as i32)) }.to_str().unwrap();
             let expected = format!("LUXFER_WARNING_{code:?}").replace('_', "").to_uppercase();
             assert_eq!(name.replace('_', ""), expected);
         }
-        assert_eq!(luxfer_warning_name(0), luxfer_warning_name(Code::ALL.len() as i32 + 1));
+        assert_eq!(luxfer_warning_get_name(0), luxfer_warning_get_name(Code::ALL.len() as i32 + 1));
     }
 }

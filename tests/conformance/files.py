@@ -239,7 +239,7 @@ class Loader:
         # A scene may be valid as a file and still not be one that can be traced.
         start = time.monotonic()
         check(seed, library.luxfer_scene_intersect(thing, rays, 2, (abi.luxfer_hit * 2)()), start)
-        check(seed, library.luxfer_scene_requirements(thing, 0.01, ctypes.byref(needs), ctypes.sizeof(needs)), start)
+        check(seed, library.luxfer_scene_get_requirements(thing, 0.01, ctypes.byref(needs), ctypes.sizeof(needs)), start)
         check(seed, library.luxfer_scene_export_memory(thing, abi.luxfer_write_fn(lambda user, data, size: 0), None), start)
         library.luxfer_release(thing)
 

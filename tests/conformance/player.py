@@ -94,9 +94,9 @@ class Player:
         self.ticks += 1
         for kind, handle, _ in list(self.handles.values()):
             if kind == "luxfer_job":
-                library.luxfer_job_poll(handle, None, None)
+                library.luxfer_job_get_progress(handle, None, None)
             elif kind == "luxfer_image":
-                library.luxfer_image_size(handle, None, None, None)
+                library.luxfer_image_get_size(handle, None, None, None)
         return int(self.ticks > 50)
 
     # -------------------------------------------------------------------------------------------------- arguments
@@ -160,7 +160,7 @@ class Player:
 
     def message(self, context: int) -> bytes:
         buffer = ctypes.create_string_buffer(4096)
-        library.luxfer_context_last_error(context, address(buffer), 4096, None)
+        library.luxfer_context_get_last_error(context, address(buffer), 4096, None)
         return buffer.value
 
     def call(self, call, may_release: bool = True) -> None:
@@ -180,7 +180,7 @@ class Player:
         start = time.monotonic()
         status = getattr(library, function)(*handed)
         taken = time.monotonic() - start
-        if not isinstance(status, int) or function == "luxfer_version":
+        if not isinstance(status, int) or function == "luxfer_get_version":
             return
         if not 0 <= status <= 13 or status in (abi.LUXFER_INTERNAL, abi.LUXFER_UNKNOWN):
             raise Broken(f"{function} returned {status}: {[self.message(c) for c in self.contexts]}")
@@ -192,7 +192,7 @@ class Player:
             for v, before in results:
                 if ctypes.string_at(v, len(before)) != before and function != "luxfer_job_wait":
                     raise Broken(f"{function} returned {status} and wrote a result")
-            asks = function in ("luxfer_job_status", "luxfer_job_poll", "luxfer_context_last_error")
+            asks = function == "luxfer_context_get_last_error"
             if owner and owner[0] == first.type and not asks and not any(self.message(c) for c in self.contexts):
                 raise Broken(f"{function} returned {status} without a message")
             return

@@ -56,10 +56,10 @@ def camera() -> Argument:
 
 def library() -> Scenario:
     s = Scenario()
-    s.call("version")
-    s.call("version_string")
-    s.call("status_name", 3)
-    s.call("context_last_error", s.context, ROOM, 100, ROOM)
+    s.call("get_version")
+    s.call("get_version_string")
+    s.call("status_get_name", 3)
+    s.call("context_get_last_error", s.context, ROOM, 100, ROOM)
     for function in FUNCTIONS:
         name = function.removeprefix("luxfer_").removesuffix("_init")
         if function.endswith("_init"):
@@ -72,7 +72,7 @@ def images() -> Scenario:
     s = Scenario()
     image = s.image()
     s.references(image)
-    s.call("image_size", image, ROOM, ROOM, ROOM)
+    s.call("image_get_size", image, ROOM, ROOM, ROOM)
     s.call("image_get_metadata", image, *report("photo_metadata"))
     s.call("image_read", image, 0, view(12, 8))
     s.call("image_save", image, "a.png", 1.0)
@@ -97,9 +97,9 @@ def scenes() -> Scenario:
     s.call("warnings_get", warnings, 0, *report("warning"))
     candidates = s.make("scene_get_candidates", scaled)
     s.references(candidates)
-    s.call("candidates_count", candidates, ROOM)
+    s.call("candidates_get_count", candidates, ROOM)
     s.call("candidates_get", candidates, 0, *report("candidate"))
-    s.make("scene_load_memory", s.context, b'{"asset":{"version":"2.0"}}', 27, None, struct("scene_load_params", outside=1))
+    s.make("scene_load_memory", s.context, b'{"asset":{"version":"2.0"}}', 27, None, struct("scene_load_params", allow_external_files=1))
     s.call("scene_export_memory", scene, ["callback", "write"], None)
     s.call("scene_get_counts", scene, *report("scene_counts"))
     s.call("scene_set_environment", scene, None, 0.1, 0.2, 0.3)
@@ -117,8 +117,8 @@ def scenes() -> Scenario:
     s.call("scene_add_light", scene, struct("light_params", position=array("float", 0, 1, 0)), ROOM)
     rays = array("float", 0, 1, 0, 0, -1, 0, 9, 0, 1, 0, 0, 0, 0, 9)
     s.call("scene_intersect", scene, rays, 2, ROOM)
-    s.call("scene_requirements", scene, 0.01, *report("requirements"))
-    s.call("scene_requirements_text", scene, ROOM, 300, ROOM)
+    s.call("scene_get_requirements", scene, 0.01, *report("requirements"))
+    s.call("scene_get_requirements_text", scene, ROOM, 300, ROOM)
     s.call("scene_get_mesh", scene, 0, *report("mesh_info"))
     s.call("scene_get_mesh_name", scene, 0, ROOM, 20, ROOM)
     s.call("scene_read_mesh", scene, 0, 4, ROOM, None, 2, ROOM)
@@ -130,7 +130,7 @@ def scenes() -> Scenario:
     s.call("scene_add_mesh", scene, coloured, None)
     s.call("scene_read_mesh_colours", scene, 2, 3, ROOM)
     s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
-    s.make("demo_scene", s.context, 2)
+    s.make("demo_create_scene", s.context, 2)
     return s
 
 
@@ -140,8 +140,7 @@ def jobs() -> Scenario:
     s.call("render_set_scene", render, s.room())
     for progress in ("go", "cancel", "later", "again"):
         job = s.make("render_start", render, struct("render_params", width=64, height=48, samples=4 if progress == "go" else 100_000))
-        s.call("job_poll", job, ROOM, ROOM)
-        s.call("job_status", job)
+        s.call("job_get_progress", job, ROOM, ROOM)
         s.call("job_wait", job, 5000 if progress == "go" else 30, ["callback", progress], None)
         s.references(job)
         s.call("job_cancel", job)
@@ -202,9 +201,9 @@ def emission() -> Scenario:
     s.call("emission_get_report", stage, *report("emission_report"))
     warnings = s.make("get_warnings", stage)  # there are no whole lamps
     s.references(warnings)
-    s.call("warnings_count", warnings, ROOM)
+    s.call("warnings_get_count", warnings, ROOM)
     s.call("warnings_get", warnings, 0, *report("warning"))
-    s.call("warning_name", 6)
+    s.call("warning_get_name", 6)
     s.call("emission_get_luminaire", stage, 0, *report("luminaire"))
     s.call("emission_get_corner", stage, 0, 0, ROOM, ROOM)
     s.call("emission_clear_styles", stage)
@@ -300,16 +299,16 @@ def lamps() -> Scenario:
 
 def photometry() -> Scenario:
     s = Scenario()
-    s.call("colour_temperature", s.context, 1.0, 0.9, 0.7, ROOM, ROOM)
-    s.call("colour_of_temperature", s.context, 3000.0, 0.0, ROOM)
-    s.call("image_glare", s.image(32, 24), 1.0, 0.0, *report("glare_report"))
+    s.call("colour_to_temperature", s.context, 1.0, 0.9, 0.7, ROOM, ROOM)
+    s.call("temperature_to_colour", s.context, 3000.0, 0.0, ROOM)
+    s.call("image_get_glare", s.image(32, 24), 1.0, 0.0, *report("glare_report"))
     s.make("image_false_colour", s.image(32, 24), struct("false_colour_params", maximum=2.0))
     led, white = array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0.8), array("double", 0.5, 0.4, 0.3)
     s.call("mix_primaries", s.context, led, 4, 1.0, white, ROOM, *report("mixture"))
     s.call("fit_temperature", s.context, white, white, array("double", 9, 8, 7), *report("temperature_fit"))
-    s.call("preset_count", s.context, ROOM)
+    s.call("preset_get_count", s.context, ROOM)
     s.call("preset_get", s.context, 0, *report("preset"))
-    s.call("preset_name", s.context, 0, ROOM, 60, ROOM)
+    s.call("preset_get_name", s.context, 0, ROOM, 60, ROOM)
     file = b"IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0\n100 80 0\n"
     lamp = s.make("distribution_load_memory", s.context, file, len(file), 0)
     s.references(lamp)
@@ -404,13 +403,13 @@ def stylisation() -> Scenario:
     guides = []
     for which in (2, 3):
         stage = s.make("guides_create", s.context)
-        s.call("guides_set_scene", stage, s.make("demo_scene", s.context, which))
+        s.call("guides_set_scene", stage, s.make("demo_create_scene", s.context, which))
         s.run("guides_start", stage, struct("guides_params", width=24, height=16, samples=2))
         guides.append(stage)
     s.references(guides[0])
     s.make("guides_get_image", guides[0], 0)
-    s.make("guides_motion", guides[1], guides[1])
-    artwork = s.make("demo_artwork", guides[0], 0)
+    s.make("guides_get_motion", guides[1], guides[1])
+    artwork = s.make("demo_create_artwork", guides[0], 0)
     stage = s.make("stylize_create", s.context)
     s.references(stage)
     s.call("stylize_set_artwork", stage, artwork)

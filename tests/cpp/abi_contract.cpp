@@ -86,18 +86,18 @@ luxfer_job *start(luxfer_render *render, std::uint32_t side, std::uint32_t sampl
 constexpr std::uint32_t endless = 1u << 20;
 
 void versions_agree() {
-    CHECK(luxfer_version() == LUXFER_VERSION);
+    CHECK(luxfer_get_version() == LUXFER_VERSION);
     const std::string text = std::to_string(LUXFER_VERSION_MAJOR) + "." + std::to_string(LUXFER_VERSION_MINOR) + "." +
                              std::to_string(LUXFER_VERSION_PATCH);
-    CHECK(text == luxfer_version_string());
-    CHECK(std::strcmp(luxfer_status_name(LUXFER_FORMAT), "LUXFER_FORMAT") == 0);
-    CHECK(std::strcmp(luxfer_status_name(-5), "LUXFER_UNKNOWN") == 0);
+    CHECK(text == luxfer_get_version_string());
+    CHECK(std::strcmp(luxfer_status_get_name(LUXFER_FORMAT), "LUXFER_FORMAT") == 0);
+    CHECK(std::strcmp(luxfer_status_get_name(-5), "LUXFER_UNKNOWN") == 0);
 }
 
 void wrong_handles_are_errors() {
     luxfer_context *context = new_context(1);
     luxfer_image *image = new_image(context, 4, 4);
-    CHECK_STATUS(luxfer_image_size(reinterpret_cast<luxfer_image *>(context), nullptr, nullptr, nullptr),
+    CHECK_STATUS(luxfer_image_get_size(reinterpret_cast<luxfer_image *>(context), nullptr, nullptr, nullptr),
                  LUXFER_INVALID_ARGUMENT);
     std::uint64_t garbage[4] = {1, 2, 3, 4};
     CHECK_STATUS(luxfer_release(reinterpret_cast<luxfer_image *>(garbage)), LUXFER_INVALID_ARGUMENT);
@@ -141,11 +141,11 @@ std::int32_t reenter(void *user, double) {
     Reentrant &seen = *static_cast<Reentrant *>(user);
     ++seen.calls;
     double fraction = -1.0;
-    std::int32_t finished = -1;
+    luxfer_status outcome = -1;
     luxfer_image *image = nullptr;
     if (seen.calls == 1) {
-        CHECK_OK(luxfer_job_poll(seen.job, &fraction, &finished));
-        CHECK(fraction >= 0.0 && fraction <= 1.0 && (finished == 0 || finished == 1));
+        CHECK_OK(luxfer_job_get_progress(seen.job, &fraction, &outcome));
+        CHECK(fraction >= 0.0 && fraction <= 1.0 && outcome >= LUXFER_OK);
         CHECK_STATUS(luxfer_image_load(seen.context, "/nonexistent", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);
         CHECK_OK(luxfer_release(seen.render));
         CHECK_OK(luxfer_release(seen.context));
@@ -190,7 +190,7 @@ void layers_are_found_by_name() {
     luxfer_render *render = new_render(context);
     CHECK_STATUS(luxfer_render_add_expression(render, "slip", "LDXE"), LUXFER_INVALID_ARGUMENT);
     char message[256];
-    CHECK_OK(luxfer_context_last_error(context, message, sizeof message, nullptr));
+    CHECK_OK(luxfer_context_get_last_error(context, message, sizeof message, nullptr));
     CHECK(std::strstr(message, "column 3") != nullptr);
     CHECK_OK(luxfer_render_add_expression(render, "direct", "C<RD>L"));
     CHECK_OK(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH));
@@ -202,7 +202,7 @@ void layers_are_found_by_name() {
     CHECK_OK(luxfer_render_find_layer(render, "Depth", &index));
     CHECK(index == 1);
     CHECK_OK(luxfer_render_get_layer(render, index, &image));
-    CHECK_OK(luxfer_image_size(image, nullptr, nullptr, &channels));
+    CHECK_OK(luxfer_image_get_size(image, nullptr, nullptr, &channels));
     CHECK(channels == 1);
     CHECK_OK(luxfer_release(image));
     CHECK_OK(luxfer_release(render));

@@ -70,7 +70,7 @@ void files() {
     // A good GLB, cut at many places, and with a length that lies.
     luxfer_scene *room = nullptr, *scene = nullptr;
     std::vector<unsigned char> glb;
-    CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
+    CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
     CHECK_OK(luxfer_scene_export_memory(room, append, &glb));
     for (size_t cut : {size_t{0}, size_t{1}, size_t{12}, size_t{19}, glb.size() / 4, glb.size() / 2, glb.size() - 1})
         CHECK_STATUS(luxfer_scene_load_memory(context, glb.data(), cut, nullptr, nullptr, &scene), LUXFER_FORMAT);
@@ -144,7 +144,7 @@ void strokes_and_surfaces() {
     CHECK_OK(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE));
 
     // A surface of another name, and what is called too early.
-    CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
+    CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
     luxfer_surface surface;
     CHECK_STATUS(luxfer_scene_find_surface(room, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
     CHECK(says({"Ceilling", "Ceiling"}));

@@ -19,7 +19,7 @@ struct Size {
 
 Size size_of(luxfer_image *image) {
     Size size;
-    CHECK_OK(luxfer_image_size(image, &size.width, &size.height, &size.channels));
+    CHECK_OK(luxfer_image_get_size(image, &size.width, &size.height, &size.channels));
     return size;
 }
 
@@ -69,7 +69,7 @@ luxfer_guides *rendered(luxfer_demo which, const luxfer_guides_params &params) {
     luxfer_scene *scene = nullptr;
     luxfer_guides *guides = nullptr;
     luxfer_job *job = nullptr;
-    CHECK_OK(luxfer_demo_scene(context, which, &scene));
+    CHECK_OK(luxfer_demo_create_scene(context, which, &scene));
     CHECK_OK(luxfer_guides_create(context, &guides));
     CHECK_OK(luxfer_guides_set_scene(guides, scene));
     CHECK_OK(luxfer_guides_start(guides, &params, &job));
@@ -98,10 +98,10 @@ void guides_refuse() {
     CHECK_STATUS(luxfer_guides_set_scene(guides, nullptr), LUXFER_INVALID_ARGUMENT);
     CHECK_STATUS(luxfer_guides_start(guides, &params, &job), LUXFER_INVALID_OPERATION);
     CHECK_STATUS(luxfer_guides_get_image(guides, LUXFER_GUIDES_FULL, &image), LUXFER_NOT_READY);
-    CHECK_STATUS(luxfer_guides_motion(guides, guides, &image), LUXFER_NOT_READY);
-    CHECK_STATUS(luxfer_demo_artwork(guides, LUXFER_ARTWORK_PEN, &image), LUXFER_NOT_READY);
+    CHECK_STATUS(luxfer_guides_get_motion(guides, guides, &image), LUXFER_NOT_READY);
+    CHECK_STATUS(luxfer_demo_create_artwork(guides, LUXFER_ARTWORK_PEN, &image), LUXFER_NOT_READY);
 
-    CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_SPHERE_ON_TABLE, &scene));
+    CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_SPHERE_ON_TABLE, &scene));
     CHECK_OK(luxfer_guides_set_scene(guides, scene));
     params.camera = 7;
     CHECK_STATUS(luxfer_guides_start(guides, &params, &job), LUXFER_NOT_FOUND);
@@ -114,7 +114,7 @@ void guides_refuse() {
         const luxfer_status started = luxfer_guides_start(guides, &params, &job);
         CHECK_STATUS(started == LUXFER_OK ? finish(job) : started, LUXFER_INVALID_ARGUMENT);
     }
-    CHECK_STATUS(luxfer_demo_scene(context, 9, &scene), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_demo_create_scene(context, 9, &scene), LUXFER_INVALID_ARGUMENT);
     CHECK_OK(luxfer_release(scene));
     CHECK_OK(luxfer_release(guides));
     CHECK_OK(luxfer_release(nullptr));
@@ -142,7 +142,7 @@ void guides_tell_light_apart(luxfer_guides *guides) {
 
     // The camera stands still: nothing moves.
     luxfer_image *motion = nullptr;
-    CHECK_OK(luxfer_guides_motion(guides, guides, &motion));
+    CHECK_OK(luxfer_guides_get_motion(guides, guides, &motion));
     size_t seen = 0;
     const std::vector<float> still = pixels_of(motion);
     for (float v : still) {
@@ -157,8 +157,8 @@ void guides_tell_light_apart(luxfer_guides *guides) {
     params.width = 2 * WIDTH;
     params.samples = 1;
     luxfer_guides *wider = rendered(LUXFER_DEMO_SPHERE_ON_TABLE, params);
-    CHECK_STATUS(luxfer_guides_motion(guides, wider, &motion), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_guides_motion(guides, nullptr, &motion), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_guides_get_motion(guides, wider, &motion), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_guides_get_motion(guides, nullptr, &motion), LUXFER_INVALID_ARGUMENT);
     CHECK_OK(luxfer_release(wider));
 }
 
@@ -167,7 +167,7 @@ void artworks(luxfer_guides *guides) {
     std::vector<float> before;
     for (luxfer_artwork style = LUXFER_ARTWORK_PEN; style <= LUXFER_ARTWORK_PAINT; ++style) {
         luxfer_image *image = nullptr;
-        CHECK_OK(luxfer_demo_artwork(guides, style, &image));
+        CHECK_OK(luxfer_demo_create_artwork(guides, style, &image));
         const Size size = size_of(image);
         CHECK(size.width == WIDTH && size.height == HEIGHT && size.channels == 3);
         std::vector<float> paint = pixels_of(image);
@@ -177,9 +177,9 @@ void artworks(luxfer_guides *guides) {
         CHECK_OK(luxfer_release(image));
     }
     luxfer_image *image = nullptr;
-    CHECK_STATUS(luxfer_demo_artwork(guides, LUXFER_ARTWORK_PAINT + 1, &image), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_demo_artwork(nullptr, LUXFER_ARTWORK_PEN, &image), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_demo_artwork(guides, LUXFER_ARTWORK_PEN, nullptr), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_demo_create_artwork(guides, LUXFER_ARTWORK_PAINT + 1, &image), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_demo_create_artwork(nullptr, LUXFER_ARTWORK_PEN, &image), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_demo_create_artwork(guides, LUXFER_ARTWORK_PEN, nullptr), LUXFER_INVALID_ARGUMENT);
 }
 
 void sheets() {
@@ -252,7 +252,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     luxfer_stylize *stylize = nullptr;
     luxfer_image *artwork = nullptr, *picture = nullptr, *motion = nullptr;
     CHECK_OK(luxfer_stylize_create(context, &stylize));
-    CHECK_OK(luxfer_demo_artwork(source, LUXFER_ARTWORK_PEN, &artwork));
+    CHECK_OK(luxfer_demo_create_artwork(source, LUXFER_ARTWORK_PEN, &artwork));
     CHECK_STATUS(paint(stylize, nullptr), LUXFER_INVALID_OPERATION);
     CHECK_STATUS(luxfer_stylize_set_artwork(stylize, nullptr), LUXFER_INVALID_ARGUMENT);
     CHECK_OK(luxfer_stylize_set_artwork(stylize, artwork));
@@ -277,7 +277,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     CHECK_OK(luxfer_release(picture));
 
     // The next frame of a camera that stands still: all paint stays.
-    CHECK_OK(luxfer_guides_motion(target, target, &motion));
+    CHECK_OK(luxfer_guides_get_motion(target, target, &motion));
     CHECK_OK(luxfer_stylize_set_motion(stylize, motion));
     params.seed = 2;
     CHECK_OK(paint(stylize, &params));

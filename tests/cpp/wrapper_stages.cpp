@@ -314,7 +314,7 @@ void stylisation(const Context &context) {
     stylize.start(params).wait();
     CHECK(has_size(stylize.image(), 48, 36, artwork.size().channels));
     const luxfer_stylize_report report = stylize.report();
-    CHECK(report.finished == 1 && report.levels > 0);
+    CHECK(report.is_complete == 1 && report.levels > 0);
     const luxfer::Stylize::Level finest = stylize.level(report.levels - 1);
     CHECK(finest.width == 48 && finest.height == 36 && finest.rounds > 0);
     CHECK(stylize.round(report.levels - 1, 0).passes > 0 && stylize.pass(report.levels - 1, 0, 0).coverage > 0);
@@ -352,7 +352,7 @@ void stylisation(const Context &context) {
 
 int main() {
     const Context context = Context::create();
-    CHECK(std::strcmp(luxfer_version_string(), "") != 0);
+    CHECK(std::strcmp(luxfer_get_version_string(), "") != 0);
     lighting_transfer(context);
     light(context);
     plans(context);

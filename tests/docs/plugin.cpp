@@ -96,7 +96,7 @@ public:
         const luxfer::JobState state = job_.poll();
         host.show_progress(state.fraction);
         show();
-        return state.is_finished;
+        return state.is_finished();
     }
 
     // Deleting the object cancels too, and waits until the job has ended, at most about a tenth of a second.

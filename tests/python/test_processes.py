@@ -61,7 +61,7 @@ def pointer(kind, *arguments):
     assert status == 0, (kind.__name__, status)
     return made
 context = pointer(lib.luxfer_context_create, None)
-scene = pointer(lib.luxfer_demo_scene, context, 0)
+scene = pointer(lib.luxfer_demo_create_scene, context, 0)
 render = pointer(lib.luxfer_render_create, context)
 assert lib.luxfer_render_set_scene(render, scene) == 0
 calls = []

@@ -340,7 +340,7 @@ class Rendering(Case):
         for x, lux in ((1.0, 300), (4.0, 200)):
             lamps.add_grid({"origin": (x, 2, 1.5), "across": (1, 0, 0), "down": (0, 0, 1)}, lux)
         report = lamps.run(paths=1 << 14).report
-        self.assertEqual((report.lamps, report.groups, report.goals, report.met), (2, 2, 2, 1), lamps.reason)
+        self.assertEqual((report.lamps, report.groups, report.goals, report.all_goals_met), (2, 2, 2, 1), lamps.reason)
         for i, lux in enumerate((300, 200)):
             found = np.dot(lamps.goal(i).achieved, (0.2126, 0.7152, 0.0722)) * np.pi
             self.assertAlmostEqual(found, lux, delta=0.02 * lux)
@@ -353,17 +353,17 @@ class Rendering(Case):
         # Drivers with steps: every lamp at one of them, and the desks near enough.
         lamps.set_levels(np.linspace(0, 2 * max(lamps.lamp(i).scale[0] for i in (0, 1)), 41))
         report = lamps.run(paths=1 << 14, tolerance=0.05).report
-        self.assertEqual(report.met, 1, lamps.reason)
+        self.assertEqual(report.all_goals_met, 1, lamps.reason)
         lamps.set_levels([])
         # Limits: neither desk may have less, and what they have more is theirs.
         for goal in (0, 1):
             lamps.set_constraint(goal, "at-least")
-        self.assertEqual(lamps.run(paths=1 << 14).report.met, 1, lamps.reason)
+        self.assertEqual(lamps.run(paths=1 << 14).report.all_goals_met, 1, lamps.reason)
         for goal in (0, 1):
             lamps.set_constraint(goal, ("equal",) * 3)
         # All lamps alike cannot light one desk more than the other.
         report = lamps.run(paths=1 << 14, group="all", tolerance=0.001).report
-        self.assertEqual((report.groups, report.met), (1, 0))
+        self.assertEqual((report.groups, report.all_goals_met), (1, 0))
         self.assertIn("goal", lamps.reason)
 
 

@@ -88,13 +88,13 @@ public:
 
     /// LUXFER_UNSUPPORTED if the loaded library is not compatible with the header with which the program was built.
     static Result<Context> create(const luxfer_context_params &params = ContextParams()) {
-        if (!is_compatible(luxfer_version(), LUXFER_VERSION))
+        if (!is_compatible(luxfer_get_version(), LUXFER_VERSION))
             return detail::fail<Context>(Error(LUXFER_UNSUPPORTED, mismatch()));
         luxfer_context *made = nullptr;
         const luxfer_status status = luxfer_context_create(&params, &made);
         if (status != LUXFER_OK)
             return detail::fail<Context>(
-                Error(status, std::string("luxfer_context_create: ") + luxfer_status_name(status)));
+                Error(status, std::string("luxfer_context_create: ") + luxfer_status_get_name(status)));
         return Context(made);
     }
 
@@ -106,7 +106,7 @@ public:
     explicit operator bool() const noexcept { return get() != nullptr; }
 
     /// The message of this thread's latest failure; Error::what() contains it too.
-    Result<std::string> last_error() const { return detail::get_text(get(), luxfer_context_last_error, get()); }
+    Result<std::string> last_error() const { return detail::get_text(get(), luxfer_context_get_last_error, get()); }
 
 private:
     explicit Context(luxfer_context *adopted) noexcept : reference_(adopted) {}
@@ -115,7 +115,7 @@ private:
         const std::uint32_t header = LUXFER_VERSION;
         return "the program was built for luxfer " + std::to_string(header / 10000) + "." +
                std::to_string(header / 100 % 100) + "." + std::to_string(header % 100) + " and has loaded luxfer " +
-               luxfer_version_string() + "; install a library that is compatible, or rebuild the program";
+               luxfer_get_version_string() + "; install a library that is compatible, or rebuild the program";
     }
 
     detail::Reference<luxfer_context> reference_;
@@ -222,7 +222,7 @@ public:
 
     Result<ImageSize> size() const {
         ImageSize size;
-        const luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
+        const luxfer_status status = luxfer_image_get_size(get(), &size.width, &size.height, &size.channels);
         return detail::finish(context().get(), status, size);
     }
 
@@ -240,7 +240,7 @@ public:
     /// images with more, use read().
     Result<std::vector<float>> samples() const {
         ImageSize size;
-        luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
+        luxfer_status status = luxfer_image_get_size(get(), &size.width, &size.height, &size.channels);
         std::vector<float> samples(size.samples());
         const ImageView view(samples, size.width, size.height, size.channels);
         if (status == LUXFER_OK)
@@ -265,10 +265,13 @@ inline Result<std::array<double, 9>> homography_from_corners(const Context &cont
 /// this cancels the job, and wait() rethrows the exception (with LUXFER_NO_EXCEPTIONS it must not throw).
 using Progress = std::function<bool(double fraction)>;
 
-/// The progress of a job, and whether it has ended, with or without success.
+/// The progress of a job, and the status with which it has ended; LUXFER_NOT_READY while it runs.
 struct JobState {
     double fraction = 0;
-    bool is_finished = false;
+    luxfer_status outcome = LUXFER_NOT_READY;
+
+    /// Whether the job has ended, with or without success.
+    bool is_finished() const noexcept { return outcome != LUXFER_NOT_READY; }
 };
 
 /// Work in progress. The destructor of the last copy cancels the job and waits until it has ended. See luxfer_job.
@@ -292,17 +295,12 @@ public:
         return detail::finish(context().get(), status, true);
     }
 
-    /// Gets the progress without waiting.
+    /// Gets the progress and the outcome without waiting; does not fail with the job's error.
     Result<JobState> poll() const {
         JobState state;
-        std::int32_t finished = 0;
-        const luxfer_status status = luxfer_job_poll(get(), &state.fraction, &finished);
-        state.is_finished = finished != 0;
+        const luxfer_status status = luxfer_job_get_progress(get(), &state.fraction, &state.outcome);
         return detail::finish(context().get(), status, state);
     }
-
-    /// The status with which the job has ended (this call does not fail with it); LUXFER_NOT_READY while it runs.
-    luxfer_status status() const noexcept { return luxfer_job_status(get()); }
 
     /// Asks the job to end early, from any thread; returns at once.
     Result<> cancel() const { return call(luxfer_job_cancel); }

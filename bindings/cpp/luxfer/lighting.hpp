@@ -163,7 +163,7 @@ struct ColourTemperature {
 inline Result<ColourTemperature> colour_temperature(const Context &context, double red, double green, double blue) {
     ColourTemperature found = {};
     const luxfer_status status =
-        luxfer_colour_temperature(context.get(), red, green, blue, &found.kelvin, &found.duv);
+        luxfer_colour_to_temperature(context.get(), red, green, blue, &found.kelvin, &found.duv);
     return detail::finish(context.get(), status, found);
 }
 
@@ -171,13 +171,13 @@ inline Result<ColourTemperature> colour_temperature(const Context &context, doub
 inline Result<std::array<double, 3>> colour_of_temperature(const Context &context, ColourTemperature temperature) {
     std::array<double, 3> rgb = {};
     const luxfer_status status =
-        luxfer_colour_of_temperature(context.get(), temperature.kelvin, temperature.duv, rgb.data());
+        luxfer_temperature_to_colour(context.get(), temperature.kelvin, temperature.duv, rgb.data());
     return detail::finish(context.get(), status, rgb);
 }
 
 /// The unified glare rating of a luminance image; threshold 0 is five times its mean.
 inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
-    return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_glare, image.get(), fov_y,
+    return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_get_glare, image.get(), fov_y,
                                                   threshold);
 }
 
@@ -215,7 +215,7 @@ inline Result<luxfer_temperature_fit> fit_temperature(const Context &context, st
 
 inline Result<std::uint32_t> preset_count(const Context &context) {
     std::uint32_t count = 0;
-    const luxfer_status status = luxfer_preset_count(context.get(), &count);
+    const luxfer_status status = luxfer_preset_get_count(context.get(), &count);
     return detail::finish(context.get(), status, count);
 }
 
@@ -225,7 +225,7 @@ inline Result<luxfer_preset> preset(const Context &context, std::uint32_t index)
 }
 
 inline Result<std::string> preset_name(const Context &context, std::uint32_t index) {
-    return detail::get_text(context.get(), luxfer_preset_name, context.get(), index);
+    return detail::get_text(context.get(), luxfer_preset_get_name, context.get(), index);
 }
 
 } // namespace luxfer

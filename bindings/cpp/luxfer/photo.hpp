@@ -56,7 +56,7 @@ public:
     static Result<Strokes> from_image(const Image &drawing) {
         luxfer_strokes *made = nullptr;
         std::uint32_t width = 0, height = 0;
-        luxfer_status status = luxfer_image_size(drawing.get(), &width, &height, nullptr);
+        luxfer_status status = luxfer_image_get_size(drawing.get(), &width, &height, nullptr);
         if (status == LUXFER_OK)
             status = luxfer_strokes_create(drawing.context().get(), width, height, &made);
         Strokes strokes(drawing.context(), made);

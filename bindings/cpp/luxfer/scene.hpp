@@ -41,7 +41,7 @@ class Candidates : public Handle<luxfer_candidates> {
 public:
     using Handle::Handle;
 
-    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_candidates_count); }
+    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_candidates_get_count); }
 
     /// Name, kind, index, area, height, direction and score. Its strings live as long as the list.
     Result<luxfer_candidate> candidate(std::uint32_t index) const {
@@ -80,7 +80,7 @@ public:
 
     /// A scene that the library generates: a LUXFER_DEMO_ value.
     static Result<Scene> demo(const Context &context, luxfer_demo which) {
-        return make_in<Scene>(context, luxfer_demo_scene, which);
+        return make_in<Scene>(context, luxfer_demo_create_scene, which);
     }
 
     /// Saves a .glb file that contains all textures.
@@ -182,11 +182,11 @@ public:
 
     /// The features that the scene requires of the renderer; error is the share of light for the field bounces.
     Result<luxfer_requirements> requirements(float error = 0.01f) const {
-        return value<luxfer_requirements>(luxfer_scene_requirements, error);
+        return value<luxfer_requirements>(luxfer_scene_get_requirements, error);
     }
 
     /// Describes what the renderer skips, one sentence per line.
-    Result<std::string> requirements_text() const { return text(luxfer_scene_requirements_text); }
+    Result<std::string> requirements_text() const { return text(luxfer_scene_get_requirements_text); }
 
     // Reading back, by index.
 

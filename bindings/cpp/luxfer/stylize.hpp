@@ -38,10 +38,10 @@ public:
     Result<Image> image(luxfer_guides_image which) const { return make<Image>(luxfer_guides_get_image, which); }
 
     /// The motion of each pixel from the previous frame.
-    Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_motion, before.get()); }
+    Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_get_motion, before.get()); }
 
     /// Draws an artwork of the scene in place of an artist: a LUXFER_ARTWORK_ value.
-    Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_artwork, style); }
+    Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_create_artwork, style); }
 };
 
 /// Paints a target scene in the style in which an artist has painted an exemplar scene. See luxfer_stylize.

@@ -12,7 +12,7 @@ class Warnings : public Handle<luxfer_warnings> {
 public:
     using Handle::Handle;
 
-    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_warnings_count); }
+    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_warnings_get_count); }
 
     /// Code, stage, figure, limit, place, defect and remedy. Its strings live as long as the list.
     Result<luxfer_warning> warning(std::uint32_t index) const {
@@ -20,7 +20,7 @@ public:
     }
 
     /// The name of a code, such as "LUXFER_WARNING_UNSEEN".
-    static const char *name(luxfer_warning_code code) noexcept { return luxfer_warning_name(code); }
+    static const char *name(luxfer_warning_code code) noexcept { return luxfer_warning_get_name(code); }
 };
 
 } // namespace luxfer

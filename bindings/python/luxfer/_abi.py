@@ -145,12 +145,12 @@ LUXFER_OUTCOME_DARK = 2
 LUXFER_OUTCOME_TOO_DIM = 3
 LUXFER_GROUP_ALL = 0
 LUXFER_GROUP_EACH = 1
-LUXFER_GROUP_FIRST = 2
-LUXFER_GROUP_SECOND = 3
-LUXFER_GROUP_THIRD = 4
-LUXFER_GROUP_TYPE = 5
-LUXFER_AIM_MOST = 0
-LUXFER_AIM_LEAST = 1
+LUXFER_GROUP_BY_X = 2
+LUXFER_GROUP_BY_Y = 3
+LUXFER_GROUP_BY_Z = 4
+LUXFER_GROUP_BY_TYPE = 5
+LUXFER_AIM_MAX_LUMINANCE = 0
+LUXFER_AIM_MIN_LUMINANCE = 1
 LUXFER_AIM_RADIANCE = 2
 LUXFER_SCALE_LINEAR = 0
 LUXFER_SCALE_LOGARITHMIC = 1
@@ -433,7 +433,7 @@ class luxfer_scene_load_params(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("outside", c_uint32),
+        ("allow_external_files", c_uint32),
         ("unit", c_double),
     ]
 
@@ -751,7 +751,7 @@ class luxfer_emission_params(Structure):
         ("working_side", c_uint32),
         ("metadata_weight", c_float),
         ("seed", c_uint64),
-        ("least_regularity", c_float),
+        ("min_regularity", c_float),
         ("whole_lamps", c_uint32),
         ("offset", c_double * 2),
         ("clip_level", c_float),
@@ -951,7 +951,7 @@ class luxfer_lamps_report(Structure):
         ("groups", c_uint32),
         ("goals", c_uint32),
         ("paths", c_uint32),
-        ("met", c_uint32),
+        ("all_goals_met", c_uint32),
     ]
     result = types.LampsReport
 
@@ -1100,7 +1100,7 @@ class luxfer_mixture(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reached", c_uint32),
+        ("in_gamut", c_uint32),
         ("colour", c_double * 3),
         ("delta_e", c_double),
     ]
@@ -1318,7 +1318,7 @@ class luxfer_stylize_report(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("finished", c_uint32),
+        ("is_complete", c_uint32),
         ("levels", c_uint32),
         ("halvings", c_uint32),
         ("patch", c_uint32),
@@ -1352,7 +1352,7 @@ class luxfer_stylize_pass(Structure):
         ("reserved", c_uint32),
         ("knee", c_double),
         ("coverage", c_double),
-        ("gained", c_uint64),
+        ("new_matches", c_uint64),
     ]
     result = types.StylizePass
 
@@ -1398,12 +1398,12 @@ class luxfer_demo_photo_params(Structure):
 
 #: What each function returns, and takes: names and types.
 FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
-    "luxfer_version": (c_uint32, []),
-    "luxfer_version_string": (c_char_p, []),
-    "luxfer_status_name": (c_char_p, [("status", c_int32)]),
+    "luxfer_get_version": (c_uint32, []),
+    "luxfer_get_version_string": (c_char_p, []),
+    "luxfer_status_get_name": (c_char_p, [("status", c_int32)]),
     "luxfer_context_params_init": (c_int32, [("params", POINTER(luxfer_context_params)), ("size", c_size_t)]),
     "luxfer_context_create": (c_int32, [("params", POINTER(luxfer_context_params)), ("context", POINTER(POINTER(luxfer_context)))]),
-    "luxfer_context_last_error": (c_int32, [("context", POINTER(luxfer_context)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_context_get_last_error": (c_int32, [("context", POINTER(luxfer_context)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_retain": (c_int32, [("handle", c_void_p)]),
     "luxfer_release": (c_int32, [("handle", c_void_p)]),
     "luxfer_image_view_init": (c_int32, [("view", POINTER(luxfer_image_view)), ("size", c_size_t)]),
@@ -1411,12 +1411,11 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_image_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_image_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_image_save": (c_int32, [("image", POINTER(luxfer_image)), ("path", c_char_p), ("exposure", c_float)]),
-    "luxfer_image_size": (c_int32, [("image", POINTER(luxfer_image)), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("channels", POINTER(c_uint32))]),
+    "luxfer_image_get_size": (c_int32, [("image", POINTER(luxfer_image)), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("channels", POINTER(c_uint32))]),
     "luxfer_image_read": (c_int32, [("image", POINTER(luxfer_image)), ("first_channel", c_uint32), ("view", POINTER(luxfer_image_view))]),
     "luxfer_image_get_metadata": (c_int32, [("image", POINTER(luxfer_image)), ("metadata", POINTER(luxfer_photo_metadata)), ("size", c_size_t)]),
     "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p)]),
-    "luxfer_job_poll": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("finished", POINTER(c_int32))]),
-    "luxfer_job_status": (c_int32, [("job", POINTER(luxfer_job))]),
+    "luxfer_job_get_progress": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("outcome", POINTER(c_int32))]),
     "luxfer_job_cancel": (c_int32, [("job", POINTER(luxfer_job))]),
     "luxfer_scene_create": (c_int32, [("context", POINTER(luxfer_context)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_export": (c_int32, [("scene", POINTER(luxfer_scene)), ("path", c_char_p)]),
@@ -1454,15 +1453,15 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_luminaire_params_init": (c_int32, [("params", POINTER(luxfer_luminaire_params)), ("size", c_size_t)]),
     "luxfer_scene_add_luminaire": (c_int32, [("scene", POINTER(luxfer_scene)), ("distribution", POINTER(luxfer_distribution)), ("params", POINTER(luxfer_luminaire_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_intersect": (c_int32, [("scene", POINTER(luxfer_scene)), ("rays", POINTER(luxfer_ray)), ("count", c_size_t), ("hits", POINTER(luxfer_hit))]),
-    "luxfer_scene_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements)), ("size", c_size_t)]),
-    "luxfer_scene_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_scene_get_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements)), ("size", c_size_t)]),
+    "luxfer_scene_get_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_get_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("info", POINTER(luxfer_mesh_info)), ("size", c_size_t)]),
     "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_read_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("vertex_capacity", c_size_t), ("positions", POINTER(c_float)), ("normals", POINTER(c_float)), ("triangle_capacity", c_size_t), ("indices", POINTER(c_uint32))]),
     "luxfer_scene_read_mesh_uvs": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("uv_set", c_uint32), ("capacity", c_size_t), ("uvs", POINTER(c_float))]),
     "luxfer_scene_read_mesh_colours": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("capacity", c_size_t), ("colours", POINTER(c_float))]),
     "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
-    "luxfer_candidates_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
+    "luxfer_candidates_get_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
     "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate)), ("size", c_size_t)]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
@@ -1572,16 +1571,16 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_placement_params_init": (c_int32, [("params", POINTER(luxfer_placement_params)), ("size", c_size_t)]),
     "luxfer_importance_start_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_importance_get_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("placement", POINTER(luxfer_placement)), ("size", c_size_t)]),
-    "luxfer_colour_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
-    "luxfer_colour_of_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
-    "luxfer_image_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
+    "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
+    "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
+    "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
     "luxfer_false_colour_params_init": (c_int32, [("params", POINTER(luxfer_false_colour_params)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
-    "luxfer_preset_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
+    "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
-    "luxfer_preset_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_pattern_params_init": (c_int32, [("params", POINTER(luxfer_pattern_params)), ("size", c_size_t)]),
     "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
     "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
@@ -1606,9 +1605,9 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture)), ("size", c_size_t)]),
     "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
     "luxfer_get_warnings": (c_int32, [("handle", c_void_p), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_warnings_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
+    "luxfer_warnings_get_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
     "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning)), ("size", c_size_t)]),
-    "luxfer_warning_name": (c_char_p, [("code", c_int32)]),
+    "luxfer_warning_get_name": (c_char_p, [("code", c_int32)]),
     "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
     "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
     "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
@@ -1621,7 +1620,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),
     "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_guides_get_image": (c_int32, [("guides", POINTER(luxfer_guides)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_guides_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("before", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_guides_get_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("before", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
     "luxfer_stylize_params_init": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
     "luxfer_stylize_params_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("preset", c_int32), ("size", c_size_t)]),
     "luxfer_stylize_create": (c_int32, [("context", POINTER(luxfer_context)), ("stylize", POINTER(POINTER(luxfer_stylize)))]),
@@ -1645,8 +1644,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_sheet_params_init": (c_int32, [("params", POINTER(luxfer_sheet_params)), ("size", c_size_t)]),
     "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
     "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report)), ("size", c_size_t)]),
-    "luxfer_demo_scene": (c_int32, [("context", POINTER(luxfer_context)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_demo_artwork": (c_int32, [("guides", POINTER(luxfer_guides)), ("style", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_demo_create_scene": (c_int32, [("context", POINTER(luxfer_context)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_demo_create_artwork": (c_int32, [("guides", POINTER(luxfer_guides)), ("style", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_demo_photo_params_init": (c_int32, [("params", POINTER(luxfer_demo_photo_params)), ("size", c_size_t)]),
     "luxfer_demo_photo_create": (c_int32, [("context", POINTER(luxfer_context)), ("demo", POINTER(POINTER(luxfer_demo_photo)))]),
     "luxfer_demo_photo_start": (c_int32, [("demo", POINTER(luxfer_demo_photo)), ("params", POINTER(luxfer_demo_photo_params)), ("job", POINTER(POINTER(luxfer_job)))]),

@@ -58,7 +58,7 @@ class Candidates(Handle):
     def read(self) -> list[SurfaceCandidate]:
         """All of them."""
         count = ctypes.c_uint32()
-        self._call("count", count)
+        self._call("get_count", count)
         return [self._at(index) for index in range(count.value)]
 
     def _at(self, index: int) -> SurfaceCandidate:

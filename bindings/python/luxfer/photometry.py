@@ -77,21 +77,21 @@ def colour_temperature(context: Context, colour: Sequence[float]) -> tuple[float
     """
     kelvin, duv = ctypes.c_double(), ctypes.c_double()
     red, green, blue = (float(v) for v in colour)
-    call(context, "luxfer_colour_temperature", context, red, green, blue, kelvin, duv)
+    call(context, "luxfer_colour_to_temperature", context, red, green, blue, kelvin, duv)
     return kelvin.value, duv.value
 
 
 def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tuple[float, float, float]:
     """The linear colour, with luminance 1, of a colour temperature."""
     rgb = (ctypes.c_double * 3)()
-    call(context, "luxfer_colour_of_temperature", context, kelvin, duv, rgb)
+    call(context, "luxfer_temperature_to_colour", context, kelvin, duv, rgb)
     return rgb[0], rgb[1], rgb[2]
 
 
 def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0) -> GlareReport:
     """The unified glare rating of a luminance image in cd/m²; threshold 0 is five times its mean."""
     report = _abi.luxfer_glare_report()
-    call(context, "luxfer_image_glare", image_of(context, image), fov_y, threshold, report, ctypes.sizeof(report))
+    call(context, "luxfer_image_get_glare", image_of(context, image), fov_y, threshold, report, ctypes.sizeof(report))
     return cast(GlareReport, _params.report(report))
 
 
@@ -107,7 +107,7 @@ def mix_primaries(
     """The drive levels of a luminaire's LEDs for a linear colour, and the mixture that they give.
 
     >>> drives, light = mix_primaries(context, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], (0.5, 0.25, 0.75))
-    >>> [round(drive, 3) for drive in drives], light.reached
+    >>> [round(drive, 3) for drive in drives], light.in_gamut
     ([0.5, 0.25, 0.75], 1)
     """
     flat = [float(v) for primary in primaries for v in primary]
@@ -132,13 +132,13 @@ def fit_temperature(
 def presets(context: Context) -> dict[str, Preset]:
     """The requirements of EN 12464-1 for kinds of rooms, by name."""
     count = ctypes.c_uint32()
-    call(context, "luxfer_preset_count", context, count)
+    call(context, "luxfer_preset_get_count", context, count)
     found = {}
     for index in range(count.value):
         report = _abi.luxfer_preset()
         call(context, "luxfer_preset_get", context, index, report, ctypes.sizeof(report))
         name = ctypes.create_string_buffer(200)
-        call(context, "luxfer_preset_name", context, index, name, len(name), None)
+        call(context, "luxfer_preset_get_name", context, index, name, len(name), None)
         found[name.value.decode()] = cast(Preset, _params.report(report))
     return found
 

@@ -309,19 +309,19 @@ class Scene(Handle):
 
     def requirements(self, error: float = 0.01) -> Requirements:
         """The features that the scene requires of the renderer; error is the share of light for the field bounces."""
-        out = self._fill("requirements", _abi.luxfer_requirements, error)
+        out = self._fill("get_requirements", _abi.luxfer_requirements, error)
         return cast(Requirements, _params.report(out))
 
     def requirements_text(self) -> str:
         """Describes what the renderer skips, one sentence per line."""
-        return self._get_text("requirements_text")
+        return self._get_text("get_requirements_text")
 
     @classmethod
     def demo(cls, context: Context, which: Any) -> Scene:
         """A generated scene: "target-room", "exemplar-room", "sphere-on-table" or "still-life"."""
         from .types import Demo
 
-        return cls._made(context, "luxfer_demo_scene", _params.member(Demo, which))
+        return cls._made(context, "luxfer_demo_create_scene", _params.member(Demo, which))
 
 
 def _rows(values: ArrayLike, width: int, dtype: Any, name: str) -> NDArray[Any]:

@@ -292,7 +292,7 @@ class EmissionLaw(IntEnum):
     """The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly
     better."""
     CORRELATION = 1
-    """The law that the correlation of the lights tells, by least_regularity."""
+    """The law that the correlation of the lights tells, by min_regularity."""
     LATTICE = 2
     """A lattice of two periods."""
     ROW = 3
@@ -410,13 +410,13 @@ class Group(IntEnum):
     """All lamps form one group."""
     EACH = 1
     """Each lamp is a group of its own."""
-    FIRST = 2
+    BY_X = 2
     """Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes."""
-    SECOND = 3
+    BY_Y = 3
     """Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes."""
-    THIRD = 4
+    BY_Z = 4
     """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
-    TYPE = 5
+    BY_TYPE = 5
     """Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and
     all luminaires of one distribution."""
 
@@ -424,9 +424,9 @@ class Group(IntEnum):
 class Aim(IntEnum):
     """Objective of a placement."""
 
-    MOST = 0
+    MAX_LUMINANCE = 0
     """The largest luminance of the target."""
-    LEAST = 1
+    MIN_LUMINANCE = 1
     """The smallest luminance of the target."""
     RADIANCE = 2
     """The mean radiance of the target that is nearest to PlacementParams.radiance, all other light included."""
@@ -931,7 +931,7 @@ class Surface:
 class SceneLoadParams(TypedDict, total=False):
     """Settings of reading a scene's file."""
 
-    outside: int
+    allow_external_files: int
     """1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the
     default: this gives Status.UNSUPPORTED. Set it only for files that you trust. Only files are read, never
     devices or addresses on a network."""
@@ -1351,7 +1351,7 @@ class EmissionParams(TypedDict, total=False):
     """Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
-    least_regularity: float
+    min_regularity: float
     """Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition
     is continued exactly; at 1 no repetition is, and patches may lie anywhere."""
     whole_lamps: int
@@ -1467,8 +1467,8 @@ class RenderParams(TypedDict, total=False):
     misses the target. Default 0: no target."""
     bounce_error: float
     """Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light
-    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number
-    of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
+    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the
+    number of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
     preview: float
     """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     Default 0: no preview, as for final images. It does not change the other images."""
@@ -1641,7 +1641,7 @@ class LampsReport:
     """Number of goals."""
     paths: int
     """Number of paths traced for each goal."""
-    met: int
+    all_goals_met: int
     """1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason."""
 
 
@@ -1734,7 +1734,7 @@ class PlacementParams(TypedDict, total=False):
     about their centre (0.5, 0.5), and then shifted."""
 
     aim: Aim | str | int
-    """Aim; default Aim.MOST."""
+    """Aim; default Aim.MAX_LUMINANCE."""
     radiance: Sequence[float]
     """Mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default 0."""
     starts: int
@@ -1816,7 +1816,7 @@ class FalseColourParams(TypedDict, total=False):
 class Mixture:
     """A colour mixed from primaries."""
 
-    reached: int
+    in_gamut: int
     """1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
     mixture."""
     colour: tuple[float, float, float]
@@ -2133,7 +2133,7 @@ class StylizeParams(TypedDict, total=False):
 class StylizeReport:
     """Quality of a stylisation."""
 
-    finished: int
+    is_complete: int
     """1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are
     0."""
     levels: int
@@ -2178,7 +2178,7 @@ class StylizePass:
     knee of the error curve."""
     coverage: float
     """Share of the target with a match after this pass, in [0, 1]."""
-    gained: int
+    new_matches: int
     """Number of target patches that received a match in this pass."""
 
 

@@ -49,7 +49,7 @@ class Warnings(Handle):
     def read(self) -> list[StageWarning]:
         """All of them."""
         count = ctypes.c_uint32()
-        self._call("count", count)
+        self._call("get_count", count)
         return [self._at(index) for index in range(count.value)]
 
     def _at(self, index: int) -> StageWarning:
