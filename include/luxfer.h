@@ -35,7 +35,7 @@ extern "C" {
  * Version
  *
  * The macros give the version of this header, the functions give the version of the loaded library. Before 1.0,
- * libraries with the same minor version are compatible (libluxfer.so.0.1); from 1.0 on, libraries with the same major
+ * libraries with the same minor version are compatible (libluxfer.so.0.2); from 1.0 on, libraries with the same major
  * version.
  *
  * A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
@@ -45,7 +45,7 @@ extern "C" {
 
 /** The version of this header. */
 #define LUXFER_VERSION_MAJOR 0
-#define LUXFER_VERSION_MINOR 1
+#define LUXFER_VERSION_MINOR 2
 #define LUXFER_VERSION_PATCH 0
 
 /** The version of this header as one number, comparable with luxfer_get_version(). */
@@ -54,7 +54,7 @@ extern "C" {
 /** The version of the loaded library, comparable with LUXFER_VERSION. Any thread. */
 uint32_t luxfer_get_version(void);
 
-/** The version of the loaded library as text, such as "0.1.0". The string is static: never free it. Any thread. */
+/** The version of the loaded library as text, such as "0.2.0". The string is static: never free it. Any thread. */
 const char *luxfer_get_version_string(void);
 
 /* ====================================================================================================================

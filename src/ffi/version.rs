@@ -1,7 +1,7 @@
 //! Version
 //!
 //! The macros give the version of this header, the functions give the version of the loaded library. Before 1.0,
-//! libraries with the same minor version are compatible (libluxfer.so.0.1); from 1.0 on, libraries with the same major
+//! libraries with the same minor version are compatible (libluxfer.so.0.2); from 1.0 on, libraries with the same major
 //! version.
 //!
 //! A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
@@ -27,7 +27,7 @@ pub extern "C" fn luxfer_get_version() -> u32 {
     VERSION
 }
 
-/// The version of the loaded library as text, such as "0.1.0". The string is static: never free it. Any thread.
+/// The version of the loaded library as text, such as "0.2.0". The string is static: never free it. Any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn luxfer_get_version_string() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
