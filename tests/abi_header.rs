@@ -1,7 +1,8 @@
 //! The header is generated and complete: it equals the output of cbindgen, compiles as C99 and C++17 without warnings,
 //! its structs have the sizes and offsets of the Rust structs, and its functions are the exported ones.
 //!
-//! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h`.
+//! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h` and its parts in
+//! `include/luxfer`.
 
 // The header describes the library with all features.
 #![cfg(feature = "stylize")]
@@ -13,78 +14,137 @@ use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Files of `src/ffi` with exported items, in the order of the header.
-const GROUPS: &[&str] = &[
-    "version",
-    "status",
-    "context",
-    "references",
-    "image",
-    "photo",
-    "job",
-    "scene",
-    "scene_load",
-    "scene_materials",
-    "scene_parts",
-    "distribution",
-    "scene_lights",
-    "query",
-    "requirements",
-    "scene_read",
-    "candidates",
-    "geometry",
-    "rectify",
-    "strokes",
-    "features",
-    "segment",
-    "emission",
-    "emission_tiles",
-    "render",
-    "render_outputs",
-    "render_parts",
-    "illuminance",
-    "relight",
-    "lamps",
-    "lamps_goals",
-    "lamps_results",
-    "importance",
-    "placement",
-    "photometry",
-    "false_colour",
-    "design",
-    "pattern",
-    "transfer",
-    "transfer_results",
-    "warning",
-    "plan",
-    "guides",
-    "stylize_params",
-    "stylize",
-    "stylize_results",
-    "plan_stylize",
-    "sheet",
-    "demo",
-    "demo_photo",
+/// A header of `include/luxfer`.
+struct Part {
+    name: &'static str,
+    /// Its content in a few words.
+    title: &'static str,
+    /// The parts whose types it uses.
+    includes: &'static [&'static str],
+    /// Its files of `src/ffi`, in order.
+    groups: &'static [&'static str],
+}
+
+/// The parts of the header, in order; `luxfer.h` includes them all.
+const PARTS: &[Part] = &[
+    Part {
+        name: "core",
+        title: "version, status, context, references, images, strokes and jobs",
+        includes: &[],
+        groups: &["version", "status", "context", "references", "image", "photo", "strokes", "job"],
+    },
+    Part {
+        name: "scene",
+        title: "scenes: loading, building, reading and queries",
+        includes: &["core"],
+        groups: &[
+            "scene",
+            "scene_load",
+            "scene_materials",
+            "scene_parts",
+            "distribution",
+            "scene_lights",
+            "query",
+            "requirements",
+            "scene_read",
+            "candidates",
+        ],
+    },
+    Part {
+        name: "render",
+        title: "rendering, and its layers and images",
+        includes: &["scene"],
+        groups: &["render", "render_outputs"],
+    },
+    Part {
+        name: "stages",
+        title: "the stages of a lighting transfer, one by one",
+        includes: &["scene"],
+        groups: &["geometry", "rectify", "features", "segment", "emission", "emission_tiles", "relight"],
+    },
+    Part {
+        name: "transfer",
+        title: "the lighting transfer from end to end, and warnings",
+        includes: &["render", "stages"],
+        groups: &["pattern", "transfer", "transfer_results", "warning"],
+    },
+    Part {
+        name: "lighting",
+        title: "lighting design: illuminance, powers and places of lamps, photometry",
+        includes: &["transfer"],
+        groups: &[
+            "illuminance",
+            "lamps",
+            "lamps_goals",
+            "lamps_results",
+            "importance",
+            "placement",
+            "photometry",
+            "false_colour",
+            "design",
+        ],
+    },
+    Part {
+        name: "stylize",
+        title: "stylisation by example",
+        includes: &["scene"],
+        groups: &["guides", "stylize_params", "stylize", "stylize_results", "sheet"],
+    },
+    Part {
+        name: "plan",
+        title: "settings for a given error or time",
+        includes: &["transfer", "stylize"],
+        groups: &["plan", "plan_stylize"],
+    },
+    Part {
+        name: "farm",
+        title: "renderings in parts, for many machines",
+        includes: &["render"],
+        groups: &["render_parts"],
+    },
+    Part {
+        name: "demo",
+        title: "generated scenes, photos and artworks",
+        includes: &["stylize"],
+        groups: &["demo", "demo_photo"],
+    },
 ];
+
+/// The parts that the author of a plug-in for lighting transfers reads, and their maximum number of functions.
+const MAX_READ: (&[&str], usize) = (&["core", "scene", "transfer"], 110);
 
 /// Structs that occur in arrays: they have no size field and never change.
 const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit"];
 
 #[test]
-fn the_header_is_what_the_sources_say() {
-    let generated = generate();
-    let path = root().join("include/luxfer.h");
-    if std::env::var_os("LUXFER_BLESS").is_some() {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, &generated).unwrap();
+fn the_headers_are_what_the_sources_say() {
+    for (name, generated) in generate() {
+        let path = root().join("include").join(&name);
+        if std::env::var_os("LUXFER_BLESS").is_some() {
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, &generated).unwrap();
+        }
+        let checked_in = std::fs::read_to_string(&path).unwrap_or_default();
+        if let Some((a, b)) = checked_in.lines().zip(generated.lines()).find(|(a, b)| a != b) {
+            panic!("{name} says {a:?} where the sources say {b:?}; run with LUXFER_BLESS=1 and review the change");
+        }
+        assert_eq!(checked_in.len(), generated.len(), "{name} ends early or late; run with LUXFER_BLESS=1");
     }
-    let checked_in = header();
-    if let Some((a, b)) = checked_in.lines().zip(generated.lines()).find(|(a, b)| a != b) {
-        panic!(
-            "include/luxfer.h says {a:?} where the sources say {b:?}; run with LUXFER_BLESS=1 and review the change"
-        );
+}
+
+/// Each part includes what it needs, and is small enough to be read.
+#[test]
+fn each_part_compiles_alone() {
+    for part in PARTS {
+        for (compiler, standard, ending) in [("cc", "-std=c99", "c"), ("c++", "-std=c++17", "cpp")] {
+            let file = scratch(&format!("part_{}.{ending}", part.name));
+            std::fs::write(&file, format!("#include \"luxfer/{}.h\"\nint main(void) {{ return 0; }}\n", part.name))
+                .unwrap();
+            check_syntax(compiler, standard, &file);
+        }
     }
-    assert_eq!(checked_in.len(), generated.len(), "include/luxfer.h ends early or late; run with LUXFER_BLESS=1");
+    let read: usize = MAX_READ.0.iter().map(|name| functions(&part(name)).len()).sum();
+    assert!(read <= MAX_READ.1, "{read} functions");
 }
 
 /// The C program in the README compiles, with warnings as errors.
@@ -205,8 +265,14 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// The text of a part.
+fn part(name: &str) -> String {
+    std::fs::read_to_string(root().join(format!("include/luxfer/{name}.h"))).expect(name)
+}
+
+/// The text of all parts.
 fn header() -> String {
-    std::fs::read_to_string(root().join("include/luxfer.h")).expect("include/luxfer.h")
+    PARTS.iter().map(|p| part(p.name)).collect()
 }
 
 /// Path of a temporary file outside the source tree, beside the test programs.
@@ -231,28 +297,51 @@ fn run(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Runs cbindgen once for each file and puts the head comment of the file before its output.
-fn generate() -> String {
+/// The umbrella header and its parts: paths below `include`, and texts.
+fn generate() -> Vec<(String, String)> {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
-    let mut out = config.header.take().unwrap();
-    let trailer = config.trailer.take().unwrap();
-    for group in GROUPS {
-        let path = root().join(format!("src/ffi/{group}.rs"));
-        out += &banner(&std::fs::read_to_string(&path).unwrap());
-        if *group == "version" {
-            out += &version_macros();
-        }
-        let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
-        let mut items = Vec::new();
-        bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
-        // The style "both" gives structs a tag, for forward declarations, but need not use it.
-        let items = String::from_utf8(items)
-            .unwrap()
-            .replace("struct luxfer_", "luxfer_")
-            .replace("typedef luxfer_", "typedef struct luxfer_");
-        out += &one_line_comments(items.trim());
+    let umbrella = config.header.take().unwrap();
+    let includes: String = PARTS.iter().map(|p| format!("#include \"luxfer/{}.h\"\n", p.name)).collect();
+    let mut files = vec![("luxfer.h".to_string(), guarded(umbrella.trim_start(), "LUXFER_H", &includes))];
+    for part in PARTS {
+        let head = format!(
+            "/* luxfer: {}.\n *\n * tests/abi_header.rs generates this file from src/ffi.\n *\n \
+             * SPDX-License-Identifier: MIT OR Apache-2.0\n */\n",
+            part.title
+        );
+        let mut body: String = match part.includes {
+            [] => "#include <stddef.h>\n#include <stdint.h>\n".into(),
+            others => others.iter().map(|other| format!("#include \"{other}.h\"\n")).collect(),
+        };
+        body += "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
+        body.extend(part.groups.iter().map(|group| section(&config, group)));
+        body += "\n#ifdef __cplusplus\n}\n#endif\n";
+        let guard = format!("LUXFER_{}_H", part.name.to_uppercase());
+        files.push((format!("luxfer/{}.h", part.name), guarded(&head, &guard, &body)));
     }
-    (out + &trailer).trim_start().to_string()
+    files
+}
+
+fn guarded(head: &str, guard: &str, body: &str) -> String {
+    format!("{head}#ifndef {guard}\n#define {guard}\n\n{body}\n#endif /* {guard} */\n")
+}
+
+/// The items of a file of `src/ffi`, after its head comment.
+fn section(config: &cbindgen::Config, group: &str) -> String {
+    let path = root().join(format!("src/ffi/{group}.rs"));
+    let mut out = banner(&std::fs::read_to_string(&path).unwrap());
+    if group == "version" {
+        out += &version_macros();
+    }
+    let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
+    let mut items = Vec::new();
+    bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
+    // The style "both" gives structs a tag, for forward declarations, but need not use it.
+    let items = String::from_utf8(items)
+        .unwrap()
+        .replace("struct luxfer_", "luxfer_")
+        .replace("typedef luxfer_", "typedef struct luxfer_");
+    out + &one_line_comments(items.trim())
 }
 
 /// Puts each comment that fits onto one line.

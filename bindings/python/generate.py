@@ -97,6 +97,11 @@ ITEM = re.compile(
 )
 
 
+def header_text() -> str:
+    """The text of luxfer.h with its parts."""
+    return re.sub(r'#include "(luxfer/\w+\.h)"', lambda m: (HEADER.parent / m[1]).read_text(), HEADER.read_text())
+
+
 def read(text: str) -> Header:
     header, section = Header(), ""
     for match in ITEM.finditer(text):
@@ -317,7 +322,7 @@ class Writer:
 
 
 def main() -> int:
-    writer = Writer(read(HEADER.read_text()))
+    writer = Writer(read(header_text()))
     status = 0
     for name, text in (("_abi.py", writer.abi()), ("types.py", writer.types())):
         path = HERE / "luxfer" / name

@@ -6,7 +6,7 @@
 //! - [`params`] copies the caller's versioned structs, old or new, and never trusts their size;
 //! - [`stage`] holds what all stages share: inputs, one job at a time, a result that appears only on success.
 //!
-//! The comments of the exported items, and the heads of the files they are in, become `include/luxfer.h`; the test
+//! The comments of the exported items, and the heads of the files they are in, become `include/luxfer/*.h`; the test
 //! `abi_header` generates it. Nothing exported may be made by a macro: cbindgen would not see it.
 
 // C names; the contract of each unsafe function is its text in the header.

@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "bindings" / "python"))
 
 import generate  # noqa: E402
 
-HEADER = generate.read(generate.HEADER.read_text())
+HEADER = generate.read(generate.header_text())
 KINDS = set(HEADER.opaque)
 STRUCTS = HEADER.structs
 FUNCTIONS = {name: arguments for name, (_, arguments) in HEADER.functions.items()}

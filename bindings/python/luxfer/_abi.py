@@ -39,6 +39,8 @@ LUXFER_FILE_COLOUR_STATED = 2
 LUXFER_FILE_COLOUR_CONVERTED = 3
 LUXFER_FILE_COLOUR_UNCONVERTED = 4
 LUXFER_FILE_COLOUR_DATA = 5
+LUXFER_PHASE_PLANE = 0
+LUXFER_PHASE_LIGHTS = 1
 LUXFER_ALPHA_OPAQUE = 0
 LUXFER_ALPHA_MASK = 1
 LUXFER_ALPHA_BLEND = 2
@@ -68,6 +70,24 @@ LUXFER_LIGHTS_DIRECTIONAL = 16
 LUXFER_LIGHTS_ENVIRONMENT = 32
 LUXFER_CANDIDATE_OBJECT = 0
 LUXFER_CANDIDATE_MATERIAL = 1
+LUXFER_RENDER_BEAUTY = 0
+LUXFER_RENDER_VARIANCE = 1
+LUXFER_RENDER_PATHS = 2
+LUXFER_RENDER_INTERVAL = 3
+LUXFER_RENDER_PREVIEW = 4
+LUXFER_AOV_DEPTH = 1
+LUXFER_AOV_DISTANCE = 2
+LUXFER_AOV_POSITION = 4
+LUXFER_AOV_NORMAL = 8
+LUXFER_AOV_GEOMETRIC_NORMAL = 16
+LUXFER_AOV_ALBEDO = 32
+LUXFER_AOV_OBJECT = 64
+LUXFER_AOV_MATERIAL = 128
+LUXFER_AOV_ALPHA = 256
+LUXFER_AOV_LUMINANCE = 512
+LUXFER_EMITTER_AS_BOTH = 0
+LUXFER_EMITTER_AS_LIGHT = 1
+LUXFER_EMITTER_AS_OBJECT = 2
 LUXFER_LINES_REGIONS = 0
 LUXFER_LINES_HOUGH = 1
 LUXFER_SEARCH_MANHATTAN = 0
@@ -80,8 +100,6 @@ LUXFER_FOCAL_ASSUMED = 2
 LUXFER_FOCAL_FROM_METADATA = 3
 LUXFER_RECTIFY_UNWARPED = 0
 LUXFER_RECTIFY_VALID = 1
-LUXFER_PHASE_PLANE = 0
-LUXFER_PHASE_LIGHTS = 1
 LUXFER_DEPTH_ALONG_Z = 0
 LUXFER_DEPTH_ALONG_RAY = 1
 LUXFER_FEATURES_CHANNELS = 0
@@ -112,26 +130,6 @@ LUXFER_LAW_ROW = 3
 LUXFER_LAW_WHOLE = 4
 LUXFER_LAW_FREE = 5
 LUXFER_LAW_COPY = 6
-LUXFER_RENDER_BEAUTY = 0
-LUXFER_RENDER_VARIANCE = 1
-LUXFER_RENDER_PATHS = 2
-LUXFER_RENDER_INTERVAL = 3
-LUXFER_RENDER_PREVIEW = 4
-LUXFER_AOV_DEPTH = 1
-LUXFER_AOV_DISTANCE = 2
-LUXFER_AOV_POSITION = 4
-LUXFER_AOV_NORMAL = 8
-LUXFER_AOV_GEOMETRIC_NORMAL = 16
-LUXFER_AOV_ALBEDO = 32
-LUXFER_AOV_OBJECT = 64
-LUXFER_AOV_MATERIAL = 128
-LUXFER_AOV_ALPHA = 256
-LUXFER_AOV_LUMINANCE = 512
-LUXFER_EMITTER_AS_BOTH = 0
-LUXFER_EMITTER_AS_LIGHT = 1
-LUXFER_EMITTER_AS_OBJECT = 2
-LUXFER_ILLUMINANCE_LUX = 0
-LUXFER_ILLUMINANCE_ERROR = 1
 LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_FIT_MEAN = 0
@@ -143,19 +141,6 @@ LUXFER_OUTCOME_MET = 0
 LUXFER_OUTCOME_TOO_BRIGHT = 1
 LUXFER_OUTCOME_DARK = 2
 LUXFER_OUTCOME_TOO_DIM = 3
-LUXFER_GROUP_ALL = 0
-LUXFER_GROUP_EACH = 1
-LUXFER_GROUP_BY_X = 2
-LUXFER_GROUP_BY_Y = 3
-LUXFER_GROUP_BY_Z = 4
-LUXFER_GROUP_BY_TYPE = 5
-LUXFER_AIM_MAX_LUMINANCE = 0
-LUXFER_AIM_MIN_LUMINANCE = 1
-LUXFER_AIM_RADIANCE = 2
-LUXFER_SCALE_LINEAR = 0
-LUXFER_SCALE_LOGARITHMIC = 1
-LUXFER_UNIT_LUMINANCE = 0
-LUXFER_UNIT_ILLUMINANCE = 1
 LUXFER_PATTERN_DISTANCE = 0
 LUXFER_PATTERN_LAMP = 1
 LUXFER_PATTERN_SPACING = 2
@@ -207,6 +192,21 @@ LUXFER_WARNING_UNREACHABLE = 18
 LUXFER_WARNING_TARGET_CLIPPED = 19
 LUXFER_WARNING_IMPLAUSIBLE_SIZE = 20
 LUXFER_WARNING_NOT_RENDERED = 21
+LUXFER_ILLUMINANCE_LUX = 0
+LUXFER_ILLUMINANCE_ERROR = 1
+LUXFER_GROUP_ALL = 0
+LUXFER_GROUP_EACH = 1
+LUXFER_GROUP_BY_X = 2
+LUXFER_GROUP_BY_Y = 3
+LUXFER_GROUP_BY_Z = 4
+LUXFER_GROUP_BY_TYPE = 5
+LUXFER_AIM_MAX_LUMINANCE = 0
+LUXFER_AIM_MIN_LUMINANCE = 1
+LUXFER_AIM_RADIANCE = 2
+LUXFER_SCALE_LINEAR = 0
+LUXFER_SCALE_LOGARITHMIC = 1
+LUXFER_UNIT_LUMINANCE = 0
+LUXFER_UNIT_ILLUMINANCE = 1
 LUXFER_GUIDES_FULL = 0
 LUXFER_GUIDES_DIRECT = 1
 LUXFER_GUIDES_SPECULAR = 2
@@ -260,6 +260,10 @@ class luxfer_image(Structure):
     """An image. See luxfer_image_create."""
 
 
+class luxfer_strokes(Structure):
+    """Strokes for images of one size. See luxfer_strokes_create."""
+
+
 class luxfer_job(Structure):
     """Work in progress. See luxfer_job_wait."""
 
@@ -276,12 +280,12 @@ class luxfer_candidates(Structure):
     """A list of candidates. See luxfer_scene_get_candidates."""
 
 
+class luxfer_render(Structure):
+    """A rendering of a scene. See luxfer_render_create."""
+
+
 class luxfer_rectify(Structure):
     """Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create."""
-
-
-class luxfer_strokes(Structure):
-    """Strokes for images of one size. See luxfer_strokes_create."""
 
 
 class luxfer_features(Structure):
@@ -296,24 +300,8 @@ class luxfer_emission(Structure):
     """A synthesis of an emissive texture. See luxfer_emission_create."""
 
 
-class luxfer_render(Structure):
-    """A rendering of a scene. See luxfer_render_create."""
-
-
-class luxfer_illuminance(Structure):
-    """A calculation of illuminance. See luxfer_illuminance_create."""
-
-
 class luxfer_relight(Structure):
     """A relighting of a scene. See luxfer_relight_create."""
-
-
-class luxfer_lamps(Structure):
-    """A solver for the powers of lamps. See luxfer_lamps_create."""
-
-
-class luxfer_importance(Structure):
-    """A map of importance. See luxfer_importance_create."""
 
 
 class luxfer_transfer(Structure):
@@ -324,8 +312,16 @@ class luxfer_warnings(Structure):
     """A list of warnings. See luxfer_get_warnings."""
 
 
-class luxfer_plan(Structure):
-    """A plan. See luxfer_plan_create."""
+class luxfer_illuminance(Structure):
+    """A calculation of illuminance. See luxfer_illuminance_create."""
+
+
+class luxfer_lamps(Structure):
+    """A solver for the powers of lamps. See luxfer_lamps_create."""
+
+
+class luxfer_importance(Structure):
+    """A map of importance. See luxfer_importance_create."""
 
 
 class luxfer_guides(Structure):
@@ -334,6 +330,10 @@ class luxfer_guides(Structure):
 
 class luxfer_stylize(Structure):
     """A stylisation. See luxfer_stylize_create."""
+
+
+class luxfer_plan(Structure):
+    """A plan. See luxfer_plan_create."""
 
 
 class luxfer_demo_photo(Structure):
@@ -635,6 +635,38 @@ class luxfer_candidate(Structure):
     result = types.Candidate
 
 
+class luxfer_render_params(Structure):
+    """Settings of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("samples", c_uint32),
+        ("target_error", c_float),
+        ("time_budget_ms", c_uint32),
+        ("seed", c_uint64),
+        ("pixel_error", c_float),
+        ("bounce_error", c_float),
+        ("preview", c_float),
+        ("relative_error", c_float),
+    ]
+
+
+class luxfer_render_report(Structure):
+    """Quality of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("samples", c_uint32),
+        ("error", c_double),
+        ("discarded", c_uint64),
+        ("preview_bias", c_double),
+        ("relative_error", c_double),
+    ]
+    result = types.RenderReport
+
+
 class luxfer_rectify_params(Structure):
     """Settings of a rectification."""
 
@@ -803,50 +835,139 @@ class luxfer_luminaire(Structure):
     result = types.Luminaire
 
 
-class luxfer_render_params(Structure):
-    """Settings of a rendering."""
+class luxfer_relight_params(Structure):
+    """Settings of a relighting."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("width", c_uint32),
-        ("height", c_uint32),
-        ("samples", c_uint32),
+        ("quantity", c_int32),
+        ("paths", c_uint32),
         ("target_error", c_float),
         ("time_budget_ms", c_uint32),
+        ("fit", c_int32),
         ("seed", c_uint64),
-        ("pixel_error", c_float),
-        ("bounce_error", c_float),
-        ("preview", c_float),
-        ("relative_error", c_float),
     ]
+    enumerations: dict[str, type] = {"quantity": types.Quantity, "fit": types.Fit}
 
 
-class luxfer_render_report(Structure):
-    """Quality of a rendering."""
+class luxfer_relight_report(Structure):
+    """The solution and its confidence."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("samples", c_uint32),
+        ("paths", c_uint32),
+        ("scale", c_double * 3),
+        ("half_width", c_double * 3),
+        ("response", c_double * 3),
+        ("background", c_double * 3),
+        ("outcome", c_int32 * 3),
+        ("reserved", c_uint32),
         ("error", c_double),
-        ("discarded", c_uint64),
-        ("preview_bias", c_double),
-        ("relative_error", c_double),
+        ("delta_e", c_double),
     ]
-    result = types.RenderReport
+    enumerations: dict[str, type] = {"outcome": types.Outcome}
+    result = types.RelightReport
 
 
-class luxfer_render_part(Structure):
-    """A part of a rendering."""
+class luxfer_pattern_params(Structure):
+    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
+    Surface."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("x", c_uint32),
-        ("y", c_uint32),
-        ("width", c_uint32),
-        ("height", c_uint32),
-        ("first_sample", c_uint32),
-        ("samples", c_uint32),
+        ("scale", c_int32),
+        ("length", c_double),
+        ("texel_size", c_double),
+        ("rotation", c_double),
+        ("offset", c_double * 2),
+        ("margin", c_double),
     ]
+    enumerations: dict[str, type] = {"scale": types.PatternScale}
+
+
+class luxfer_transfer_params(Structure):
+    """Settings of a transfer. The structs behind the pointers are read during the call."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("max_texels", c_uint32),
+        ("plane_distance", c_double),
+        ("white_luminance", c_float),
+        ("target", c_int32),
+        ("rectify", POINTER(luxfer_rectify_params)),
+        ("features", POINTER(luxfer_features_params)),
+        ("plane", POINTER(luxfer_segment_params)),
+        ("lights", POINTER(luxfer_segment_params)),
+        ("emission", POINTER(luxfer_emission_params)),
+        ("relight", POINTER(luxfer_relight_params)),
+        ("render", POINTER(luxfer_render_params)),
+        ("pattern", POINTER(luxfer_pattern_params)),
+    ]
+    enumerations: dict[str, type] = {"target": types.Target}
+
+
+class luxfer_transfer_report(Structure):
+    """Time and error of each stage. The error of a stage without a result is NaN."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("fixtures", c_uint32),
+        ("seconds", c_double * 8),
+        ("view_error", c_double),
+        ("depth_confidence", c_double),
+        ("plane_error", c_double),
+        ("lights_error", c_double),
+        ("unwarp_error", c_double),
+        ("emission_error", c_double),
+        ("relight_error", c_double),
+        ("render_error", c_double),
+        ("texel_size", c_double),
+        ("target", c_float * 3),
+        ("reserved", c_uint32),
+        ("plane_distance", c_double),
+        ("plane_distance_error", c_double),
+        ("proposed_white", c_double),
+        ("proposed_white_low", c_double),
+        ("proposed_white_high", c_double),
+    ]
+    result = types.TransferReport
+
+
+class luxfer_fixture(Structure):
+    """One lamp of the lit scene."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("position", c_float * 3),
+        ("normal", c_float * 3),
+        ("axis", c_float * 3),
+        ("radiance", c_float * 3),
+        ("kind", c_uint32),
+        ("size", c_double * 2),
+        ("area", c_double),
+        ("flux", c_double),
+        ("cct", c_double),
+        ("duv", c_double),
+    ]
+    result = types.Fixture
+
+
+class luxfer_warning(Structure):
+    """A reason to doubt a result."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("code", c_int32),
+        ("stage", c_int32),
+        ("has_place", c_uint32),
+        ("severity", c_double),
+        ("limit", c_double),
+        ("place", c_double * 2),
+        ("message", c_char_p),
+        ("advice", c_char_p),
+    ]
+    enumerations: dict[str, type] = {"code": types.WarningCode, "stage": types.Stage}
+    result = types.Warning
 
 
 class luxfer_illuminance_params(Structure):
@@ -886,40 +1007,6 @@ class luxfer_illuminance_report(Structure):
         ("mean_error", c_double),
     ]
     result = types.IlluminanceReport
-
-
-class luxfer_relight_params(Structure):
-    """Settings of a relighting."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("quantity", c_int32),
-        ("paths", c_uint32),
-        ("target_error", c_float),
-        ("time_budget_ms", c_uint32),
-        ("fit", c_int32),
-        ("seed", c_uint64),
-    ]
-    enumerations: dict[str, type] = {"quantity": types.Quantity, "fit": types.Fit}
-
-
-class luxfer_relight_report(Structure):
-    """The solution and its confidence."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("paths", c_uint32),
-        ("scale", c_double * 3),
-        ("half_width", c_double * 3),
-        ("response", c_double * 3),
-        ("background", c_double * 3),
-        ("outcome", c_int32 * 3),
-        ("reserved", c_uint32),
-        ("error", c_double),
-        ("delta_e", c_double),
-    ]
-    enumerations: dict[str, type] = {"outcome": types.Outcome}
-    result = types.RelightReport
 
 
 class luxfer_lamps_params(Structure):
@@ -1138,134 +1225,6 @@ class luxfer_preset(Structure):
     result = types.Preset
 
 
-class luxfer_pattern_params(Structure):
-    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
-    Surface."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("scale", c_int32),
-        ("length", c_double),
-        ("texel_size", c_double),
-        ("rotation", c_double),
-        ("offset", c_double * 2),
-        ("margin", c_double),
-    ]
-    enumerations: dict[str, type] = {"scale": types.PatternScale}
-
-
-class luxfer_transfer_params(Structure):
-    """Settings of a transfer. The structs behind the pointers are read during the call."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("max_texels", c_uint32),
-        ("plane_distance", c_double),
-        ("white_luminance", c_float),
-        ("target", c_int32),
-        ("rectify", POINTER(luxfer_rectify_params)),
-        ("features", POINTER(luxfer_features_params)),
-        ("plane", POINTER(luxfer_segment_params)),
-        ("lights", POINTER(luxfer_segment_params)),
-        ("emission", POINTER(luxfer_emission_params)),
-        ("relight", POINTER(luxfer_relight_params)),
-        ("render", POINTER(luxfer_render_params)),
-        ("pattern", POINTER(luxfer_pattern_params)),
-    ]
-    enumerations: dict[str, type] = {"target": types.Target}
-
-
-class luxfer_transfer_report(Structure):
-    """Time and error of each stage. The error of a stage without a result is NaN."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("fixtures", c_uint32),
-        ("seconds", c_double * 8),
-        ("view_error", c_double),
-        ("depth_confidence", c_double),
-        ("plane_error", c_double),
-        ("lights_error", c_double),
-        ("unwarp_error", c_double),
-        ("emission_error", c_double),
-        ("relight_error", c_double),
-        ("render_error", c_double),
-        ("texel_size", c_double),
-        ("target", c_float * 3),
-        ("reserved", c_uint32),
-        ("plane_distance", c_double),
-        ("plane_distance_error", c_double),
-        ("proposed_white", c_double),
-        ("proposed_white_low", c_double),
-        ("proposed_white_high", c_double),
-    ]
-    result = types.TransferReport
-
-
-class luxfer_fixture(Structure):
-    """One lamp of the lit scene."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("position", c_float * 3),
-        ("normal", c_float * 3),
-        ("axis", c_float * 3),
-        ("radiance", c_float * 3),
-        ("kind", c_uint32),
-        ("size", c_double * 2),
-        ("area", c_double),
-        ("flux", c_double),
-        ("cct", c_double),
-        ("duv", c_double),
-    ]
-    result = types.Fixture
-
-
-class luxfer_warning(Structure):
-    """A reason to doubt a result."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("code", c_int32),
-        ("stage", c_int32),
-        ("has_place", c_uint32),
-        ("severity", c_double),
-        ("limit", c_double),
-        ("place", c_double * 2),
-        ("message", c_char_p),
-        ("advice", c_char_p),
-    ]
-    enumerations: dict[str, type] = {"code": types.WarningCode, "stage": types.Stage}
-    result = types.Warning
-
-
-class luxfer_plan_params(Structure):
-    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("time_budget_ms", c_uint32),
-        ("target_error", c_float),
-        ("reserved", c_uint32),
-    ]
-
-
-class luxfer_plan_report(Structure):
-    """Times and errors that a plan predicts."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("relights", c_uint32),
-        ("seconds", c_double),
-        ("error", c_double),
-        ("relight_seconds", c_double),
-        ("relight_error", c_double),
-        ("render_seconds", c_double),
-        ("render_error", c_double),
-    ]
-    result = types.PlanReport
-
-
 class luxfer_guides_params(Structure):
     """Settings of guides."""
 
@@ -1384,6 +1343,47 @@ class luxfer_sheet_report(Structure):
     result = types.SheetReport
 
 
+class luxfer_plan_params(Structure):
+    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("time_budget_ms", c_uint32),
+        ("target_error", c_float),
+        ("reserved", c_uint32),
+    ]
+
+
+class luxfer_plan_report(Structure):
+    """Times and errors that a plan predicts."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("relights", c_uint32),
+        ("seconds", c_double),
+        ("error", c_double),
+        ("relight_seconds", c_double),
+        ("relight_error", c_double),
+        ("render_seconds", c_double),
+        ("render_error", c_double),
+    ]
+    result = types.PlanReport
+
+
+class luxfer_render_part(Structure):
+    """A part of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("x", c_uint32),
+        ("y", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("first_sample", c_uint32),
+        ("samples", c_uint32),
+    ]
+
+
 class luxfer_demo_photo_params(Structure):
     """Settings of the photo."""
 
@@ -1414,6 +1414,11 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_image_get_size": (c_int32, [("image", POINTER(luxfer_image)), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("channels", POINTER(c_uint32))]),
     "luxfer_image_read": (c_int32, [("image", POINTER(luxfer_image)), ("first_channel", c_uint32), ("view", POINTER(luxfer_image_view))]),
     "luxfer_image_get_metadata": (c_int32, [("image", POINTER(luxfer_image)), ("metadata", POINTER(luxfer_photo_metadata)), ("size", c_size_t)]),
+    "luxfer_strokes_create": (c_int32, [("context", POINTER(luxfer_context)), ("width", c_uint32), ("height", c_uint32), ("strokes", POINTER(POINTER(luxfer_strokes)))]),
+    "luxfer_strokes_add": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
+    "luxfer_strokes_add_image": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("drawing", POINTER(luxfer_image))]),
+    "luxfer_strokes_add_text": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("description", c_char_p)]),
+    "luxfer_strokes_clear": (c_int32, [("strokes", POINTER(luxfer_strokes))]),
     "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p)]),
     "luxfer_job_get_progress": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("outcome", POINTER(c_int32))]),
     "luxfer_job_cancel": (c_int32, [("job", POINTER(luxfer_job))]),
@@ -1463,6 +1468,22 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
     "luxfer_candidates_get_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
     "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate)), ("size", c_size_t)]),
+    "luxfer_render_params_init": (c_int32, [("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
+    "luxfer_render_create": (c_int32, [("context", POINTER(luxfer_context)), ("render", POINTER(POINTER(luxfer_render)))]),
+    "luxfer_render_set_scene": (c_int32, [("render", POINTER(luxfer_render)), ("scene", POINTER(luxfer_scene))]),
+    "luxfer_render_set_camera": (c_int32, [("render", POINTER(luxfer_render)), ("camera", POINTER(luxfer_camera_params))]),
+    "luxfer_render_start": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_render_get_image": (c_int32, [("render", POINTER(luxfer_render)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_render_get_report": (c_int32, [("render", POINTER(luxfer_render)), ("report", POINTER(luxfer_render_report)), ("size", c_size_t)]),
+    "luxfer_render_add_expression": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("expression", c_char_p)]),
+    "luxfer_render_clear_expressions": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_set_emitter_as": (c_int32, [("render", POINTER(luxfer_render)), ("emitter_as", c_int32)]),
+    "luxfer_render_set_aovs": (c_int32, [("render", POINTER(luxfer_render)), ("flags", c_uint32)]),
+    "luxfer_render_get_layer_count": (c_int32, [("render", POINTER(luxfer_render)), ("count", POINTER(c_uint32))]),
+    "luxfer_render_get_layer_name": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_render_find_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("index", POINTER(c_uint32))]),
+    "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),
@@ -1473,11 +1494,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
-    "luxfer_strokes_create": (c_int32, [("context", POINTER(luxfer_context)), ("width", c_uint32), ("height", c_uint32), ("strokes", POINTER(POINTER(luxfer_strokes)))]),
-    "luxfer_strokes_add": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
-    "luxfer_strokes_add_image": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("drawing", POINTER(luxfer_image))]),
-    "luxfer_strokes_add_text": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("description", c_char_p)]),
-    "luxfer_strokes_clear": (c_int32, [("strokes", POINTER(luxfer_strokes))]),
     "luxfer_features_params_init": (c_int32, [("params", POINTER(luxfer_features_params)), ("size", c_size_t)]),
     "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
     "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
@@ -1509,28 +1525,40 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_emission_clear_styles": (c_int32, [("emission", POINTER(luxfer_emission))]),
     "luxfer_emission_start_plan": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_render_params_init": (c_int32, [("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
-    "luxfer_render_create": (c_int32, [("context", POINTER(luxfer_context)), ("render", POINTER(POINTER(luxfer_render)))]),
-    "luxfer_render_set_scene": (c_int32, [("render", POINTER(luxfer_render)), ("scene", POINTER(luxfer_scene))]),
-    "luxfer_render_set_camera": (c_int32, [("render", POINTER(luxfer_render)), ("camera", POINTER(luxfer_camera_params))]),
-    "luxfer_render_start": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_render_get_image": (c_int32, [("render", POINTER(luxfer_render)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_render_get_report": (c_int32, [("render", POINTER(luxfer_render)), ("report", POINTER(luxfer_render_report)), ("size", c_size_t)]),
-    "luxfer_render_add_expression": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("expression", c_char_p)]),
-    "luxfer_render_clear_expressions": (c_int32, [("render", POINTER(luxfer_render))]),
-    "luxfer_render_set_emitter_as": (c_int32, [("render", POINTER(luxfer_render)), ("emitter_as", c_int32)]),
-    "luxfer_render_set_aovs": (c_int32, [("render", POINTER(luxfer_render)), ("flags", c_uint32)]),
-    "luxfer_render_get_layer_count": (c_int32, [("render", POINTER(luxfer_render)), ("count", POINTER(c_uint32))]),
-    "luxfer_render_get_layer_name": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_render_find_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("index", POINTER(c_uint32))]),
-    "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
-    "luxfer_render_part_init": (c_int32, [("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
-    "luxfer_render_split": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("columns", c_uint32), ("rows", c_uint32), ("ranges", c_uint32), ("index", c_uint32), ("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
-    "luxfer_render_start_part": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("part", POINTER(luxfer_render_part)), ("path", c_char_p), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_render_add_part": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
-    "luxfer_render_clear_parts": (c_int32, [("render", POINTER(luxfer_render))]),
-    "luxfer_render_start_merge": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_relight_params_init": (c_int32, [("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
+    "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
+    "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
+    "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_relight_set_constraint": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
+    "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
+    "luxfer_pattern_params_init": (c_int32, [("params", POINTER(luxfer_pattern_params)), ("size", c_size_t)]),
+    "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
+    "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
+    "luxfer_transfer_set_photo": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("photo", POINTER(luxfer_image))]),
+    "luxfer_transfer_set_depth": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
+    "luxfer_transfer_set_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("scene", POINTER(luxfer_scene)), ("surface", c_char_p)]),
+    "luxfer_transfer_set_triangles": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("triangles", POINTER(c_uint32)), ("count", c_size_t)]),
+    "luxfer_transfer_set_texture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("texture", POINTER(luxfer_image))]),
+    "luxfer_transfer_set_camera": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("camera", POINTER(luxfer_camera_params))]),
+    "luxfer_transfer_set_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("strokes", POINTER(luxfer_strokes))]),
+    "luxfer_transfer_set_zones": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("zones", POINTER(c_double)), ("count", c_size_t)]),
+    "luxfer_transfer_use_rectify": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("rectify", POINTER(luxfer_rectify))]),
+    "luxfer_transfer_use_features": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("features", POINTER(luxfer_features))]),
+    "luxfer_transfer_use_segment": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("segment", POINTER(luxfer_segment))]),
+    "luxfer_transfer_use_mask": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("mask", POINTER(luxfer_image))]),
+    "luxfer_transfer_start": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("first", c_int32), ("last", c_int32), ("params", POINTER(luxfer_transfer_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_transfer_get_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_transfer_get_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_transfer_get_report": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("report", POINTER(luxfer_transfer_report)), ("size", c_size_t)]),
+    "luxfer_transfer_get_view": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("view", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
+    "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
+    "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture)), ("size", c_size_t)]),
+    "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
+    "luxfer_get_warnings": (c_int32, [("handle", c_void_p), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_warnings_get_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
+    "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning)), ("size", c_size_t)]),
+    "luxfer_warning_get_name": (c_char_p, [("code", c_int32)]),
     "luxfer_illuminance_params_init": (c_int32, [("params", POINTER(luxfer_illuminance_params)), ("size", c_size_t)]),
     "luxfer_illuminance_grid_init": (c_int32, [("grid", POINTER(luxfer_illuminance_grid)), ("size", c_size_t)]),
     "luxfer_illuminance_create": (c_int32, [("context", POINTER(luxfer_context)), ("illuminance", POINTER(POINTER(luxfer_illuminance)))]),
@@ -1539,13 +1567,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_illuminance_start_mesh": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("mesh", c_uint32), ("back", c_uint32), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_illuminance_get_image": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_illuminance_get_report": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("report", POINTER(luxfer_illuminance_report)), ("size", c_size_t)]),
-    "luxfer_relight_params_init": (c_int32, [("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
-    "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
-    "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
-    "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
-    "luxfer_relight_set_constraint": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
-    "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
     "luxfer_lamps_params_init": (c_int32, [("params", POINTER(luxfer_lamps_params)), ("size", c_size_t)]),
     "luxfer_lamps_create": (c_int32, [("context", POINTER(luxfer_context)), ("lamps", POINTER(POINTER(luxfer_lamps)))]),
     "luxfer_lamps_set_scene": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32)]),
@@ -1581,40 +1602,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
     "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_pattern_params_init": (c_int32, [("params", POINTER(luxfer_pattern_params)), ("size", c_size_t)]),
-    "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
-    "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
-    "luxfer_transfer_set_photo": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("photo", POINTER(luxfer_image))]),
-    "luxfer_transfer_set_depth": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
-    "luxfer_transfer_set_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("scene", POINTER(luxfer_scene)), ("surface", c_char_p)]),
-    "luxfer_transfer_set_triangles": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("triangles", POINTER(c_uint32)), ("count", c_size_t)]),
-    "luxfer_transfer_set_texture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("texture", POINTER(luxfer_image))]),
-    "luxfer_transfer_set_camera": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("camera", POINTER(luxfer_camera_params))]),
-    "luxfer_transfer_set_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("strokes", POINTER(luxfer_strokes))]),
-    "luxfer_transfer_set_zones": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("zones", POINTER(c_double)), ("count", c_size_t)]),
-    "luxfer_transfer_use_rectify": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("rectify", POINTER(luxfer_rectify))]),
-    "luxfer_transfer_use_features": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("features", POINTER(luxfer_features))]),
-    "luxfer_transfer_use_segment": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("segment", POINTER(luxfer_segment))]),
-    "luxfer_transfer_use_mask": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("mask", POINTER(luxfer_image))]),
-    "luxfer_transfer_start": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("first", c_int32), ("last", c_int32), ("params", POINTER(luxfer_transfer_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_transfer_get_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_transfer_get_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_transfer_get_report": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("report", POINTER(luxfer_transfer_report)), ("size", c_size_t)]),
-    "luxfer_transfer_get_view": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("view", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
-    "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
-    "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture)), ("size", c_size_t)]),
-    "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
-    "luxfer_get_warnings": (c_int32, [("handle", c_void_p), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_warnings_get_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
-    "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning)), ("size", c_size_t)]),
-    "luxfer_warning_get_name": (c_char_p, [("code", c_int32)]),
-    "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
-    "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
-    "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_plan_start_transfer": (c_int32, [("plan", POINTER(luxfer_plan)), ("transfer", POINTER(luxfer_transfer)), ("settings", POINTER(luxfer_transfer_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_plan_get_report": (c_int32, [("plan", POINTER(luxfer_plan)), ("report", POINTER(luxfer_plan_report)), ("size", c_size_t)]),
-    "luxfer_plan_get_render_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
-    "luxfer_plan_get_relight_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
     "luxfer_guides_params_init": (c_int32, [("params", POINTER(luxfer_guides_params)), ("size", c_size_t)]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),
@@ -1639,11 +1626,24 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_stylize_get_level": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("rounds", POINTER(c_uint32))]),
     "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round)), ("size", c_size_t)]),
     "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass)), ("size", c_size_t)]),
-    "luxfer_plan_start_stylize": (c_int32, [("plan", POINTER(luxfer_plan)), ("stylize", POINTER(luxfer_stylize)), ("settings", POINTER(luxfer_stylize_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_plan_get_stylize_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
     "luxfer_sheet_params_init": (c_int32, [("params", POINTER(luxfer_sheet_params)), ("size", c_size_t)]),
     "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
     "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report)), ("size", c_size_t)]),
+    "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
+    "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
+    "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_start_transfer": (c_int32, [("plan", POINTER(luxfer_plan)), ("transfer", POINTER(luxfer_transfer)), ("settings", POINTER(luxfer_transfer_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_get_report": (c_int32, [("plan", POINTER(luxfer_plan)), ("report", POINTER(luxfer_plan_report)), ("size", c_size_t)]),
+    "luxfer_plan_get_render_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
+    "luxfer_plan_get_relight_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
+    "luxfer_plan_start_stylize": (c_int32, [("plan", POINTER(luxfer_plan)), ("stylize", POINTER(luxfer_stylize)), ("settings", POINTER(luxfer_stylize_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_get_stylize_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
+    "luxfer_render_part_init": (c_int32, [("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
+    "luxfer_render_split": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("columns", c_uint32), ("rows", c_uint32), ("ranges", c_uint32), ("index", c_uint32), ("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
+    "luxfer_render_start_part": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("part", POINTER(luxfer_render_part)), ("path", c_char_p), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_render_add_part": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
+    "luxfer_render_clear_parts": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_start_merge": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_demo_create_scene": (c_int32, [("context", POINTER(luxfer_context)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_demo_create_artwork": (c_int32, [("guides", POINTER(luxfer_guides)), ("style", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_demo_photo_params_init": (c_int32, [("params", POINTER(luxfer_demo_photo_params)), ("size", c_size_t)]),

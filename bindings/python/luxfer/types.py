@@ -86,6 +86,16 @@ class FileColour(IntEnum):
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 
 
+class Phase(IntEnum):
+    """The mask that strokes are for."""
+
+    PLANE = 0
+    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
+    too."""
+    LIGHTS = 1
+    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
+
+
 class AlphaMode(IntEnum):
     """Meaning of a surface's alpha."""
 
@@ -150,6 +160,36 @@ class CandidateKind(IntEnum):
     """All triangles of one material."""
 
 
+class RenderImage(IntEnum):
+    """An image of a rendering."""
+
+    BEAUTY = 0
+    """Mean radiance of each pixel, linear RGB in cd/m²."""
+    VARIANCE = 1
+    """Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their
+    errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances."""
+    PATHS = 2
+    """Number of paths of each pixel; 1 channel."""
+    INTERVAL = 3
+    """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
+    where a pixel has fewer than two paths."""
+    PREVIEW = 4
+    """The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces
+    do not show, such as soft shadows; preview_bias of the report estimates the error. Only if
+    RenderParams.preview is not 0."""
+
+
+class EmitterAs(IntEnum):
+    """Letters that match emissive surfaces and the environment in camera-first expressions."""
+
+    BOTH = 0
+    """Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default."""
+    LIGHT = 1
+    """Every light matches L only."""
+    OBJECT = 2
+    """As in Open Shading Language: surfaces match O, the environment matches B."""
+
+
 class Lines(IntEnum):
     """Detector of lines."""
 
@@ -198,16 +238,6 @@ class FocalSource(IntEnum):
     """Assumed: 0.85 times the width of the photo."""
     FROM_METADATA = 3
     """Mainly from what the photo's file says; see luxfer_image_get_metadata."""
-
-
-class Phase(IntEnum):
-    """The mask that strokes are for."""
-
-    PLANE = 0
-    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
-    too."""
-    LIGHTS = 1
-    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
 
 
 class DepthKind(IntEnum):
@@ -319,45 +349,6 @@ class EmissionImage(IntEnum):
     """Metadata of the result, with these channels."""
 
 
-class RenderImage(IntEnum):
-    """An image of a rendering."""
-
-    BEAUTY = 0
-    """Mean radiance of each pixel, linear RGB in cd/m²."""
-    VARIANCE = 1
-    """Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their
-    errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances."""
-    PATHS = 2
-    """Number of paths of each pixel; 1 channel."""
-    INTERVAL = 3
-    """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
-    where a pixel has fewer than two paths."""
-    PREVIEW = 4
-    """The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces
-    do not show, such as soft shadows; preview_bias of the report estimates the error. Only if
-    RenderParams.preview is not 0."""
-
-
-class EmitterAs(IntEnum):
-    """Letters that match emissive surfaces and the environment in camera-first expressions."""
-
-    BOTH = 0
-    """Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default."""
-    LIGHT = 1
-    """Every light matches L only."""
-    OBJECT = 2
-    """As in Open Shading Language: surfaces match O, the environment matches B."""
-
-
-class IlluminanceImage(IntEnum):
-    """An image of the calculation."""
-
-    LUX = 0
-    """Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover."""
-    ERROR = 1
-    """Standard error of each value, in lux; 1 channel."""
-
-
 class Quantity(IntEnum):
     """Quantity that should match the photo."""
 
@@ -401,53 +392,6 @@ class Outcome(IntEnum):
     """No light of this channel reaches the target: the emission uses the mean scale of the other channels."""
     TOO_DIM = 3
     """All lamps at their largest power are too weak, or two goals contradict each other."""
-
-
-class Group(IntEnum):
-    """Which lamps share one power."""
-
-    ALL = 0
-    """All lamps form one group."""
-    EACH = 1
-    """Each lamp is a group of its own."""
-    BY_X = 2
-    """Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes."""
-    BY_Y = 3
-    """Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes."""
-    BY_Z = 4
-    """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
-    BY_TYPE = 5
-    """Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and
-    all luminaires of one distribution."""
-
-
-class Aim(IntEnum):
-    """Objective of a placement."""
-
-    MAX_LUMINANCE = 0
-    """The largest luminance of the target."""
-    MIN_LUMINANCE = 1
-    """The smallest luminance of the target."""
-    RADIANCE = 2
-    """The mean radiance of the target that is nearest to PlacementParams.radiance, all other light included."""
-
-
-class Scale(IntEnum):
-    """The scale from values to colours."""
-
-    LINEAR = 0
-    """Linear: equal differences of the value have equal width."""
-    LOGARITHMIC = 1
-    """Logarithmic: decades have equal width."""
-
-
-class Unit(IntEnum):
-    """The quantity of an image's values."""
-
-    LUMINANCE = 0
-    """Luminance in cd/m²."""
-    ILLUMINANCE = 1
-    """Illuminance in lux."""
 
 
 class PatternScale(IntEnum):
@@ -594,6 +538,62 @@ class WarningCode(IntEnum):
     NOT_RENDERED = 21
     """The file of a scene has a feature or an extension that is not rendered, which the message names with the
     first objects that have it; the severity is their number."""
+
+
+class IlluminanceImage(IntEnum):
+    """An image of the calculation."""
+
+    LUX = 0
+    """Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover."""
+    ERROR = 1
+    """Standard error of each value, in lux; 1 channel."""
+
+
+class Group(IntEnum):
+    """Which lamps share one power."""
+
+    ALL = 0
+    """All lamps form one group."""
+    EACH = 1
+    """Each lamp is a group of its own."""
+    BY_X = 2
+    """Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes."""
+    BY_Y = 3
+    """Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes."""
+    BY_Z = 4
+    """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
+    BY_TYPE = 5
+    """Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and
+    all luminaires of one distribution."""
+
+
+class Aim(IntEnum):
+    """Objective of a placement."""
+
+    MAX_LUMINANCE = 0
+    """The largest luminance of the target."""
+    MIN_LUMINANCE = 1
+    """The smallest luminance of the target."""
+    RADIANCE = 2
+    """The mean radiance of the target that is nearest to PlacementParams.radiance, all other light included."""
+
+
+class Scale(IntEnum):
+    """The scale from values to colours."""
+
+    LINEAR = 0
+    """Linear: equal differences of the value have equal width."""
+    LOGARITHMIC = 1
+    """Logarithmic: decades have equal width."""
+
+
+class Unit(IntEnum):
+    """The quantity of an image's values."""
+
+    LUMINANCE = 0
+    """Luminance in cd/m²."""
+    ILLUMINANCE = 1
+    """Illuminance in lux."""
 
 
 class GuidesImage(IntEnum):
@@ -1190,6 +1190,62 @@ class Candidate:
     """The reason for the score, in English and with its figures."""
 
 
+class RenderParams(TypedDict, total=False):
+    """Settings of a rendering."""
+
+    width: int
+    """Width of the image in pixels, in [1, 65536]; default 1280."""
+    height: int
+    """Height of the image in pixels, in [1, 65536]; default 720."""
+    samples: int
+    """Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the
+    image."""
+    target_error: float
+    """Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they
+    reduce the error most. Default 0: no target."""
+    time_budget_ms: int
+    """Stop after this number of milliseconds; default 0: no limit."""
+    seed: int
+    """Seed of the paths; default 1."""
+    pixel_error: float
+    """Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is
+    the root mean square over its pixels of half the width of the 95 % confidence interval of the luminance,
+    divided by that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of
+    the value, 19 times out of 20. A block receives at most 64 times samples paths per pixel, even if it then
+    misses the target. Default 0: no target."""
+    bounce_error: float
+    """Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light
+    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the
+    number of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
+    preview: float
+    """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
+    Default 0: no preview, as for final images. It does not change the other images."""
+    relative_error: float
+    """Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where
+    they reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no
+    target. With several targets, rendering stops when all are reached."""
+
+
+@dataclass(frozen=True)
+class RenderReport:
+    """Quality of a rendering."""
+
+    samples: int
+    """Mean number of paths per pixel so far."""
+    error: float
+    """Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a
+    pixel has fewer than two paths."""
+    discarded: int
+    """Number of paths that were discarded because their radiance was not finite."""
+    preview_bias: float
+    """Estimated bias of the preview: the difference between its expected value and the true image, as root mean
+    square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview."""
+    relative_error: float
+    """Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its
+    channels, but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths.
+    With few paths it overestimates: with 8 by about a quarter."""
+
+
 class RectifyParams(TypedDict, total=False):
     """Settings of a rectification."""
 
@@ -1442,77 +1498,197 @@ class Luminaire:
     sorted by the number of their lamps, the largest first. 0 if the border cuts the lamp."""
 
 
-class RenderParams(TypedDict, total=False):
-    """Settings of a rendering."""
+class RelightParams(TypedDict, total=False):
+    """Settings of a relighting."""
 
-    width: int
-    """Width of the image in pixels, in [1, 65536]; default 1280."""
-    height: int
-    """Height of the image in pixels, in [1, 65536]; default 720."""
-    samples: int
-    """Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the
-    image."""
+    quantity: Quantity | str | int
+    """Quantity; default Quantity.OUTGOING."""
+    paths: int
+    """Maximum number of paths, in [1024, 2^30]; default 2^20."""
     target_error: float
-    """Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they
-    reduce the error most. Default 0: no target."""
+    """Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in
+    [0, 1]; default 0.01; 0: no target."""
     time_budget_ms: int
     """Stop after this number of milliseconds; default 0: no limit."""
+    fit: Fit | str | int
+    """Fit; default Fit.MEAN."""
     seed: int
     """Seed of the paths; default 1."""
-    pixel_error: float
-    """Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is
-    the root mean square over its pixels of half the width of the 95 % confidence interval of the luminance,
-    divided by that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of
-    the value, 19 times out of 20. A block receives at most 64 times samples paths per pixel, even if it then
-    misses the target. Default 0: no target."""
-    bounce_error: float
-    """Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light
-    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the
-    number of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
-    preview: float
-    """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-    Default 0: no preview, as for final images. It does not change the other images."""
-    relative_error: float
-    """Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where
-    they reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no
-    target. With several targets, rendering stops when all are reached."""
 
 
 @dataclass(frozen=True)
-class RenderReport:
-    """Quality of a rendering."""
+class RelightReport:
+    """The solution and its confidence."""
 
-    samples: int
-    """Mean number of paths per pixel so far."""
+    paths: int
+    """Number of traced paths."""
+    scale: tuple[float, float, float]
+    """Factor for the emission, per channel, >= 0."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of scale."""
+    response: tuple[float, float, float]
+    """Mean radiance of the target from the emission at scale 1, in cd/m²."""
+    background: tuple[float, float, float]
+    """Mean radiance of the target from all other light, in cd/m²."""
+    outcome: tuple[Outcome, Outcome, Outcome]
+    """Outcome of each channel."""
     error: float
-    """Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a
-    pixel has fewer than two paths."""
-    discarded: int
-    """Number of paths that were discarded because their radiance was not finite."""
-    preview_bias: float
-    """Estimated bias of the preview: the difference between its expected value and the true image, as root mean
-    square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview."""
-    relative_error: float
-    """Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its
-    channels, but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths.
-    With few paths it overestimates: with 8 by about a quarter."""
+    """The largest relative half-width among the channels that meet their target."""
+    delta_e: float
+    """Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this
+    value, at the exposure that shows the target as middle grey."""
 
 
-class RenderPart(TypedDict, total=False):
-    """A part of a rendering."""
+class PatternParams(TypedDict, total=False):
+    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
+    Surface."""
 
-    x: int
-    """Column of the first pixel; default 0."""
-    y: int
-    """Row of the first pixel, from the top; default 0."""
-    width: int
-    """Width in pixels; default 0: up to the right edge of the image."""
-    height: int
-    """Height in pixels; default 0: up to the bottom edge of the image."""
-    first_sample: int
-    """Index of the first path of each pixel; default 0."""
-    samples: int
-    """Paths per pixel; default 0: all paths from first_sample up to RenderParams.samples."""
+    scale: PatternScale | str | int
+    """PatternScale; default PatternScale.DISTANCE."""
+    length: float
+    """Length of the lamp or the spacing, in metres, in [1e-6, 1e6]; default 1. Only PatternScale.LAMP and
+    PatternScale.SPACING use it."""
+    texel_size: float
+    """Size of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, as far as
+    max_texels of TransferParams allows."""
+    rotation: float
+    """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
+    offset: Sequence[float]
+    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices
+    only: lamps without a lattice have no fixed places and are not shifted."""
+    margin: float
+    """Minimum distance in metres of lamps from the edge of the surface and from the zones of
+    luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
+    default -1, keeps the lamps at the edge of the surface, which cuts them."""
+
+
+class TransferParams(TypedDict, total=False):
+    """Settings of a transfer. The structs behind the pointers are read during the call."""
+
+    max_texels: int
+    """Maximum side of the emissive texture in texels, in [1, 16384]; default 2048."""
+    plane_distance: float
+    """Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]. It sets the
+    scale of the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit
+    ceiling tiles; plane_distance and plane_distance_error of TransferReport state it."""
+    white_luminance: float
+    """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux.
+    The strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
+    TransferReport."""
+    target: Target | str | int
+    """Target; default Target.SURFACE."""
+    rectify: RectifyParams
+    """Settings of the stages VIEW and UNWARP; None, the default: their defaults."""
+    features: FeaturesParams
+    """Settings of the stage FEATURES; None, the default: their defaults."""
+    plane: SegmentParams
+    """Settings of the stage PLANE; None, the default: their defaults."""
+    lights: SegmentParams
+    """Settings of the stage LIGHTS; None, the default: the defaults with channels = 7, colour only."""
+    emission: EmissionParams
+    """Settings of the stage EMISSION; None, the default: their defaults. The transfer sets width, height, scale
+    and offset itself."""
+    relight: RelightParams
+    """Settings of the stage RELIGHT; None, the default: their defaults."""
+    render: RenderParams
+    """Settings of the stage RENDER; None, the default: their defaults."""
+    pattern: PatternParams
+    """Layout of the lights on the surface; None, the default: the defaults."""
+
+
+@dataclass(frozen=True)
+class TransferReport:
+    """Time and error of each stage. The error of a stage without a result is NaN."""
+
+    fixtures: int
+    """Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT
+    has ended."""
+    seconds: tuple[float, ...]
+    """Duration of each stage's last run in seconds, by Stage."""
+    view_error: float
+    """Largest standard deviation of a vanishing point's direction, in radians."""
+    depth_confidence: float
+    """Mean confidence of the features' depth, in [0, 1]."""
+    plane_error: float
+    """Expected share of wrong pixels in the mask of the plane."""
+    lights_error: float
+    """Expected share of wrong pixels in the mask of the lights."""
+    unwarp_error: float
+    """Largest expected error of a corner of the unwarped image, in unwarped pixels."""
+    emission_error: float
+    """Relative difference between texture and photo in the share of the lit area."""
+    relight_error: float
+    """Largest relative half-width of the solution's 95 % confidence intervals."""
+    render_error: float
+    """As the field error of RenderReport: root mean square of the rendering's standard errors, divided by its
+    mean."""
+    texel_size: float
+    """Size of a texel of the emission in metres."""
+    target: tuple[float, float, float]
+    """Mean colour that the surface should have, relative to the photo's white."""
+    plane_distance: float
+    """Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN
+    before the stage EMISSION has ended, and for a given texture."""
+    plane_distance_error: float
+    """Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about
+    0.25 for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance."""
+    proposed_white: float
+    """Value proposed for TransferParams.white_luminance in cd/m²: by the exposure that the photo's file states,
+    as PhotoMetadata has it; else 159, which white paper has in the 500 lux of an office."""
+    proposed_white_low: float
+    """Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor."""
+    proposed_white_high: float
+    """Upper bound of proposed_white: by the exposure; else 318, for 1000 lux."""
+
+
+@dataclass(frozen=True)
+class Fixture:
+    """One lamp of the lit scene."""
+
+    position: tuple[float, float, float]
+    """Centre in metres."""
+    normal: tuple[float, float, float]
+    """Unit vector of the direction in which the lamp shines."""
+    axis: tuple[float, float, float]
+    """Unit vector of the long axis."""
+    radiance: tuple[float, float, float]
+    """Mean luminance per channel in cd/m²."""
+    kind: int
+    """Number of the lamp's kind, as in Luminaire."""
+    size: tuple[float, float]
+    """Length along the long axis and across it, in metres."""
+    area: float
+    """Area in m²."""
+    flux: float
+    """Luminous flux in lumens."""
+    cct: float
+    """Correlated colour temperature in kelvin; 0 for a lamp that is off."""
+    duv: float
+    """Distance from the blackbody in the CIE 1960 diagram."""
+
+
+@dataclass(frozen=True)
+class Warning:
+    """A reason to doubt a result."""
+
+    code: WarningCode
+    """WarningCode."""
+    stage: Stage
+    """The stage whose result is in doubt, Stage. Of a luxfer_segment it is LIGHTS with a mask to look within,
+    PLANE without; of a luxfer_scene it is SCENE."""
+    has_place: int
+    """1 if the warning has a place in the photo, else 0."""
+    severity: float
+    """The figure that raised it; each code has its own."""
+    limit: float
+    """The limit that the figure has passed."""
+    place: tuple[float, float]
+    """The place in the photo, x and y in pixels; 0 without one."""
+    message: str
+    """The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
+    luxfer_warnings."""
+    advice: str
+    """The remedy."""
 
 
 class IlluminanceParams(TypedDict, total=False):
@@ -1556,47 +1732,6 @@ class IlluminanceReport:
     """Largest illuminance."""
     mean_error: float
     """Standard error of the mean."""
-
-
-class RelightParams(TypedDict, total=False):
-    """Settings of a relighting."""
-
-    quantity: Quantity | str | int
-    """Quantity; default Quantity.OUTGOING."""
-    paths: int
-    """Maximum number of paths, in [1024, 2^30]; default 2^20."""
-    target_error: float
-    """Stop when the half-width of each channel's 95 % confidence interval is below this share of its scale, in
-    [0, 1]; default 0.01; 0: no target."""
-    time_budget_ms: int
-    """Stop after this number of milliseconds; default 0: no limit."""
-    fit: Fit | str | int
-    """Fit; default Fit.MEAN."""
-    seed: int
-    """Seed of the paths; default 1."""
-
-
-@dataclass(frozen=True)
-class RelightReport:
-    """The solution and its confidence."""
-
-    paths: int
-    """Number of traced paths."""
-    scale: tuple[float, float, float]
-    """Factor for the emission, per channel, >= 0."""
-    half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of scale."""
-    response: tuple[float, float, float]
-    """Mean radiance of the target from the emission at scale 1, in cd/m²."""
-    background: tuple[float, float, float]
-    """Mean radiance of the target from all other light, in cd/m²."""
-    outcome: tuple[Outcome, Outcome, Outcome]
-    """Outcome of each channel."""
-    error: float
-    """The largest relative half-width among the channels that meet their target."""
-    delta_e: float
-    """Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this
-    value, at the exposure that shows the target as middle grey."""
 
 
 class LampsParams(TypedDict, total=False):
@@ -1862,190 +1997,6 @@ class Preset:
     """Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement."""
 
 
-class PatternParams(TypedDict, total=False):
-    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
-    Surface."""
-
-    scale: PatternScale | str | int
-    """PatternScale; default PatternScale.DISTANCE."""
-    length: float
-    """Length of the lamp or the spacing, in metres, in [1e-6, 1e6]; default 1. Only PatternScale.LAMP and
-    PatternScale.SPACING use it."""
-    texel_size: float
-    """Size of a texel in metres, in [0, 1e6]; 0, the default: as fine as the unwarped photo, as far as
-    max_texels of TransferParams allows."""
-    rotation: float
-    """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
-    offset: Sequence[float]
-    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. It moves lattices
-    only: lamps without a lattice have no fixed places and are not shifted."""
-    margin: float
-    """Minimum distance in metres of lamps from the edge of the surface and from the zones of
-    luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
-    default -1, keeps the lamps at the edge of the surface, which cuts them."""
-
-
-class TransferParams(TypedDict, total=False):
-    """Settings of a transfer. The structs behind the pointers are read during the call."""
-
-    max_texels: int
-    """Maximum side of the emissive texture in texels, in [1, 16384]; default 2048."""
-    plane_distance: float
-    """Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]. It sets the
-    scale of the pattern. 0, the default: estimated from the size of the lamps, which are mostly made to fit
-    ceiling tiles; plane_distance and plane_distance_error of TransferReport state it."""
-    white_luminance: float
-    """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux.
-    The strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
-    TransferReport."""
-    target: Target | str | int
-    """Target; default Target.SURFACE."""
-    rectify: RectifyParams
-    """Settings of the stages VIEW and UNWARP; None, the default: their defaults."""
-    features: FeaturesParams
-    """Settings of the stage FEATURES; None, the default: their defaults."""
-    plane: SegmentParams
-    """Settings of the stage PLANE; None, the default: their defaults."""
-    lights: SegmentParams
-    """Settings of the stage LIGHTS; None, the default: the defaults with channels = 7, colour only."""
-    emission: EmissionParams
-    """Settings of the stage EMISSION; None, the default: their defaults. The transfer sets width, height, scale
-    and offset itself."""
-    relight: RelightParams
-    """Settings of the stage RELIGHT; None, the default: their defaults."""
-    render: RenderParams
-    """Settings of the stage RENDER; None, the default: their defaults."""
-    pattern: PatternParams
-    """Layout of the lights on the surface; None, the default: the defaults."""
-
-
-@dataclass(frozen=True)
-class TransferReport:
-    """Time and error of each stage. The error of a stage without a result is NaN."""
-
-    fixtures: int
-    """Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT
-    has ended."""
-    seconds: tuple[float, ...]
-    """Duration of each stage's last run in seconds, by Stage."""
-    view_error: float
-    """Largest standard deviation of a vanishing point's direction, in radians."""
-    depth_confidence: float
-    """Mean confidence of the features' depth, in [0, 1]."""
-    plane_error: float
-    """Expected share of wrong pixels in the mask of the plane."""
-    lights_error: float
-    """Expected share of wrong pixels in the mask of the lights."""
-    unwarp_error: float
-    """Largest expected error of a corner of the unwarped image, in unwarped pixels."""
-    emission_error: float
-    """Relative difference between texture and photo in the share of the lit area."""
-    relight_error: float
-    """Largest relative half-width of the solution's 95 % confidence intervals."""
-    render_error: float
-    """As the field error of RenderReport: root mean square of the rendering's standard errors, divided by its
-    mean."""
-    texel_size: float
-    """Size of a texel of the emission in metres."""
-    target: tuple[float, float, float]
-    """Mean colour that the surface should have, relative to the photo's white."""
-    plane_distance: float
-    """Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN
-    before the stage EMISSION has ended, and for a given texture."""
-    plane_distance_error: float
-    """Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about
-    0.25 for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance."""
-    proposed_white: float
-    """Value proposed for TransferParams.white_luminance in cd/m²: by the exposure that the photo's file states,
-    as PhotoMetadata has it; else 159, which white paper has in the 500 lux of an office."""
-    proposed_white_low: float
-    """Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor."""
-    proposed_white_high: float
-    """Upper bound of proposed_white: by the exposure; else 318, for 1000 lux."""
-
-
-@dataclass(frozen=True)
-class Fixture:
-    """One lamp of the lit scene."""
-
-    position: tuple[float, float, float]
-    """Centre in metres."""
-    normal: tuple[float, float, float]
-    """Unit vector of the direction in which the lamp shines."""
-    axis: tuple[float, float, float]
-    """Unit vector of the long axis."""
-    radiance: tuple[float, float, float]
-    """Mean luminance per channel in cd/m²."""
-    kind: int
-    """Number of the lamp's kind, as in Luminaire."""
-    size: tuple[float, float]
-    """Length along the long axis and across it, in metres."""
-    area: float
-    """Area in m²."""
-    flux: float
-    """Luminous flux in lumens."""
-    cct: float
-    """Correlated colour temperature in kelvin; 0 for a lamp that is off."""
-    duv: float
-    """Distance from the blackbody in the CIE 1960 diagram."""
-
-
-@dataclass(frozen=True)
-class Warning:
-    """A reason to doubt a result."""
-
-    code: WarningCode
-    """WarningCode."""
-    stage: Stage
-    """The stage whose result is in doubt, Stage. Of a luxfer_segment it is LIGHTS with a mask to look within,
-    PLANE without; of a luxfer_scene it is SCENE."""
-    has_place: int
-    """1 if the warning has a place in the photo, else 0."""
-    severity: float
-    """The figure that raised it; each code has its own."""
-    limit: float
-    """The limit that the figure has passed."""
-    place: tuple[float, float]
-    """The place in the photo, x and y in pixels; 0 without one."""
-    message: str
-    """The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
-    luxfer_warnings."""
-    advice: str
-    """The remedy."""
-
-
-class PlanParams(TypedDict, total=False):
-    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
-
-    time_budget_ms: int
-    """Time for all planned work in milliseconds; default 0: the goal is target_error."""
-    target_error: float
-    """Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the
-    goal is time_budget_ms."""
-
-
-@dataclass(frozen=True)
-class PlanReport:
-    """Times and errors that a plan predicts."""
-
-    relights: int
-    """1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation."""
-    seconds: float
-    """Seconds for all planned work."""
-    error: float
-    """Error of the picture."""
-    relight_seconds: float
-    """Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer."""
-    relight_error: float
-    """Predicted field error of RelightReport, half the width of its interval; 0 unless the plan is of a
-    transfer."""
-    render_seconds: float
-    """Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
-    stylisation."""
-    render_error: float
-    """Predicted field error of RenderReport; 0 in a plan of a stylisation."""
-
-
 class GuidesParams(TypedDict, total=False):
     """Settings of guides."""
 
@@ -2213,6 +2164,55 @@ class SheetReport:
     """Expected alignment error in pixels of the picture."""
     to_photo: tuple[float, ...]
     """Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row."""
+
+
+class PlanParams(TypedDict, total=False):
+    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
+
+    time_budget_ms: int
+    """Time for all planned work in milliseconds; default 0: the goal is target_error."""
+    target_error: float
+    """Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the
+    goal is time_budget_ms."""
+
+
+@dataclass(frozen=True)
+class PlanReport:
+    """Times and errors that a plan predicts."""
+
+    relights: int
+    """1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation."""
+    seconds: float
+    """Seconds for all planned work."""
+    error: float
+    """Error of the picture."""
+    relight_seconds: float
+    """Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer."""
+    relight_error: float
+    """Predicted field error of RelightReport, half the width of its interval; 0 unless the plan is of a
+    transfer."""
+    render_seconds: float
+    """Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
+    stylisation."""
+    render_error: float
+    """Predicted field error of RenderReport; 0 in a plan of a stylisation."""
+
+
+class RenderPart(TypedDict, total=False):
+    """A part of a rendering."""
+
+    x: int
+    """Column of the first pixel; default 0."""
+    y: int
+    """Row of the first pixel, from the top; default 0."""
+    width: int
+    """Width in pixels; default 0: up to the right edge of the image."""
+    height: int
+    """Height in pixels; default 0: up to the bottom edge of the image."""
+    first_sample: int
+    """Index of the first path of each pixel; default 0."""
+    samples: int
+    """Paths per pixel; default 0: all paths from first_sample up to RenderParams.samples."""
 
 
 class DemoPhotoParams(TypedDict, total=False):
