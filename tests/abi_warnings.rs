@@ -39,8 +39,7 @@ fn run(segment: *mut luxfer_segment) {
 }
 
 fn empty() -> luxfer_warning {
-    let warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
-    warning
+    unsafe { std::mem::zeroed() }
 }
 
 fn list(warnings: *mut luxfer_warnings) -> Vec<luxfer_warning> {
