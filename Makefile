@@ -41,7 +41,7 @@ lib:
 
 include bindings/install.mk
 
-out/%: examples_c/%.c examples_c/common.h examples_c/panels.h include/luxfer.h lib
+out/%: examples_c/%.c examples_c/common.h examples_c/panels.h include/luxfer.h $(wildcard include/luxfer/*.h) lib
 	@mkdir -p out
 	$(CC) -std=c99 -O2 -Wall -Wextra -Wpedantic -Iinclude $< -o $@ -L$(PROFILE) -lluxfer -lm -Wl,-rpath,'$$ORIGIN/../$(PROFILE)'
 

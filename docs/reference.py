@@ -15,7 +15,6 @@ sys.path.insert(0, str(ROOT / "bindings" / "python"))
 
 import generate  # noqa: E402  what reads the header for the Python package
 
-HEADER = ROOT / "include" / "luxfer.h"
 PACKAGE = ROOT / "bindings" / "python" / "luxfer"
 #: A bar in a table's cell; in code an entity would be shown as it is.
 BAR = "\\|"
@@ -41,7 +40,7 @@ class Header:
         self.pages: dict[str, str] = {}  # item: page
         self.fields: dict[str, list[generate.Field]] = {}
         missing, section = [], {}
-        for match in generate.ITEM.finditer(HEADER.read_text()):
+        for match in generate.ITEM.finditer(generate.header_text()):
             item = match.groupdict()
             if item["section"]:
                 prose = "\n".join(re.sub(r"^ \* ?", "", line) for line in match[0].split("\n")[1:-1])

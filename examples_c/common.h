@@ -19,8 +19,8 @@ static luxfer_context *context;
 static inline void check(luxfer_status status, const char *what) {
     char message[1024] = "";
     if (status == LUXFER_OK) return;
-    if (context) luxfer_context_last_error(context, message, sizeof message, NULL);
-    fprintf(stderr, "\n%s: %s (%s)\n", what, message, luxfer_status_name(status));
+    if (context) luxfer_context_get_last_error(context, message, sizeof message, NULL);
+    fprintf(stderr, "\n%s: %s (%s)\n", what, message, luxfer_status_get_name(status));
     exit(1);
 }
 
@@ -36,7 +36,7 @@ static inline int show_progress(void *title, double fraction) {
 /* Waits for a job, with a progress bar in a terminal, and releases it. */
 static inline void finish(luxfer_job *job, const char *title) {
     check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
-    check(luxfer_job_release(job), title);
+    check(luxfer_release(job), title);
 }
 
 /* --8<-- [start:warnings] */
@@ -45,18 +45,14 @@ static inline void print_warnings(luxfer_warnings *warnings) {
     static const char *stages[] = {"view", "features", "plane", "lights", "unwarp", "emission", "relight", "render"};
     luxfer_warning warning;
     uint32_t i, count = 0;
-    warning.struct_size = sizeof warning;
-    check(luxfer_warnings_count(warnings, &count), "warnings");
+    check(luxfer_warnings_get_count(warnings, &count), "warnings");
     for (i = 0; i < count; i++) {
-        char message[512], advice[512];
-        check(luxfer_warnings_get(warnings, i, &warning), "warning");
-        check(luxfer_warnings_get_message(warnings, i, message, sizeof message, NULL), "warning");
-        check(luxfer_warnings_get_advice(warnings, i, advice, sizeof advice, NULL), "warning");
-        fprintf(stderr, "%s: %s\n    %s", stages[warning.stage], message, advice);
+        check(luxfer_warnings_get(warnings, i, &warning, sizeof warning), "warning");
+        fprintf(stderr, "%s: %s\n    %s", stages[warning.stage], warning.message, warning.advice);
         if (warning.has_place) fprintf(stderr, " (at %.0f, %.0f)", warning.place[0], warning.place[1]);
-        fprintf(stderr, " [%s]\n", luxfer_warning_name(warning.code));
+        fprintf(stderr, " [%s]\n", luxfer_warning_get_name(warning.code));
     }
-    check(luxfer_warnings_release(warnings), "warnings");
+    check(luxfer_release(warnings), "warnings");
 }
 /* --8<-- [end:warnings] */
 
@@ -74,7 +70,7 @@ static inline luxfer_image *take_photo(uint32_t width, uint32_t height, uint32_t
     check(luxfer_demo_photo_start(demo, &params, &job), "photo");
     finish(job, "taking the photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
-    check(luxfer_demo_photo_release(demo), "photo");
+    check(luxfer_release(demo), "photo");
     return photo;
 }
 

@@ -14,15 +14,14 @@ static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last
     luxfer_transfer_report report;
     luxfer_image *confidence = NULL;
     luxfer_job *job = NULL;
-    report.struct_size = sizeof report;
     check(luxfer_transfer_start(transfer, first, last, NULL, &job), "segmentation");
     finish(job, "segmenting");
-    check(luxfer_transfer_get_report(transfer, &report), "report");
+    check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
     if (last == LUXFER_STAGE_PLANE) printf("ceiling: %.1f %% wrong on strokes held out\n", 100 * report.plane_error);
     else printf("lamps:   %.1f %% wrong on strokes held out\n", 100 * report.lights_error);
     check(luxfer_transfer_get_image(transfer, which, &confidence), "confidence");
     panels_add(s, column, row, confidence, 1);
-    luxfer_image_release(confidence);
+    luxfer_release(confidence);
 }
 
 int main(void) {
@@ -33,6 +32,7 @@ int main(void) {
     static const float lamp[] = {157, 84, 190, 85}, large_lamp[] = {230, 19, 245, 30}, small_lamp[] = {130, 115, 152, 116};
     static const float tiles[] = {73, 42, 112, 81}, far_tiles[] = {62, 112, 105, 105};
     const float radius = 1.5f;
+    luxfer_strokes *strokes = NULL;
     luxfer_transfer *transfer = NULL;
     luxfer_warnings *warnings = NULL;
     luxfer_image *photo;
@@ -45,31 +45,36 @@ int main(void) {
     check(luxfer_transfer_set_photo(transfer, photo), "photo");
 
     /* --8<-- [start:strokes] */
+    check(luxfer_strokes_create(context, 300, 200, &strokes), "strokes"); /* the photo's size */
+
     /* The ceiling: 1 marks strokes on it, 0 strokes off it. Strokes on lamps count as strokes on the ceiling. */
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, ceiling, 3, radius, 1), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, far_wall, 2, radius, 0), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, ceiling, 3, radius, 1), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, far_wall, 2, radius, 0), "stroke");
+    check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
     run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_PLANE, LUXFER_TRANSFER_PLANE_CONFIDENCE, &s, 1, 0);
 
-    /* Add strokes where the mask was wrong; run again only the stages that depend on them. */
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, beside_lamps, 2, radius, 1), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, cupboards, 2, radius, 0), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, left_wall, 2, radius, 0), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, lamp, 2, radius, 1), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, large_lamp, 2, radius, 1), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, small_lamp, 2, radius, 1), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, tiles, 2, radius, 0), "stroke");
-    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, far_tiles, 2, radius, 0), "stroke");
+    /* Add strokes where the mask was wrong and set them again; run only the stages that depend on them. */
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, beside_lamps, 2, radius, 1), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, cupboards, 2, radius, 0), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, left_wall, 2, radius, 0), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_LIGHTS, lamp, 2, radius, 1), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_LIGHTS, large_lamp, 2, radius, 1), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_LIGHTS, small_lamp, 2, radius, 1), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_LIGHTS, tiles, 2, radius, 0), "stroke");
+    check(luxfer_strokes_add(strokes, LUXFER_PHASE_LIGHTS, far_tiles, 2, radius, 0), "stroke");
+    check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
     run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE, LUXFER_TRANSFER_PLANE_CONFIDENCE, &s, 0, 1);
     run(transfer, LUXFER_STAGE_LIGHTS, LUXFER_STAGE_LIGHTS, LUXFER_TRANSFER_LIGHTS_CONFIDENCE, &s, 1, 1);
     /* --8<-- [end:strokes] */
     check(panels_save(&s, context, "custom_strokes.png"), "custom_strokes.png");
 
     /* The reasons to doubt the masks, and the places where one more stroke helps. */
-    check(luxfer_transfer_get_warnings(transfer, &warnings), "warnings");
+    check(luxfer_get_warnings(transfer, &warnings), "warnings");
     print_warnings(warnings);
 
-    luxfer_transfer_release(transfer);
-    luxfer_image_release(photo);
-    luxfer_context_release(context);
+    luxfer_release(transfer);
+    luxfer_release(strokes);
+    luxfer_release(photo);
+    luxfer_release(context);
     return 0;
 }

@@ -17,11 +17,11 @@ static void report(const char *attempt, luxfer_status status, luxfer_status expe
     char *message;
     size_t needed = 0;
     /* A message may have any length, so get its length first. The library keeps it until the thread's next failure. */
-    luxfer_context_last_error(context, NULL, 0, &needed);
+    luxfer_context_get_last_error(context, NULL, 0, &needed);
     message = malloc(needed);
     if (!message) exit(1);
-    luxfer_context_last_error(context, message, needed, NULL);
-    printf("%s\n  %s: %s\n", attempt, luxfer_status_name(status), message);
+    luxfer_context_get_last_error(context, message, needed, NULL);
+    printf("%s\n  %s: %s\n", attempt, luxfer_status_get_name(status), message);
     free(message);
     if (status != expected) exit(1);
 }
@@ -40,9 +40,9 @@ int main(void) {
 
     /* --8<-- [start:version] */
     /* Check that the loaded library is compatible with this header. Before 1.0 the minor versions must be equal. */
-    if (luxfer_version() / 100 != LUXFER_VERSION / 100) {
+    if (luxfer_get_version() / 100 != LUXFER_VERSION / 100) {
         fprintf(stderr, "built for luxfer %d.%d, loaded %s\n", LUXFER_VERSION_MAJOR, LUXFER_VERSION_MINOR,
-                luxfer_version_string());
+                luxfer_get_version_string());
         return 1;
     }
     /* --8<-- [end:version] */
@@ -50,7 +50,7 @@ int main(void) {
 
     report("A file that is not there:", luxfer_image_load(context, "photo.jpg", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);
     report("A file that is something else:",
-           luxfer_scene_load_memory(context, "not a scene", 11, NULL, &scene), LUXFER_FORMAT);
+           luxfer_scene_load_memory(context, "not a scene", 11, NULL, NULL, &scene), LUXFER_FORMAT);
 
     /* A view states the size of its memory, so that the library never accesses memory beyond it. */
     luxfer_image_view_init(&view, sizeof view);
@@ -61,9 +61,8 @@ int main(void) {
     report("Pixels of 2 x 2 that are said to be 2 x 3:", luxfer_image_create(context, &view, &image),
            LUXFER_INVALID_ARGUMENT);
 
-    if (luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
-    surface.struct_size = sizeof surface;
-    report("A name with a slip in it:", luxfer_scene_find_surface(scene, "Ceilling", &surface), LUXFER_NOT_FOUND);
+    if (luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
+    report("A name with a slip in it:", luxfer_scene_find_surface(scene, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
     luxfer_material_params_init(&material, sizeof material);
     material.roughness = NAN;
     report("A number that is none:", luxfer_scene_add_material(scene, &material, NULL), LUXFER_INVALID_ARGUMENT);
@@ -85,9 +84,9 @@ int main(void) {
     /* The outputs are still unchanged. A handle of the wrong kind, or NULL, is an error like any other. */
     if (image != NULL || luxfer_job_wait(NULL, -1, NULL, NULL) != LUXFER_INVALID_ARGUMENT) return 1;
 
-    luxfer_job_release(job);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(job);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

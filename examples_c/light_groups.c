@@ -48,7 +48,7 @@ int main(void) {
     sheet s = panels_begin(3, 2, 240, 180);
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
     add_spot(scene);
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
@@ -65,13 +65,13 @@ int main(void) {
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
     panels_add(&s, 0, 0, image, 1 / WHITE);
     all = panels_pixels(image, &view);
-    luxfer_image_release(image);
+    luxfer_release(image);
     for (g = 0; g < GROUPS; g++) {
         check(luxfer_render_find_layer(render, names[g], &layer), names[g]);
         check(luxfer_render_get_layer(render, layer, &image), names[g]);
         panels_add(&s, (g + 1) % 3, (g + 1) / 3, image, 1 / WHITE);
         group[g] = panels_pixels(image, &view);
-        luxfer_image_release(image);
+        luxfer_release(image);
     }
     /* --8<-- [end:layers] */
     mixture = malloc(view.byte_size);
@@ -87,7 +87,7 @@ int main(void) {
             for (mixture[k] = 0, g = 0; g < GROUPS; g++) mixture[k] += mixtures[m][g][k % 3] * group[g][k];
         check(luxfer_image_create(context, &view, &image), "mixture");
         panels_add(&s, 1 + m, 1, image, 1 / WHITE);
-        luxfer_image_release(image);
+        luxfer_release(image);
     }
     check(panels_save(&s, context, "light_groups.png"), "light_groups.png");
     check(luxfer_render_write_exr(render, "light_groups.exr"), "light_groups.exr");
@@ -95,8 +95,8 @@ int main(void) {
     for (g = 0; g < GROUPS; g++) free(group[g]);
     free(all);
     free(mixture);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return worst < 1e-4 ? 0 : 1;
 }

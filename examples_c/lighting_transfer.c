@@ -70,21 +70,34 @@ static char *read_text(const char *name) {
     return text;
 }
 
+/* An empty set of strokes for a photo. */
+static luxfer_strokes *strokes_for(luxfer_image *photo) {
+    luxfer_strokes *strokes = NULL;
+    uint32_t width, height;
+    check(luxfer_image_get_size(photo, &width, &height, NULL), "photo");
+    check(luxfer_strokes_create(context, width, height, &strokes), "strokes");
+    return strokes;
+}
+
 /* Photo, strokes and scene from the user's files. */
 static void load_input(const options *o, luxfer_transfer *transfer, luxfer_image **photo, luxfer_scene **scene) {
+    luxfer_strokes *strokes;
     check(luxfer_image_load(context, o->photo, LUXFER_COLOUR_SRGB, photo), "photo");
     check(luxfer_transfer_set_photo(transfer, *photo), "photo");
+    strokes = strokes_for(*photo);
     if (ends_with(o->strokes, ".txt")) {
         char *text = read_text(o->strokes);
-        check(luxfer_transfer_add_strokes_text(transfer, text), "strokes");
+        check(luxfer_strokes_add_text(strokes, text), "strokes");
         free(text);
     } else {
         luxfer_image *drawing = NULL;
         check(luxfer_image_load(context, o->strokes, LUXFER_COLOUR_SRGB, &drawing), "strokes");
-        check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
-        luxfer_image_release(drawing);
+        check(luxfer_strokes_add_image(strokes, drawing), "strokes");
+        luxfer_release(drawing);
     }
-    check(luxfer_scene_load(context, o->scene, scene), "scene");
+    check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
+    luxfer_release(strokes);
+    check(luxfer_scene_load(context, o->scene, NULL, scene), "scene");
 }
 
 /* Generates photo, strokes and scene. */
@@ -92,16 +105,20 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     luxfer_demo_photo *demo = NULL;
     luxfer_job *job = NULL;
     luxfer_image *drawing = NULL;
+    luxfer_strokes *strokes;
     check(luxfer_demo_photo_create(context, &demo), "demo");
     check(luxfer_demo_photo_start(demo, NULL, &job), "demo");
     finish(job, "photographing the office");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, photo), "demo photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_STROKES, &drawing), "demo strokes");
     check(luxfer_transfer_set_photo(transfer, *photo), "photo");
-    check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, scene), "demo scene");
-    luxfer_image_release(drawing);
-    luxfer_demo_photo_release(demo);
+    strokes = strokes_for(*photo);
+    check(luxfer_strokes_add_image(strokes, drawing), "strokes");
+    check(luxfer_transfer_set_strokes(transfer, strokes), "strokes");
+    luxfer_release(strokes);
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, scene), "demo scene");
+    luxfer_release(drawing);
+    luxfer_release(demo);
 }
 
 /* Adds a light at the camera to a scene without lights, so that its picture is not black. */
@@ -109,8 +126,7 @@ static void add_headlight(luxfer_scene *scene, const luxfer_camera_params *camer
     luxfer_scene_counts counts;
     luxfer_light_params light;
     int i;
-    counts.struct_size = sizeof counts;
-    check(luxfer_scene_get_counts(scene, &counts), "scene");
+    check(luxfer_scene_get_counts(scene, &counts, sizeof counts), "scene");
     if (counts.lights > 0) return;
     check(luxfer_light_params_init(&light, sizeof light), "light");
     for (i = 0; i < 3; i++) {
@@ -137,7 +153,7 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     check(luxfer_render_start(render, &params, &job), title);
     finish(job, title);
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), title);
-    luxfer_render_release(render);
+    luxfer_release(render);
     return image;
 }
 
@@ -151,13 +167,12 @@ static void write_number(FILE *file, double value) {
 static void write_warnings(FILE *file, const char *const *stages, luxfer_warnings *warnings) {
     luxfer_warning w;
     uint32_t i, count = 0;
-    w.struct_size = sizeof w;
-    check(luxfer_warnings_count(warnings, &count), "warnings");
+    check(luxfer_warnings_get_count(warnings, &count), "warnings");
     fprintf(file, "  \"warnings\": [");
     for (i = 0; i < count; i++) {
-        check(luxfer_warnings_get(warnings, i, &w), "warning");
+        check(luxfer_warnings_get(warnings, i, &w, sizeof w), "warning");
         fprintf(file, "%s\n    {\"stage\": \"%s\", \"code\": \"%s\", \"severity\": ", i ? "," : "", stages[w.stage],
-                luxfer_warning_name(w.code));
+                luxfer_warning_get_name(w.code));
         write_number(file, w.severity);
         fprintf(file, ", \"limit\": %.6g", w.limit);
         if (w.has_place) fprintf(file, ", \"place\": [%.1f, %.1f]", w.place[0], w.place[1]);
@@ -184,7 +199,7 @@ static void write_report(const options *o, const luxfer_transfer_report *r, cons
     errors[0] = r->view_error, errors[1] = 1 - r->depth_confidence, errors[2] = r->plane_error;
     errors[3] = r->lights_error, errors[4] = r->unwarp_error, errors[5] = r->emission_error;
     errors[6] = r->relight_error, errors[7] = r->render_error;
-    fprintf(file, "{\n  \"luxfer\": \"%s\",\n  \"stages\": {\n", luxfer_version_string());
+    fprintf(file, "{\n  \"luxfer\": \"%s\",\n  \"stages\": {\n", luxfer_get_version_string());
     for (i = 0; i < 8; i++) {
         fprintf(file, "    \"%s\": {\"seconds\": %.4f, \"error\": ", stages[i], r->seconds[i]);
         write_number(file, errors[i]);
@@ -211,8 +226,6 @@ int main(int argc, char **argv) {
     luxfer_warnings *warnings = NULL;
     luxfer_job *job = NULL;
     luxfer_camera_params camera;
-    report.struct_size = sizeof report;
-    solution.struct_size = sizeof solution;
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_transfer_create(context, &transfer), "transfer");
     if (o.photo) load_input(&o, transfer, &photo, &scene);
@@ -235,20 +248,20 @@ int main(int argc, char **argv) {
     check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_EMISSION, &emission), "emission");
     check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_LIT, &lit_scene), "lit scene");
     check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_WHITE, &white_scene), "white scene");
-    check(luxfer_transfer_get_report(transfer, &report), "report");
-    check(luxfer_transfer_get_solution(transfer, &solution), "solution");
+    check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
+    check(luxfer_transfer_get_solution(transfer, &solution, sizeof solution), "solution");
     check(luxfer_image_save(lit, path(&o, "render.exr"), 1), "render.exr");
     check(luxfer_image_save(lit, path(&o, "render.png"), 1 / params.white_luminance), "render.png");
     check(luxfer_image_save(emission, path(&o, "emission.exr"), 1), "emission.exr");
     check(luxfer_scene_export(lit_scene, path(&o, "lit.glb")), "lit.glb");
     check(luxfer_transfer_save_fixtures(transfer, path(&o, "luminaires.csv")), "luminaires.csv");
-    check(luxfer_transfer_get_warnings(transfer, &warnings), "warnings");
+    check(luxfer_get_warnings(transfer, &warnings), "warnings");
     write_report(&o, &report, &solution, warnings);
 
     /* For comparison: the scene before the transfer, with its own lights or a light at the camera, and in white
      * light. */
     check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
-    check(luxfer_scene_get_camera(lit_scene, 0, &camera), "camera");
+    check(luxfer_scene_get_camera(lit_scene, 0, &camera, sizeof camera), "camera");
     add_headlight(scene, &camera);
     before = preview(&o, scene, &camera, 8, "rendering it before");
     white = preview(&o, white_scene, &camera, o.samples / 2 + 1, "rendering it in white");
@@ -258,15 +271,15 @@ int main(int argc, char **argv) {
            path(&o, "overview.png"));
     print_warnings(warnings);
 
-    luxfer_image_release(white);
-    luxfer_image_release(before);
-    luxfer_image_release(emission);
-    luxfer_image_release(lit);
-    luxfer_scene_release(white_scene);
-    luxfer_scene_release(lit_scene);
-    luxfer_transfer_release(transfer);
-    luxfer_scene_release(scene);
-    luxfer_image_release(photo);
-    luxfer_context_release(context);
+    luxfer_release(white);
+    luxfer_release(before);
+    luxfer_release(emission);
+    luxfer_release(lit);
+    luxfer_release(white_scene);
+    luxfer_release(lit_scene);
+    luxfer_release(transfer);
+    luxfer_release(scene);
+    luxfer_release(photo);
+    luxfer_release(context);
     return 0;
 }

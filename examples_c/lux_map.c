@@ -29,10 +29,9 @@ int main(void) {
     luxfer_image *image = NULL;
     luxfer_job *job = NULL;
     int x, y;
-    report.struct_size = sizeof report;
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
     check(luxfer_illuminance_create(context, &illuminance), "illuminance");
     check(luxfer_illuminance_set_scene(illuminance, scene), "illuminance");
 
@@ -50,7 +49,7 @@ int main(void) {
     check(luxfer_illuminance_start_grid(illuminance, &grid, &params, &job), "grid");
     finish(job, "measuring");
 
-    check(luxfer_illuminance_get_report(illuminance, &report), "report");
+    check(luxfer_illuminance_get_report(illuminance, &report, sizeof report), "report");
     /* --8<-- [end:grid] */
     printf("mean %.0f lux (+- %.1f, 95 %%), least %.0f, largest %.0f, uniformity %.2f\n", report.mean, 1.96 * report.mean_error,
            report.minimum, report.maximum, report.minimum / report.mean);
@@ -64,7 +63,7 @@ int main(void) {
     view.data = lux;
     view.byte_size = sizeof lux;
     check(luxfer_image_read(image, 0, &view), "lux");
-    check(luxfer_image_release(image), "lux");
+    check(luxfer_release(image), "lux");
 
     for (y = 0; y < ROWS * SCALE; y++)
         for (x = 0; x < COLUMNS * SCALE; x++) false_colour(lux[y / SCALE][x / SCALE] / 1500, map[y][x]);
@@ -78,9 +77,9 @@ int main(void) {
     check(luxfer_image_create(context, &view, &image), "map");
     check(luxfer_image_save(image, "lux_map.png", 1), "map");
 
-    luxfer_image_release(image);
-    luxfer_illuminance_release(illuminance);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(image);
+    luxfer_release(illuminance);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

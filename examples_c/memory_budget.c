@@ -43,19 +43,19 @@ int main(void) {
     if (status == LUXFER_OUT_OF_MEMORY) {
         /* The message gives the memory in use. The context remains usable. */
         char message[512] = "";
-        luxfer_context_last_error(context, message, sizeof message, NULL);
+        luxfer_context_get_last_error(context, message, sizeof message, NULL);
         printf("after %d pictures: %s\n", count, message);
     }
     if (count == 0 || status != LUXFER_OUT_OF_MEMORY) return 1;
 
     /* A host with a cache would release the least recently used image. */
-    luxfer_image_release(images[0]);
+    luxfer_release(images[0]);
     images[0] = NULL;
     status = load(context, &images[0]);
-    printf("after letting go of one: %s\n", luxfer_status_name(status));
+    printf("after letting go of one: %s\n", luxfer_status_get_name(status));
     /* --8<-- [end:budget] */
 
-    for (i = 0; i < MOST; i++) luxfer_image_release(images[i]);
-    luxfer_context_release(context);
+    for (i = 0; i < MOST; i++) luxfer_release(images[i]);
+    luxfer_release(context);
     return status == LUXFER_OK ? 0 : 1;
 }

@@ -27,8 +27,8 @@ int main(int argc, char **argv) {
     params.samples = 8;
 
     /* Every call returns a status. A call whose input is missing fails too, so report the first failure. */
-    status = argc > 1 ? luxfer_scene_load(context, argv[1], &scene)
-                      : luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene);
+    status = argc > 1 ? luxfer_scene_load(context, argv[1], NULL, &scene)
+                      : luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene);
     if (status == LUXFER_OK) status = luxfer_render_create(context, &render);
     if (status == LUXFER_OK) status = luxfer_render_set_scene(render, scene);
 
@@ -44,15 +44,15 @@ int main(int argc, char **argv) {
         printf("look at minimal.png\n");
     } else {
         char message[512] = "";
-        luxfer_context_last_error(context, message, sizeof message, NULL);
-        fprintf(stderr, "%s: %s\n", luxfer_status_name(status), message);
+        luxfer_context_get_last_error(context, message, sizeof message, NULL);
+        fprintf(stderr, "%s: %s\n", luxfer_status_get_name(status), message);
     }
 
     /* Release in any order; releasing NULL does nothing. */
-    luxfer_image_release(picture);
-    luxfer_job_release(job);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(picture);
+    luxfer_release(job);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return status == LUXFER_OK ? 0 : 1;
 }

@@ -20,7 +20,7 @@ static luxfer_status overview_save(luxfer_context *context, luxfer_transfer *tra
     for (i = 0; i < 4; i++) {
         if (luxfer_transfer_get_image(transfer, steps[i], &image) != LUXFER_OK) continue;
         panels_add(&s, (i + 1) % COLUMNS, (i + 1) / COLUMNS, image, 1);
-        luxfer_image_release(image);
+        luxfer_release(image);
     }
     panels_add(&s, 1, 1, before, 1 / white_luminance);
     panels_add(&s, 2, 1, white, 1 / white_luminance);

@@ -31,7 +31,7 @@ static sheet panels_begin(int columns, int rows, int panel_width, int panel_heig
 static float *panels_pixels(luxfer_image *image, luxfer_image_view *view) {
     float *data = NULL;
     if (luxfer_image_view_init(view, sizeof *view) != LUXFER_OK) return NULL;
-    if (luxfer_image_size(image, &view->width, &view->height, &view->channels) != LUXFER_OK) return NULL;
+    if (luxfer_image_get_size(image, &view->width, &view->height, &view->channels) != LUXFER_OK) return NULL;
     view->byte_size = (size_t)view->width * view->height * view->channels * sizeof *data;
     data = malloc(view->byte_size);
     view->data = data;
@@ -83,7 +83,7 @@ static luxfer_status panels_save(sheet *s, luxfer_context *context, const char *
     view.data = s->pixels;
     if (status == LUXFER_OK) status = luxfer_image_create(context, &view, &image);
     if (status == LUXFER_OK) status = luxfer_image_save(image, file, 1);
-    luxfer_image_release(image);
+    luxfer_release(image);
     free(s->pixels);
     return status;
 }

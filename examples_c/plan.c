@@ -15,10 +15,9 @@ int main(void) {
     luxfer_render_params settings;
     luxfer_render_report report;
     int i;
-    report.struct_size = sizeof report;
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
 
@@ -26,7 +25,6 @@ int main(void) {
         /* --8<-- [start:plan] */
         luxfer_plan_params params;
         luxfer_plan_report expected;
-        expected.struct_size = sizeof expected;
         check(luxfer_plan_params_init(&params, sizeof params), "plan");
         if (i == 0) params.target_error = 0.1f; /* error of the picture, relative to its mean */
         else params.time_budget_ms = 1000;
@@ -39,14 +37,14 @@ int main(void) {
         check(luxfer_plan_create(context, &plan), "plan");
         check(luxfer_plan_start_render(plan, render, &settings, &params, &job), "plan");
         finish(job, "planning");
-        check(luxfer_plan_get_report(plan, &expected), "plan");
-        check(luxfer_plan_get_render_params(plan, &settings), "plan");
-        luxfer_plan_release(plan);
+        check(luxfer_plan_get_report(plan, &expected, sizeof expected), "plan");
+        check(luxfer_plan_get_render_params(plan, &settings, sizeof settings), "plan");
+        luxfer_release(plan);
         /* --8<-- [end:plan] */
 
         check(luxfer_render_start(render, &settings, &job), "render");
         finish(job, "rendering");
-        check(luxfer_render_get_report(render, &report), "report");
+        check(luxfer_render_get_report(render, &report, sizeof report), "report");
         printf("%s: %.2f s and an error of %.1f %% expected; it is %.1f %% with %u paths per pixel\n", goals[i],
                expected.seconds, 100 * expected.error, 100 * report.error, report.samples);
         /* The rendering stops when it reaches the target error. */
@@ -56,9 +54,9 @@ int main(void) {
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
     check(luxfer_image_save(picture, "plan.png", 0.005f), "picture");
     printf("look at plan.png\n");
-    luxfer_image_release(picture);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(picture);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

@@ -16,10 +16,9 @@ typedef struct watch {
 static int32_t on_progress(void *user, double fraction) {
     watch *w = user;
     luxfer_render_report report;
-    report.struct_size = sizeof report;
     w->calls++;
     /* Results improve while the job runs. The error is unknown before the second path of each pixel. */
-    if (w->calls % 10 == 0 && luxfer_render_get_report(w->render, &report) == LUXFER_OK && report.samples > 1)
+    if (w->calls % 10 == 0 && luxfer_render_get_report(w->render, &report, sizeof report) == LUXFER_OK && report.samples > 1)
         printf("%7.3f %%: %u paths per pixel, standard error %.0f %%\n", 100 * fraction, report.samples, 100 * report.error);
     /* A value other than 0 cancels. */
     return w->calls >= 50;
@@ -37,10 +36,9 @@ int main(void) {
     double fraction = 0;
     int frames = 0;
     watch w = {NULL, 0};
-    report.struct_size = sizeof report;
 
     check(luxfer_context_create(NULL, &context), "context");
-    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
     check(luxfer_render_params_init(&params, sizeof params), "render");
@@ -53,32 +51,32 @@ int main(void) {
     w.render = render;
     check(luxfer_render_start(render, &params, &job), "start");
     status = luxfer_job_wait(job, -1, on_progress, &w);
-    printf("the wait ended with %s\n", luxfer_status_name(status));
+    printf("the wait ended with %s\n", luxfer_status_get_name(status));
     /* --8<-- [end:wait] */
-    luxfer_job_release(job);
+    luxfer_release(job);
     if (status != LUXFER_CANCELLED) return 1;
 
     /* The passes before the cancel give a picture, with its error. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
-    check(luxfer_render_get_report(render, &report), "report");
+    check(luxfer_render_get_report(render, &report, sizeof report), "report");
     check(luxfer_image_save(picture, "progress_and_cancel.png", 1 / 450.0f), "picture");
     printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
-    luxfer_image_release(picture);
+    luxfer_release(picture);
 
     /* 2. Waiting in a loop of the program: wait at most 16 ms, then draw a frame of the user interface. */
     check(luxfer_render_start(render, &params, &job), "start");
     /* --8<-- [start:loop] */
     while ((status = luxfer_job_wait(job, 16, NULL, NULL)) == LUXFER_NOT_READY) {
-        check(luxfer_job_poll(job, &fraction, NULL), "poll");
+        check(luxfer_job_get_progress(job, &fraction, NULL), "poll");
         /* Any thread may cancel; the work ends within about 100 ms. Releasing the job cancels it too. */
         if (++frames == 20) check(luxfer_job_cancel(job), "cancel");
     }
     /* --8<-- [end:loop] */
-    printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_name(status));
-    luxfer_job_release(job);
+    printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_get_name(status));
+    luxfer_release(job);
 
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return status == LUXFER_CANCELLED ? 0 : 1;
 }

@@ -15,7 +15,7 @@ enum { COLUMNS = 3, ROWS = 2, RANGES = 2, PARTS = COLUMNS * ROWS * RANGES };
 static luxfer_render *describe(luxfer_render_params *params) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
-    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene"); /* luxfer_scene_load(context, file, &scene) */
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene"); /* luxfer_scene_load(context, file, NULL, &scene) */
     check(luxfer_render_create(context, &render), "render");
     check(luxfer_render_set_scene(render, scene), "render");
     check(luxfer_render_add_expression(render, "direct", "LDE"), "layer");
@@ -24,7 +24,7 @@ static luxfer_render *describe(luxfer_render_params *params) {
     params->width = 240;
     params->height = 180;
     params->samples = 16;
-    luxfer_scene_release(scene);
+    luxfer_release(scene);
     return render;
 }
 
@@ -33,8 +33,7 @@ static luxfer_render *describe(luxfer_render_params *params) {
 static void render_part(luxfer_render *render, const luxfer_render_params *params, uint32_t index, const char *file) {
     luxfer_render_part part;
     luxfer_job *job = NULL;
-    part.struct_size = sizeof part;
-    check(luxfer_render_split(render, params, COLUMNS, ROWS, RANGES, index, &part), "part");
+    check(luxfer_render_split(render, params, COLUMNS, ROWS, RANGES, index, &part, sizeof part), "part");
     check(luxfer_render_start_part(render, params, &part, file, &job), file);
     finish(job, file);
 }
@@ -58,13 +57,13 @@ static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     luxfer_image *image = NULL;
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
     check(luxfer_image_view_init(view, sizeof *view), "picture");
-    check(luxfer_image_size(image, &view->width, &view->height, &view->channels), "picture");
+    check(luxfer_image_get_size(image, &view->width, &view->height, &view->channels), "picture");
     view->byte_size = (size_t)view->width * view->height * view->channels * sizeof(float);
     view->data = malloc(view->byte_size);
     if (!view->data) exit(1);
     check(luxfer_image_read(image, 0, view), "picture");
     check(luxfer_image_save(image, "render_parts.png", 1 / 450.0f), "render_parts.png");
-    luxfer_image_release(image);
+    luxfer_release(image);
     return view->data;
 }
 
@@ -108,7 +107,7 @@ int main(int argc, char **argv) {
         status = demonstrate(render, &params);
     else
         status = 2;
-    luxfer_render_release(render);
-    luxfer_context_release(context);
+    luxfer_release(render);
+    luxfer_release(context);
     return status;
 }

@@ -19,7 +19,7 @@ static luxfer_image *measure_depth(void) {
     luxfer_image *depth = NULL;
     luxfer_job *job = NULL;
     uint32_t layer = 0;
-    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &office), "depth");
+    check(luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &office), "depth");
     check(luxfer_render_create(context, &render), "depth");
     check(luxfer_render_set_scene(render, office), "depth");
     check(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH), "depth");
@@ -31,8 +31,8 @@ static luxfer_image *measure_depth(void) {
     finish(job, "measuring the depth");
     check(luxfer_render_find_layer(render, "Depth", &layer), "depth");
     check(luxfer_render_get_layer(render, layer, &depth), "depth");
-    luxfer_render_release(render);
-    luxfer_scene_release(office);
+    luxfer_release(render);
+    luxfer_release(office);
     return depth;
 }
 
@@ -44,14 +44,13 @@ static void show_normals(luxfer_features *features, const char *title, sheet *s,
     luxfer_job *job = NULL;
     float *pixels;
     size_t k;
-    report.struct_size = sizeof report;
     check(luxfer_features_start(features, NULL, &job), title);
     finish(job, title);
-    check(luxfer_features_get_report(features, &report), title);
+    check(luxfer_features_get_report(features, &report, sizeof report), title);
     printf("%-14s trust in the depth %.2f\n", title, report.depth_confidence);
     check(luxfer_features_get_image(features, LUXFER_FEATURES_CHANNELS, &channels), title);
     check(luxfer_image_view_init(&view, sizeof view), title);
-    check(luxfer_image_size(channels, &view.width, &view.height, NULL), title);
+    check(luxfer_image_get_size(channels, &view.width, &view.height, NULL), title);
     view.byte_size = (size_t)view.width * view.height * 3 * sizeof *pixels;
     view.data = pixels = malloc(view.byte_size);
     if (!pixels) exit(1);
@@ -59,8 +58,8 @@ static void show_normals(luxfer_features *features, const char *title, sheet *s,
     for (k = 0; k < view.byte_size / sizeof *pixels; k++) pixels[k] = 0.5f + 0.5f * pixels[k];
     check(luxfer_image_create(context, &view, &shown), title);
     panels_add(s, column, 1, shown, 1);
-    luxfer_image_release(shown);
-    luxfer_image_release(channels);
+    luxfer_release(shown);
+    luxfer_release(channels);
     free(pixels);
 }
 
@@ -89,9 +88,9 @@ int main(int argc, char **argv) {
     check(panels_save(&s, context, "rgbd_input.png"), "rgbd_input.png");
     /* For a whole transfer, use luxfer_transfer_set_depth. */
 
-    luxfer_features_release(features);
-    luxfer_image_release(depth);
-    luxfer_image_release(photo);
-    luxfer_context_release(context);
+    luxfer_release(features);
+    luxfer_release(depth);
+    luxfer_release(photo);
+    luxfer_release(context);
     return 0;
 }

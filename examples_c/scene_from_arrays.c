@@ -65,7 +65,6 @@ int main(void) {
     luxfer_image *picture = NULL;
     luxfer_job *job = NULL;
     uint32_t white, red, green, wood, glowing;
-    counts.struct_size = sizeof counts;
 
     /* Add materials, then the meshes that use them, then cameras. */
     check(luxfer_context_create(NULL, &context), "context");
@@ -87,7 +86,7 @@ int main(void) {
     camera.target[0] = 2, camera.target[1] = 1.1f, camera.target[2] = 0;
     camera.fov_y = 0.75f;
     check(luxfer_scene_add_camera(scene, &camera, NULL), "camera");
-    check(luxfer_scene_get_counts(scene, &counts), "scene");
+    check(luxfer_scene_get_counts(scene, &counts, sizeof counts), "scene");
     printf("%u meshes, %u triangles, %u materials\n", counts.meshes, (unsigned)counts.triangles, counts.materials);
 
     check(luxfer_render_create(context, &render), "render");
@@ -100,9 +99,9 @@ int main(void) {
     check(luxfer_image_save(picture, "scene_from_arrays.png", 0.008f), "picture");
     check(luxfer_scene_export(scene, "scene_from_arrays.glb"), "glTF");
 
-    luxfer_image_release(picture);
-    luxfer_render_release(render);
-    luxfer_scene_release(scene);
-    luxfer_context_release(context);
+    luxfer_release(picture);
+    luxfer_release(render);
+    luxfer_release(scene);
+    luxfer_release(context);
     return 0;
 }

@@ -22,12 +22,12 @@ static luxfer_guides *render(luxfer_demo which, const luxfer_guides_params *para
     luxfer_scene *scene = NULL;
     luxfer_guides *guides = NULL;
     luxfer_job *job = NULL;
-    check(luxfer_demo_scene(context, which, &scene), title);
+    check(luxfer_demo_create_scene(context, which, &scene), title);
     check(luxfer_guides_create(context, &guides), title);
     check(luxfer_guides_set_scene(guides, scene), title);
     check(luxfer_guides_start(guides, params, &job), title);
     finish(job, title);
-    luxfer_scene_release(scene);
+    luxfer_release(scene);
     return guides;
 }
 
@@ -54,8 +54,8 @@ static void print_sheet(luxfer_image *radiance, const char *out) {
     check(luxfer_sheet_print(picture, &params, &page), "sheet");
     if (snprintf(file, sizeof file, "%s/sheet.png", out) >= (int)sizeof file) exit(2);
     check(luxfer_image_save(page, file, 1), file);
-    luxfer_image_release(page);
-    luxfer_image_release(picture);
+    luxfer_release(page);
+    luxfer_release(picture);
     free(pixels);
 }
 
@@ -101,38 +101,37 @@ int main(int argc, char **argv) {
     image = full(source);
     panels_add(&s, 0, 0, image, 1 / EXPOSURE);
     print_sheet(image, out);
-    luxfer_image_release(image);
+    luxfer_release(image);
     image = full(target);
     panels_add(&s, 0, 1, image, 1 / EXPOSURE);
-    luxfer_image_release(image);
+    luxfer_release(image);
 
     /* Paint the target in the style of each artwork. */
     for (i = 0; i < STYLES; i++) {
         luxfer_stylize_report report;
         luxfer_image *artwork = NULL;
         luxfer_job *job = NULL;
-        report.struct_size = sizeof report;
         /* --8<-- [start:paint] */
-        check(luxfer_demo_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
+        check(luxfer_demo_create_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
         check(luxfer_stylize_set_artwork(stylize, artwork), names[i]);
         check(luxfer_stylize_start(stylize, NULL, &job), names[i]);
         finish(job, names[i]);
         check(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_PICTURE, &image), names[i]);
-        check(luxfer_stylize_get_report(stylize, &report), names[i]);
+        check(luxfer_stylize_get_report(stylize, &report, sizeof report), names[i]);
         /* --8<-- [end:paint] */
         printf("%-8s guide error %.3f, %.0f %% of the artwork used\n", names[i], report.guide_error, 100 * report.used);
         panels_add(&s, 1 + i, 0, artwork, 1);
         panels_add(&s, 1 + i, 1, image, 1);
         if (snprintf(file, sizeof file, "%s/stylize_%s.png", out, names[i]) >= (int)sizeof file) return 2;
         check(luxfer_image_save(image, file, 1), file);
-        luxfer_image_release(image);
-        luxfer_image_release(artwork);
+        luxfer_release(image);
+        luxfer_release(artwork);
     }
     if (snprintf(file, sizeof file, "%s/stylize.png", out) >= (int)sizeof file) return 2;
     check(panels_save(&s, context, file), file);
-    luxfer_guides_release(source);
-    luxfer_guides_release(target);
-    luxfer_stylize_release(stylize);
-    luxfer_context_release(context);
+    luxfer_release(source);
+    luxfer_release(target);
+    luxfer_release(stylize);
+    luxfer_release(context);
     return 0;
 }

@@ -4,7 +4,7 @@ use std::process::Command;
 
 fn main() {
     for source in
-        ["calls.py", "../include/luxfer.h", "../tests/conformance/script.py", "../bindings/python/generate.py"]
+        ["calls.py", "../include/luxfer", "../tests/conformance/script.py", "../bindings/python/generate.py"]
     {
         println!("cargo::rerun-if-changed={source}");
     }

@@ -54,6 +54,10 @@ class Program:
 
     held: dict[str, list[int]] = field(default_factory=dict)
 
+    def any_kind(self) -> list[tuple[str, int]]:
+        """All references with their kinds, in the order of src/calls.rs."""
+        return [(kind, n) for kind in sorted(self.held) for n in self.held[kind]]
+
     def encode(self, calls: list[script.Call]) -> bytes:
         out = b""
         for function, *arguments in calls:
@@ -68,15 +72,16 @@ class Program:
             self.held.setdefault(f.type, []).append(rest[0])
             return b""
         if script.is_handle(f):
-            things = self.held.get(f.type, [])
-            if kind == "null" or rest[0] not in things:
+            things = self.any_kind() if script.is_of_any_kind(f) else [(f.type, n) for n in self.held.get(f.type, [])]
+            found = [i for i, (_, n) in enumerate(things) if kind != "null" and n == rest[0]]
+            if not found:
                 return bytes([250])
-            at = things.index(rest[0])
+            held = self.held[things[found[0]][0]]
             if script.is_release(function):
-                things.pop(at)
-            elif function.endswith("_retain"):
-                things.append(rest[0])
-            return bytes([at])
+                held.remove(rest[0])
+            elif script.is_retain(function):
+                held.append(rest[0])
+            return bytes([found[0]])
         if f.type in script.CALLBACKS:
             return bytes([0 if kind == "null" else 1 if rest[0] in ("go", "write") else 2])
         if not f.stars:
@@ -94,7 +99,7 @@ class Program:
 
     def record(self, name: str, fields: dict, base: str) -> bytes:
         members = {f.name: (i, f) for i, f in enumerate(script.STRUCTS[name])}
-        out = bytes([["null", "raw", "init", "size"].index(base), len(fields)])
+        out = bytes([["null", "raw", "init"].index(base), len(fields)])
         for key, value in fields.items():
             at, member = members[key]
             out += bytes([at]) + self.argument(name, member, value)
@@ -109,8 +114,9 @@ def expression(function: str, f: script.generate.Field) -> str:
     if script.makes(f):
         return f'a.made("{f.type}").cast()'
     if script.is_handle(f):
-        verb = "given_back" if script.is_release(function) else "retained" if function.endswith("_retain") else "handle"
-        return f'a.{verb}("{f.type}").cast()'
+        if script.is_of_any_kind(f):
+            return f"a.{'given_back' if script.is_release(function) else 'retained' if script.is_retain(function) else 'any'}().cast()"
+        return f'a.handle("{f.type}").cast()'
     if f.type in script.CALLBACKS:
         return f"a.{f.type.removeprefix('luxfer_').removesuffix('_fn')}()"
     if not f.stars:

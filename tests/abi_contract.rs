@@ -17,21 +17,16 @@ fn handles_that_are_none_are_errors() {
     unsafe {
         for bad in [null_mut(), garbage.as_ptr().cast_mut().cast(), unaligned.cast_mut().cast(), context.cast()] {
             let bad: *mut luxfer_image = bad;
-            assert_eq!(luxfer_image_size(bad, null_mut(), null_mut(), null_mut()), LUXFER_INVALID_ARGUMENT);
-            assert_eq!(luxfer_image_retain(bad), LUXFER_INVALID_ARGUMENT);
+            assert_eq!(luxfer_image_get_size(bad, null_mut(), null_mut(), null_mut()), LUXFER_INVALID_ARGUMENT);
             assert_eq!(luxfer_job_cancel(bad.cast()), LUXFER_INVALID_ARGUMENT);
-            if !bad.is_null() {
-                assert_eq!(luxfer_image_release(bad), LUXFER_INVALID_ARGUMENT);
+            if bad != context.cast() {
+                assert_eq!(luxfer_retain(bad.cast()), LUXFER_INVALID_ARGUMENT);
+                let expected = if bad.is_null() { LUXFER_OK } else { LUXFER_INVALID_ARGUMENT };
+                assert_eq!(luxfer_release(bad.cast()), expected);
             }
         }
-        assert_eq!(luxfer_context_release(image.cast()), LUXFER_INVALID_ARGUMENT);
-        // Releasing NULL does nothing.
-        assert_eq!(luxfer_context_release(null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_image_release(null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_job_release(null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_image_release(image), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -44,10 +39,10 @@ fn objects_of_two_contexts_do_not_mix() {
         assert!(message(here).contains("photo belongs to another context"), "{}", message(here));
         assert_eq!(message(there), "");
         assert_eq!(luxfer_features_set_photo(features, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_image_release(photo), LUXFER_OK);
-        assert_eq!(luxfer_features_release(features), LUXFER_OK);
-        assert_eq!(luxfer_context_release(there), LUXFER_OK);
-        assert_eq!(luxfer_context_release(here), LUXFER_OK);
+        assert_eq!(luxfer_release(photo.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(there.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(here.cast()), LUXFER_OK);
     }
 }
 
@@ -58,15 +53,15 @@ fn references_are_counted() {
     let mut height = 0;
     unsafe {
         for _ in 0..3 {
-            assert_eq!(luxfer_image_retain(image), LUXFER_OK);
+            assert_eq!(luxfer_retain(image.cast()), LUXFER_OK);
         }
         for _ in 0..3 {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
-            assert_eq!(luxfer_image_size(image, null_mut(), &mut height, null_mut()), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+            assert_eq!(luxfer_image_get_size(image, null_mut(), &mut height, null_mut()), LUXFER_OK);
         }
         assert_eq!(height, 3);
-        assert_eq!(luxfer_image_release(image), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -78,7 +73,7 @@ fn views_of_every_size_and_stride_are_read_or_refused() {
         let mut image = null_mut();
         let status = unsafe { luxfer_image_create(context, view, &mut image) };
         assert_eq!(status == LUXFER_OK, !image.is_null(), "outputs are written on success only");
-        assert_eq!(unsafe { luxfer_image_release(image) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_release(image.cast()) }, LUXFER_OK);
         status
     };
     for (width, height, want) in [
@@ -123,7 +118,7 @@ fn views_of_every_size_and_stride_are_read_or_refused() {
     let mut image = null_mut();
     assert_eq!(unsafe { luxfer_image_create(context, null(), &mut image) }, LUXFER_INVALID_ARGUMENT);
     assert_eq!(unsafe { luxfer_image_create(context, &good, null_mut()) }, LUXFER_INVALID_ARGUMENT);
-    assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
 }
 
 #[test]
@@ -162,8 +157,8 @@ fn pixels_round_trip_through_strides_and_misalignment() {
     assert!(changed.into_iter().all(|i| (i - 1) % row_stride % 13 < 4));
     assert_eq!(unsafe { luxfer_image_read(image, 3, &one) }, LUXFER_INVALID_ARGUMENT);
     unsafe {
-        luxfer_image_release(image);
-        luxfer_context_release(context);
+        luxfer_release(image.cast());
+        luxfer_release(context.cast());
     }
 }
 
@@ -215,7 +210,7 @@ fn a_newer_struct_is_taken_if_what_is_new_is_zero() {
     unsafe {
         let status = luxfer_context_create((&raw const newer).cast(), &mut refused);
         assert_eq!((status, refused.is_null()), (LUXFER_INVALID_ARGUMENT, true));
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
         let many = luxfer_context_params { struct_size: 16, num_threads: 1025, memory_budget_mib: 0 };
         assert_eq!(luxfer_context_create(&many, &mut refused), LUXFER_INVALID_ARGUMENT);
     }
@@ -243,17 +238,17 @@ fn messages_are_kept_for_each_thread_and_cut_to_fit() {
 
     let mut needed = 0;
     unsafe {
-        assert_eq!(luxfer_context_last_error(context, null_mut(), 0, &mut needed), LUXFER_OK);
+        assert_eq!(luxfer_context_get_last_error(context, null_mut(), 0, &mut needed), LUXFER_OK);
         assert_eq!(needed, whole.len() + 1);
         for capacity in 1..needed + 3 {
             let mut buffer = vec![0x7f as c_char; needed + 8];
-            assert_eq!(luxfer_context_last_error(context, buffer.as_mut_ptr(), capacity, null_mut()), LUXFER_OK);
+            assert_eq!(luxfer_context_get_last_error(context, buffer.as_mut_ptr(), capacity, null_mut()), LUXFER_OK);
             let text = CStr::from_ptr(buffer.as_ptr()).to_str().unwrap();
             assert_eq!(text, &whole[..whole.len().min(capacity - 1)]);
             assert!(buffer[capacity.min(needed)..].iter().all(|&b| b == 0x7f));
         }
-        assert_eq!(luxfer_context_last_error(context, null_mut(), 5, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_context_get_last_error(context, null_mut(), 5, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -268,10 +263,10 @@ fn the_memory_budget_holds_until_objects_are_released() {
         let mut second = null_mut();
         assert_eq!(luxfer_image_create(context, &view, &mut second), LUXFER_OUT_OF_MEMORY);
         assert!(message(context).contains("memory_budget_mib"), "{}", message(context));
-        assert_eq!(luxfer_image_release(first), LUXFER_OK);
+        assert_eq!(luxfer_release(first.cast()), LUXFER_OK);
         assert_eq!(luxfer_image_create(context, &view, &mut second), LUXFER_OK);
-        assert_eq!(luxfer_image_release(second), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(second.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -295,7 +290,7 @@ fn files_that_are_missing_damaged_or_misnamed_say_so() {
         assert_eq!(load(null(), LUXFER_COLOUR_SRGB, &mut other), LUXFER_INVALID_ARGUMENT);
         assert_eq!(load(c"\xff\xfe.png".as_ptr(), LUXFER_COLOUR_SRGB, &mut other), LUXFER_INVALID_ARGUMENT);
         assert_eq!(load(path("contract.png").as_ptr(), LUXFER_COLOUR_SRGB, &mut other), LUXFER_OK);
-        assert_eq!(luxfer_image_release(other), LUXFER_OK);
+        assert_eq!(luxfer_release(other.cast()), LUXFER_OK);
         let junk = [7u8; 64];
         let junk = junk.as_ptr().cast();
         assert_eq!(luxfer_image_load_memory(context, junk, 64, LUXFER_COLOUR_SRGB, &mut other), LUXFER_FORMAT);
@@ -303,10 +298,10 @@ fn files_that_are_missing_damaged_or_misnamed_say_so() {
             luxfer_image_load_memory(context, null(), 64, LUXFER_COLOUR_SRGB, &mut other),
             LUXFER_INVALID_ARGUMENT
         );
-        assert_eq!(luxfer_scene_load_memory(context, junk, 64, null(), &mut scene), LUXFER_FORMAT);
-        assert_eq!(luxfer_scene_load(context, c"/nonexistent.glb".as_ptr(), &mut scene), LUXFER_IO);
-        assert_eq!(luxfer_image_release(image), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_scene_load_memory(context, junk, 64, null(), null(), &mut scene), LUXFER_FORMAT);
+        assert_eq!(luxfer_scene_load(context, c"/nonexistent.glb".as_ptr(), null(), &mut scene), LUXFER_IO);
+        assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -331,19 +326,22 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(add(&luxfer_mesh_params { position_stride: 8, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { vertex_count: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { position_stride: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, -1.0, 0.0, 0.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), -1.0, 0.0, 0.0), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_scene_set_emission(scene, 7, 1.0, 1.0, 1.0), LUXFER_NOT_FOUND);
 
         let mut counts = std::mem::zeroed::<luxfer_scene_counts>();
-        assert_eq!(luxfer_scene_get_counts(scene, &mut counts), LUXFER_INVALID_ARGUMENT);
-        counts.struct_size = size_of_val(&counts) as u32;
-        assert_eq!(luxfer_scene_get_counts(scene, &mut counts), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_counts(scene, &mut counts, 0), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("sizeof(luxfer_scene_counts), 32 bytes"), "{}", message(context));
+        assert_eq!(luxfer_scene_get_counts(scene, &mut counts, size_of_val(&counts)), LUXFER_OK);
+        assert_eq!(counts.struct_size, 32);
         assert_eq!((counts.meshes, counts.materials, counts.cameras, counts.triangles), (2, 2, 1, 14));
 
         let mut surface = std::mem::zeroed::<luxfer_surface>();
-        surface.struct_size = size_of_val(&surface) as u32;
-        assert_eq!(luxfer_scene_find_surface(scene, c"Sky".as_ptr(), &mut surface), LUXFER_NOT_FOUND);
-        assert_eq!(luxfer_scene_find_surface(scene, c"Lamp".as_ptr(), &mut surface), LUXFER_OK);
+        assert_eq!(
+            luxfer_scene_find_surface(scene, c"Sky".as_ptr(), &mut surface, size_of_val(&surface)),
+            LUXFER_NOT_FOUND
+        );
+        assert_eq!(luxfer_scene_find_surface(scene, c"Lamp".as_ptr(), &mut surface, size_of_val(&surface)), LUXFER_OK);
         assert!((surface.area - 1.0).abs() < 1e-5 && surface.triangles == 2);
 
         // Save and load again; an error of the writing function ends the save.
@@ -358,12 +356,14 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(luxfer_scene_export_memory(scene, Some(collect), (&raw mut file).cast()), LUXFER_OK);
         assert_eq!(luxfer_scene_export_memory(scene, Some(give_up), null_mut()), LUXFER_IO);
         assert_eq!(luxfer_scene_export_memory(scene, None, null_mut()), LUXFER_INVALID_ARGUMENT);
-        let again = made(|out| luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), out));
-        assert_eq!(luxfer_scene_get_counts(again, &mut counts), LUXFER_OK);
+        let again =
+            made(|out| luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), null(), out));
+        assert_eq!(luxfer_scene_get_counts(again, &mut counts, size_of_val(&counts)), LUXFER_OK);
+        assert_eq!(counts.struct_size, 32);
         assert_eq!((counts.meshes, counts.triangles), (2, 14));
-        assert_eq!(luxfer_scene_release(again), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(again.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -373,22 +373,22 @@ fn stages_say_what_they_lack() {
     let mut job = null_mut();
     let mut image = null_mut();
     macro_rules! check {
-        ($($create:ident $start:ident $release:ident;)*) => {$(
+        ($($create:ident $start:ident;)*) => {$(
             let stage = made(|out| unsafe { $create(context, out) });
             unsafe {
                 assert_eq!($start(stage, null(), &mut job), LUXFER_INVALID_OPERATION, "{}", stringify!($start));
                 assert!(message(context).contains("_set_"), "{}", message(context));
-                assert_eq!($release(stage), LUXFER_OK);
+                assert_eq!(luxfer_release(stage.cast()), LUXFER_OK);
             }
         )*};
     }
     check! {
-        luxfer_features_create luxfer_features_start luxfer_features_release;
-        luxfer_segment_create luxfer_segment_start luxfer_segment_release;
-        luxfer_rectify_create luxfer_rectify_start luxfer_rectify_release;
-        luxfer_emission_create luxfer_emission_start luxfer_emission_release;
-        luxfer_render_create luxfer_render_start luxfer_render_release;
-        luxfer_relight_create luxfer_relight_start luxfer_relight_release;
+        luxfer_features_create luxfer_features_start;
+        luxfer_segment_create luxfer_segment_start;
+        luxfer_rectify_create luxfer_rectify_start;
+        luxfer_emission_create luxfer_emission_start;
+        luxfer_render_create luxfer_render_start;
+        luxfer_relight_create luxfer_relight_start;
     }
     let transfer = made(|out| unsafe { luxfer_transfer_create(context, out) });
     unsafe {
@@ -398,7 +398,72 @@ fn stages_say_what_they_lack() {
         }
         assert_eq!(luxfer_transfer_start(transfer, 0, 7, null(), &mut job), LUXFER_INVALID_OPERATION);
         assert!(message(context).contains("photo"), "{}", message(context));
-        assert_eq!(luxfer_transfer_release(transfer), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(transfer.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}
+
+/// Strokes are copied by the stage, refused for another size, and gone with a photo of another size.
+#[test]
+fn a_stage_copies_strokes_of_its_size() {
+    let context = context(1);
+    let (small, large) = (image(context, 8, 6, 0.5), image(context, 9, 6, 0.5));
+    let create = |width, height| made(|out| unsafe { luxfer_strokes_create(context, width, height, out) });
+    let (strokes, transposed) = (create(8, 6), create(6, 8));
+    let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
+    let points = [1.0f32, 1.0, 6.0, 1.0];
+    let add = |phase, count, radius, positive| unsafe {
+        luxfer_strokes_add(strokes, phase, points.as_ptr(), count, radius, positive)
+    };
+    let start = || unsafe {
+        let job = made(|out| luxfer_segment_start(segment, null(), out));
+        let status = luxfer_job_wait(job, -1, None, null_mut());
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
+        status
+    };
+    unsafe {
+        let mut none = null_mut();
+        for (width, height) in [(0, 6), (8, 0), (65_537, 6)] {
+            assert_eq!(luxfer_strokes_create(context, width, height, &mut none), LUXFER_INVALID_ARGUMENT);
+        }
+        for (phase, count, radius, positive) in
+            [(2, 2, 1.0, 1), (-1, 2, 1.0, 1), (0, 0, 1.0, 1), (0, 2, 0.0, 1), (0, 2, 1.0, 2)]
+        {
+            assert_eq!(add(phase, count, radius, positive), LUXFER_INVALID_ARGUMENT);
+        }
+        assert_eq!(luxfer_strokes_add_image(strokes, large), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("drawing has 9 x 6"), "{}", message(context));
+        assert_eq!(luxfer_strokes_add_text(strokes, c"plane one".as_ptr()), LUXFER_FORMAT);
+
+        assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, transposed, LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("strokes are for 6 x 8"), "{}", message(context));
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, 2), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_segment_set_strokes(segment, small.cast(), LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+
+        // What the caller adds later, the stage does not have.
+        assert_eq!(add(LUXFER_PHASE_PLANE, 2, 1.0, 1), LUXFER_OK);
+        assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(luxfer_strokes_clear(strokes), LUXFER_OK);
+        assert_eq!(start(), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(start(), LUXFER_DEGENERATE);
+
+        // A photo of another size, and NULL, leave no strokes.
+        assert_eq!(luxfer_strokes_add_text(strokes, c"plane 1 1 1 6 1\nnot-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
+        for is_larger in [true, false] {
+            assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);
+            assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+            let status = match is_larger {
+                true => luxfer_segment_set_features(segment, large),
+                false => luxfer_segment_set_strokes(segment, null_mut(), LUXFER_PHASE_PLANE),
+            };
+            assert_eq!(status, LUXFER_OK);
+            assert_eq!(start(), LUXFER_DEGENERATE);
+        }
+        for object in [strokes.cast(), transposed.cast(), small.cast(), large.cast(), segment.cast(), context.cast()] {
+            assert_eq!(luxfer_release(object), LUXFER_OK);
+        }
     }
 }

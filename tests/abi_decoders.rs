@@ -56,8 +56,8 @@ fn load(file: &[u8], mib: u64) -> (luxfer_status, String, Option<u64>) {
     });
     let message = message(context);
     unsafe {
-        assert_eq!(luxfer_image_release(image), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
     (status, message, grown)
 }
@@ -132,8 +132,8 @@ fn pictures() -> Vec<(&'static str, Vec<u8>)> {
         let name = std::ffi::CString::new(path.to_str().unwrap()).unwrap();
         unsafe {
             assert_eq!(luxfer_image_save(image, name.as_ptr(), 1.0), LUXFER_OK);
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
-            assert_eq!(luxfer_context_release(context), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
         }
         let file = std::fs::read(&path).unwrap();
         std::fs::remove_file(path).unwrap();
@@ -216,8 +216,15 @@ fn nested_gltf() -> Vec<u8> {
 fn load_scene(context: *mut luxfer_context, file: &[u8]) -> luxfer_status {
     let mut scene = null_mut();
     unsafe {
-        let status = luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), std::ptr::null(), &mut scene);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        let status = luxfer_scene_load_memory(
+            context,
+            file.as_ptr().cast(),
+            file.len(),
+            std::ptr::null(),
+            std::ptr::null(),
+            &mut scene,
+        );
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         status
     }
 }
@@ -236,26 +243,25 @@ fn quick_calls(context: *mut luxfer_context) {
     let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
     let mut hits = vec![luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 }; 10_000];
     let mut needs = unsafe { std::mem::zeroed::<luxfer_requirements>() };
-    needs.struct_size = size_of_val(&needs) as u32;
     let mut sheet = unsafe { std::mem::zeroed::<luxfer_sheet_params>() };
     let mut file = Vec::<u8>::new();
     unsafe {
         assert_eq!(luxfer_scene_intersect(scene, vec![ray; 10_000].as_ptr(), 10_000, hits.as_mut_ptr()), LUXFER_OK);
-        assert_eq!(luxfer_scene_requirements(scene, 0.1, &mut needs), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_requirements(scene, 0.1, &mut needs, size_of_val(&needs)), LUXFER_OK);
         let made = |make: &dyn Fn(*mut *mut luxfer_image) -> luxfer_status| {
-            assert_eq!(luxfer_image_release(host::made(make)), LUXFER_OK);
+            assert_eq!(luxfer_release(host::made(make).cast()), LUXFER_OK);
         };
         made(&|out| luxfer_image_warp(image, same.as_ptr(), 300, 200, out));
         made(&|out| luxfer_image_false_colour(image, std::ptr::null(), out));
         assert_eq!(luxfer_sheet_params_init(&mut sheet, size_of_val(&sheet)), LUXFER_OK);
         let sheet = luxfer_sheet_params { paper_width: 100.0, paper_height: 80.0, dpi: 50.0, ..sheet };
         let printed = host::made(|out| luxfer_sheet_print(image, &sheet, out));
-        made(&|out| luxfer_sheet_align(printed, 32, 24, &sheet, out, null_mut()));
-        assert_eq!(luxfer_image_release(printed), LUXFER_OK);
+        made(&|out| luxfer_sheet_align(printed, 32, 24, &sheet, out, null_mut(), 0));
+        assert_eq!(luxfer_release(printed.cast()), LUXFER_OK);
         assert_eq!(luxfer_scene_export_memory(scene, Some(collect), (&raw mut file).cast()), LUXFER_OK);
         assert_eq!(load_scene(context, &file), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
     }
 }
 
@@ -272,7 +278,7 @@ fn a_thread_with_a_small_stack_can_read_files_and_make_quick_calls() {
         }
         assert_eq!(load_scene(context, &nested_gltf()), LUXFER_OK, "{}", message(context));
         quick_calls(context);
-        assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
     };
     std::thread::Builder::new().stack_size(MIN_STACK).spawn(work).unwrap().join().unwrap();
 }

@@ -1,7 +1,8 @@
 //! The header is generated and complete: it equals the output of cbindgen, compiles as C99 and C++17 without warnings,
 //! its structs have the sizes and offsets of the Rust structs, and its functions are the exported ones.
 //!
-//! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h`.
+//! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h` and its parts in
+//! `include/luxfer`.
 
 // The header describes the library with all features.
 #![cfg(feature = "stylize")]
@@ -13,76 +14,137 @@ use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Files of `src/ffi` with exported items, in the order of the header.
-const GROUPS: &[&str] = &[
-    "version",
-    "status",
-    "context",
-    "image",
-    "photo",
-    "job",
-    "scene",
-    "scene_load",
-    "scene_materials",
-    "scene_parts",
-    "distribution",
-    "scene_lights",
-    "query",
-    "requirements",
-    "scene_read",
-    "candidates",
-    "geometry",
-    "rectify",
-    "features",
-    "segment",
-    "emission",
-    "emission_tiles",
-    "render",
-    "render_outputs",
-    "render_parts",
-    "illuminance",
-    "relight",
-    "lamps",
-    "lamps_goals",
-    "lamps_results",
-    "importance",
-    "placement",
-    "photometry",
-    "false_colour",
-    "design",
-    "pattern",
-    "transfer",
-    "transfer_results",
-    "warning",
-    "plan",
-    "guides",
-    "stylize_params",
-    "stylize",
-    "stylize_results",
-    "plan_stylize",
-    "sheet",
-    "demo",
-    "demo_photo",
+/// A header of `include/luxfer`.
+struct Part {
+    name: &'static str,
+    /// Its content in a few words.
+    title: &'static str,
+    /// The parts whose types it uses.
+    includes: &'static [&'static str],
+    /// Its files of `src/ffi`, in order.
+    groups: &'static [&'static str],
+}
+
+/// The parts of the header, in order; `luxfer.h` includes them all.
+const PARTS: &[Part] = &[
+    Part {
+        name: "core",
+        title: "version, status, context, references, images, strokes and jobs",
+        includes: &[],
+        groups: &["version", "status", "context", "references", "image", "photo", "strokes", "job"],
+    },
+    Part {
+        name: "scene",
+        title: "scenes: loading, building, reading and queries",
+        includes: &["core"],
+        groups: &[
+            "scene",
+            "scene_load",
+            "scene_materials",
+            "scene_parts",
+            "distribution",
+            "scene_lights",
+            "query",
+            "requirements",
+            "scene_read",
+            "candidates",
+        ],
+    },
+    Part {
+        name: "render",
+        title: "rendering, and its layers and images",
+        includes: &["scene"],
+        groups: &["render", "render_outputs"],
+    },
+    Part {
+        name: "stages",
+        title: "the stages of a lighting transfer, one by one",
+        includes: &["scene"],
+        groups: &["geometry", "rectify", "features", "segment", "emission", "emission_tiles", "relight"],
+    },
+    Part {
+        name: "transfer",
+        title: "the lighting transfer from end to end, and warnings",
+        includes: &["render", "stages"],
+        groups: &["pattern", "transfer", "transfer_results", "warning"],
+    },
+    Part {
+        name: "lighting",
+        title: "lighting design: illuminance, powers and places of lamps, photometry",
+        includes: &["transfer"],
+        groups: &[
+            "illuminance",
+            "lamps",
+            "lamps_goals",
+            "lamps_results",
+            "importance",
+            "placement",
+            "photometry",
+            "false_colour",
+            "design",
+        ],
+    },
+    Part {
+        name: "stylize",
+        title: "stylisation by example",
+        includes: &["scene"],
+        groups: &["guides", "stylize_params", "stylize", "stylize_results", "sheet"],
+    },
+    Part {
+        name: "plan",
+        title: "settings for a given error or time",
+        includes: &["transfer", "stylize"],
+        groups: &["plan", "plan_stylize"],
+    },
+    Part {
+        name: "farm",
+        title: "renderings in parts, for many machines",
+        includes: &["render"],
+        groups: &["render_parts"],
+    },
+    Part {
+        name: "demo",
+        title: "generated scenes, photos and artworks",
+        includes: &["stylize"],
+        groups: &["demo", "demo_photo"],
+    },
 ];
+
+/// The parts that the author of a plug-in for lighting transfers reads, and their maximum number of functions.
+const MAX_READ: (&[&str], usize) = (&["core", "scene", "transfer"], 110);
 
 /// Structs that occur in arrays: they have no size field and never change.
 const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit"];
 
 #[test]
-fn the_header_is_what_the_sources_say() {
-    let generated = generate();
-    let path = root().join("include/luxfer.h");
-    if std::env::var_os("LUXFER_BLESS").is_some() {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, &generated).unwrap();
+fn the_headers_are_what_the_sources_say() {
+    for (name, generated) in generate() {
+        let path = root().join("include").join(&name);
+        if std::env::var_os("LUXFER_BLESS").is_some() {
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, &generated).unwrap();
+        }
+        let checked_in = std::fs::read_to_string(&path).unwrap_or_default();
+        if let Some((a, b)) = checked_in.lines().zip(generated.lines()).find(|(a, b)| a != b) {
+            panic!("{name} says {a:?} where the sources say {b:?}; run with LUXFER_BLESS=1 and review the change");
+        }
+        assert_eq!(checked_in.len(), generated.len(), "{name} ends early or late; run with LUXFER_BLESS=1");
     }
-    let checked_in = header();
-    if let Some((a, b)) = checked_in.lines().zip(generated.lines()).find(|(a, b)| a != b) {
-        panic!(
-            "include/luxfer.h says {a:?} where the sources say {b:?}; run with LUXFER_BLESS=1 and review the change"
-        );
+}
+
+/// Each part includes what it needs, and is small enough to be read.
+#[test]
+fn each_part_compiles_alone() {
+    for part in PARTS {
+        for (compiler, standard, ending) in [("cc", "-std=c99", "c"), ("c++", "-std=c++17", "cpp")] {
+            let file = scratch(&format!("part_{}.{ending}", part.name));
+            std::fs::write(&file, format!("#include \"luxfer/{}.h\"\nint main(void) {{ return 0; }}\n", part.name))
+                .unwrap();
+            check_syntax(compiler, standard, &file);
+        }
     }
-    assert_eq!(checked_in.len(), generated.len(), "include/luxfer.h ends early or late; run with LUXFER_BLESS=1");
+    let read: usize = MAX_READ.0.iter().map(|name| functions(&part(name)).len()).sum();
+    assert!(read <= MAX_READ.1, "{read} functions");
 }
 
 /// The C program in the README compiles, with warnings as errors.
@@ -97,7 +159,7 @@ fn the_readme_program_compiles() {
 
 #[test]
 fn the_header_compiles_as_c99_and_as_cpp17_without_a_warning() {
-    let source = "#include \"luxfer.h\"\n#include \"luxfer.h\"\nint main(void) { return (int)(luxfer_version() - LUXFER_VERSION); }\n";
+    let source = "#include \"luxfer.h\"\n#include \"luxfer.h\"\nint main(void) { return (int)(luxfer_get_version() - LUXFER_VERSION); }\n";
     for (compiler, standard, name) in [("cc", "-std=c99", "alone.c"), ("c++", "-std=c++17", "alone.cpp")] {
         let file = scratch(name);
         std::fs::write(&file, source).unwrap();
@@ -189,9 +251,9 @@ fn the_library_exports_the_header_and_nothing_else_under_its_soname() {
 #[test]
 fn the_version_is_cargos() {
     let [major, minor, patch] = version().map(|v| v.parse::<u32>().unwrap());
-    assert_eq!(luxfer_version(), 10_000 * major + 100 * minor + patch);
+    assert_eq!(luxfer_get_version(), 10_000 * major + 100 * minor + patch);
     // SAFETY: a static string.
-    let text = unsafe { std::ffi::CStr::from_ptr(luxfer_version_string()) };
+    let text = unsafe { std::ffi::CStr::from_ptr(luxfer_get_version_string()) };
     assert_eq!(text.to_str().unwrap(), env!("CARGO_PKG_VERSION"));
     let header = header();
     for (name, value) in [("MAJOR", major), ("MINOR", minor), ("PATCH", patch)] {
@@ -203,8 +265,14 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// The text of a part.
+fn part(name: &str) -> String {
+    std::fs::read_to_string(root().join(format!("include/luxfer/{name}.h"))).expect(name)
+}
+
+/// The text of all parts.
 fn header() -> String {
-    std::fs::read_to_string(root().join("include/luxfer.h")).expect("include/luxfer.h")
+    PARTS.iter().map(|p| part(p.name)).collect()
 }
 
 /// Path of a temporary file outside the source tree, beside the test programs.
@@ -229,28 +297,51 @@ fn run(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Runs cbindgen once for each file and puts the head comment of the file before its output.
-fn generate() -> String {
+/// The umbrella header and its parts: paths below `include`, and texts.
+fn generate() -> Vec<(String, String)> {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
-    let mut out = config.header.take().unwrap();
-    let trailer = config.trailer.take().unwrap();
-    for group in GROUPS {
-        let path = root().join(format!("src/ffi/{group}.rs"));
-        out += &banner(&std::fs::read_to_string(&path).unwrap());
-        if *group == "version" {
-            out += &version_macros();
-        }
-        let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
-        let mut items = Vec::new();
-        bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
-        // The style "both" gives structs a tag, for forward declarations, but need not use it.
-        let items = String::from_utf8(items)
-            .unwrap()
-            .replace("struct luxfer_", "luxfer_")
-            .replace("typedef luxfer_", "typedef struct luxfer_");
-        out += &one_line_comments(items.trim());
+    let umbrella = config.header.take().unwrap();
+    let includes: String = PARTS.iter().map(|p| format!("#include \"luxfer/{}.h\"\n", p.name)).collect();
+    let mut files = vec![("luxfer.h".to_string(), guarded(umbrella.trim_start(), "LUXFER_H", &includes))];
+    for part in PARTS {
+        let head = format!(
+            "/* luxfer: {}.\n *\n * tests/abi_header.rs generates this file from src/ffi.\n *\n \
+             * SPDX-License-Identifier: MIT OR Apache-2.0\n */\n",
+            part.title
+        );
+        let mut body: String = match part.includes {
+            [] => "#include <stddef.h>\n#include <stdint.h>\n".into(),
+            others => others.iter().map(|other| format!("#include \"{other}.h\"\n")).collect(),
+        };
+        body += "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
+        body.extend(part.groups.iter().map(|group| section(&config, group)));
+        body += "\n#ifdef __cplusplus\n}\n#endif\n";
+        let guard = format!("LUXFER_{}_H", part.name.to_uppercase());
+        files.push((format!("luxfer/{}.h", part.name), guarded(&head, &guard, &body)));
     }
-    (out + &trailer).trim_start().to_string()
+    files
+}
+
+fn guarded(head: &str, guard: &str, body: &str) -> String {
+    format!("{head}#ifndef {guard}\n#define {guard}\n\n{body}\n#endif /* {guard} */\n")
+}
+
+/// The items of a file of `src/ffi`, after its head comment.
+fn section(config: &cbindgen::Config, group: &str) -> String {
+    let path = root().join(format!("src/ffi/{group}.rs"));
+    let mut out = banner(&std::fs::read_to_string(&path).unwrap());
+    if group == "version" {
+        out += &version_macros();
+    }
+    let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
+    let mut items = Vec::new();
+    bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
+    // The style "both" gives structs a tag, for forward declarations, but need not use it.
+    let items = String::from_utf8(items)
+        .unwrap()
+        .replace("struct luxfer_", "luxfer_")
+        .replace("typedef luxfer_", "typedef struct luxfer_");
+    out + &one_line_comments(items.trim())
 }
 
 /// Puts each comment that fits onto one line.
@@ -288,7 +379,7 @@ fn version_macros() -> String {
     format!(
         "/** The version of this header. */\n#define LUXFER_VERSION_MAJOR {major}\n#define LUXFER_VERSION_MINOR {minor}\n\
          #define LUXFER_VERSION_PATCH {patch}\n\n/** The version of this header as one number, comparable with \
-         luxfer_version(). */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
+         luxfer_get_version(). */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
          LUXFER_VERSION_PATCH)\n\n"
     )
 }
@@ -344,7 +435,7 @@ layouts! {
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
-    luxfer_scene_load_params: struct_size outside unit;
+    luxfer_scene_load_params: struct_size allow_external_files unit;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
@@ -367,7 +458,7 @@ layouts! {
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
         distortion distortion_error squareness squareness_errors;
-    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
+    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed min_regularity
         whole_lamps offset clip_level even_lamps tileable centred candidates reserved law clean_lamps max_magnification;
     luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error law runner_up
         law_score margin;
@@ -385,7 +476,7 @@ layouts! {
     luxfer_relight_report: struct_size paths scale half_width response background outcome reserved error delta_e;
     luxfer_lamps_params: struct_size group row_tolerance free_colour max_scale regularisation tolerance paths target_error
         time_budget_ms reserved seed;
-    luxfer_lamps_report: struct_size lamps groups goals paths met;
+    luxfer_lamps_report: struct_size lamps groups goals paths all_goals_met;
     luxfer_lamp: struct_size group centre scale half_width;
     luxfer_lamps_goal: struct_size outcome target achieved half_width background target_lux achieved_lux half_width_lux
         background_lux;
@@ -397,7 +488,7 @@ layouts! {
     luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
-    luxfer_mixture: struct_size reached colour delta_e;
+    luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
     luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
     luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
@@ -407,8 +498,8 @@ layouts! {
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error proposed_white
         proposed_white_low proposed_white_high;
-    luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved;
-    luxfer_warning: struct_size code stage has_place severity limit place;
+    luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved name reason;
+    luxfer_warning: struct_size code stage has_place severity limit place message advice;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
@@ -417,9 +508,9 @@ layouts! {
     luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish sweeps
         coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
         seed coarse_guides coarse_iterations occurrence reserved;
-    luxfer_stylize_report: struct_size finished levels halvings patch max_uses energy used entropy guide_error
+    luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
         broken_source broken_target;
     luxfer_stylize_round: struct_size passes energy;
-    luxfer_stylize_pass: struct_size reserved knee coverage gained;
+    luxfer_stylize_pass: struct_size reserved knee coverage new_matches;
     luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;
 }

@@ -22,7 +22,7 @@ fn start_render(context: *mut luxfer_context, samples: u32) -> (*mut luxfer_rend
     unsafe {
         assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
     }
     let params = luxfer_render_params { width: 64, height: 64, samples, ..params };
     (render, made(|out| unsafe { luxfer_render_start(render, &params, out) }))
@@ -40,7 +40,7 @@ impl Endless {
         let (render, job) = start_render(context, 1 << 20);
         let mut fraction = 0.0;
         while fraction == 0.0 {
-            assert_eq!(unsafe { luxfer_job_poll(job, &mut fraction, null_mut()) }, LUXFER_OK);
+            assert_eq!(unsafe { luxfer_job_get_progress(job, &mut fraction, null_mut()) }, LUXFER_OK);
             std::thread::sleep(Duration::from_millis(1));
         }
         Self { render, job }
@@ -50,8 +50,8 @@ impl Endless {
         unsafe {
             assert_eq!(luxfer_job_cancel(self.job), LUXFER_OK);
             assert_eq!(luxfer_job_wait(self.job, -1, None, null_mut()), LUXFER_CANCELLED);
-            assert_eq!(luxfer_job_release(self.job), LUXFER_OK);
-            assert_eq!(luxfer_render_release(self.render), LUXFER_OK);
+            assert_eq!(luxfer_release(self.job.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(self.render.cast()), LUXFER_OK);
         }
     }
 }
@@ -76,17 +76,17 @@ impl Objects {
         let (render, job) = start_render(context, 16);
         unsafe {
             assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK);
-            assert_eq!(luxfer_job_release(job), LUXFER_OK);
+            assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         }
         Self { context, image, scene: scene(context), sheet, sheet_params, render }
     }
 
     fn release(self) {
         unsafe {
-            assert_eq!(luxfer_image_release(self.image), LUXFER_OK);
-            assert_eq!(luxfer_image_release(self.sheet), LUXFER_OK);
-            assert_eq!(luxfer_scene_release(self.scene), LUXFER_OK);
-            assert_eq!(luxfer_render_release(self.render), LUXFER_OK);
+            assert_eq!(luxfer_release(self.image.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(self.sheet.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(self.scene.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(self.render.cast()), LUXFER_OK);
         }
     }
 }
@@ -104,24 +104,23 @@ fn trace(scene: *mut luxfer_scene, count: usize) -> f32 {
 fn new_image(context: *mut luxfer_context, make: impl FnOnce(*mut *mut luxfer_image) -> luxfer_status) {
     let mut image = null_mut();
     assert_eq!(make(&mut image), LUXFER_OK, "{}", message(context));
-    assert_eq!(unsafe { luxfer_image_release(image) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_release(image.cast()) }, LUXFER_OK);
 }
 
 fn requirements(scene: *mut luxfer_scene) {
     let mut found = unsafe { std::mem::zeroed::<luxfer_requirements>() };
-    found.struct_size = size_of_val(&found) as u32;
-    assert_eq!(unsafe { luxfer_scene_requirements(scene, 0.1, &mut found) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_scene_get_requirements(scene, 0.1, &mut found, size_of_val(&found)) }, LUXFER_OK);
 }
 
 /// Every quick call that works in parallel and needs no long preparation, by name.
 const CALLS: [(&str, fn(&Objects)); 9] = [
     ("luxfer_scene_intersect, 1 ray", |o| assert_eq!(trace(o.scene, 1), 2.0)),
     ("luxfer_scene_intersect, 10000 rays", |o| assert_eq!(trace(o.scene, 10_000), 2.0)),
-    ("luxfer_scene_requirements", |o| requirements(o.scene)),
-    ("luxfer_scene_requirements of a new scene", |o| {
+    ("luxfer_scene_get_requirements", |o| requirements(o.scene)),
+    ("luxfer_scene_get_requirements of a new scene", |o| {
         let scene = scene(o.context);
         requirements(scene);
-        assert_eq!(unsafe { luxfer_scene_release(scene) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_release(scene.cast()) }, LUXFER_OK);
     }),
     ("luxfer_image_warp", |o| {
         let same = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -134,7 +133,7 @@ const CALLS: [(&str, fn(&Objects)); 9] = [
         new_image(o.context, |out| unsafe { luxfer_sheet_print(o.image, &o.sheet_params, out) });
     }),
     ("luxfer_sheet_align", |o| {
-        new_image(o.context, |out| unsafe { luxfer_sheet_align(o.sheet, 32, 24, &o.sheet_params, out, null_mut()) });
+        new_image(o.context, |out| unsafe { luxfer_sheet_align(o.sheet, 32, 24, &o.sheet_params, out, null_mut(), 0) });
     }),
     ("luxfer_render_get_image", |o| {
         new_image(o.context, |out| unsafe { luxfer_render_get_image(o.render, LUXFER_RENDER_INTERVAL, out) });
@@ -166,7 +165,7 @@ fn quick_calls_never_wait_for_a_job() {
         assert!(delay <= MAX_DELAY, "{num_threads} threads: {name} is delayed by {delay:?}");
         endless.end();
         objects.release();
-        assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
     }
 }
 
@@ -188,7 +187,7 @@ fn a_quick_call_never_waits_for_another() {
     let (long, quickest) = (other.join().unwrap(), traced.iter().min().unwrap());
     assert!(traced.len() > 3 && *quickest < long / 4, "{} calls while another took {long:?}", traced.len());
     objects.release();
-    assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
 }
 
 /// A progress callback that traces a ray.
@@ -217,8 +216,8 @@ fn a_cancel_is_answered_while_a_progress_function_calls_the_library() {
         endless.end();
     }
     unsafe {
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -234,12 +233,12 @@ fn a_job_that_waits_for_another_is_cancelled_at_once() {
         assert_eq!(luxfer_job_wait(job, 2000, None, null_mut()), LUXFER_CANCELLED);
         assert!(clock.elapsed() < Duration::from_millis(500), "{:?}", clock.elapsed());
         // The object accepts the next job, which runs when the first one has ended.
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         let next = made(|out| luxfer_render_start(render, null(), out));
         endless.end();
         assert_eq!(luxfer_job_cancel(next), LUXFER_OK);
-        assert_eq!(luxfer_job_release(next), LUXFER_OK);
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(next.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

@@ -10,11 +10,11 @@ use std::ptr::{null, null_mut};
 fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
     let (mut width, mut height, mut channels) = (0, 0, 0);
     unsafe {
-        assert_eq!(luxfer_image_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
+        assert_eq!(luxfer_image_get_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
         let mut data = vec![0.0f32; (width * height * channels) as usize];
         let view = luxfer_image_view { channels, ..host::view(width, height, &mut data) };
         assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
-        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         (channels as usize, data)
     }
 }
@@ -22,7 +22,7 @@ fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
 fn finish(job: *mut luxfer_job) -> luxfer_status {
     unsafe {
         let status = luxfer_job_wait(job, -1, None, null_mut());
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     }
 }
@@ -101,9 +101,9 @@ fn layers_are_found_read_and_written() {
         assert!(!holds("Alpha.A"));
         let nowhere = c"/nonexistent/layers.exr".as_ptr();
         assert_eq!(luxfer_render_write_exr(render, nowhere), LUXFER_IO);
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -134,8 +134,7 @@ fn illuminance_comes_with_its_error() {
         let error = pixels(made(|out| luxfer_illuminance_get_image(stage, LUXFER_ILLUMINANCE_ERROR, out)));
         assert_eq!((lux.0, lux.1.len(), error.1.len()), (1, 12, 12));
         let mut report = std::mem::zeroed::<luxfer_illuminance_report>();
-        report.struct_size = size_of_val(&report) as u32;
-        assert_eq!(luxfer_illuminance_get_report(stage, &mut report), LUXFER_OK);
+        assert_eq!(luxfer_illuminance_get_report(stage, &mut report, size_of_val(&report)), LUXFER_OK);
         let mean = lux.1.iter().map(|&v| f64::from(v)).sum::<f64>() / 12.0;
         assert!(report.points == 12 && (report.mean - mean).abs() < 1e-4 * mean && report.minimum > 0.0);
         assert!(report.mean_error > 0.0 && report.mean_error < 0.1 * mean);
@@ -149,9 +148,9 @@ fn illuminance_comes_with_its_error() {
         assert_eq!(luxfer_illuminance_start_mesh(stage, 0, 2, &params, &mut job), LUXFER_INVALID_ARGUMENT);
         let mut image = null_mut();
         assert_eq!(luxfer_illuminance_get_image(stage, 2, &mut image), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_illuminance_release(stage), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stage.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -159,8 +158,7 @@ fn rendered(render: *mut luxfer_render, params: &luxfer_render_params) -> (Vec<f
     unsafe {
         assert_eq!(finish(made(|out| luxfer_render_start(render, params, out))), LUXFER_OK);
         let mut report = std::mem::zeroed::<luxfer_render_report>();
-        report.struct_size = size_of_val(&report) as u32;
-        assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
+        assert_eq!(luxfer_render_get_report(render, &mut report, size_of_val(&report)), LUXFER_OK);
         (pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out))).1, report)
     }
 }
@@ -198,9 +196,8 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
 
         // In a closed room of albedo up to 0.84, little light is left after the needed number of bounces, and much
         // after one.
-        let mut needed =
-            luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
-        assert_eq!(luxfer_scene_requirements(scene, 0.01, &mut needed), LUXFER_OK);
+        let mut needed = std::mem::zeroed::<luxfer_requirements>();
+        assert_eq!(luxfer_scene_get_requirements(scene, 0.01, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert!((10..40).contains(&needed.bounces), "{}", needed.bounces);
         let (most, _) = rendered(render, &luxfer_render_params { bounce_error: 0.01, ..params });
         let (least, _) = rendered(render, &luxfer_render_params { bounce_error: 0.99, ..params });
@@ -218,9 +215,9 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
             };
             assert_eq!(status, LUXFER_INVALID_ARGUMENT);
         }
-        assert_eq!(luxfer_render_release(render), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -237,14 +234,13 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
     let below = host::image(context, 4, 2, -1.0);
     let mut grid = unsafe { std::mem::zeroed::<luxfer_illuminance_grid>() };
     unsafe {
-        assert_eq!(luxfer_scene_set_environment_image(scene, below, 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, sky, 1.0, -1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, sky, f32::MAX, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, null_mut(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment_image(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
-        let mut needed =
-            luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
-        assert_eq!(luxfer_scene_requirements(scene, 0.0, &mut needed), LUXFER_OK);
+        assert_eq!(luxfer_scene_set_environment(scene, below, 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, 1.0, -1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, f32::MAX, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, scene.cast(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
+        let mut needed = std::mem::zeroed::<luxfer_requirements>();
+        assert_eq!(luxfer_scene_get_requirements(scene, 0.0, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert_eq!(needed.lights, LUXFER_LIGHTS_ENVIRONMENT);
         assert_eq!(luxfer_illuminance_grid_init(&mut grid, size_of_val(&grid)), LUXFER_OK);
         assert_eq!(luxfer_illuminance_set_scene(stage, scene), LUXFER_OK);
@@ -256,11 +252,11 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
             let expected = luminance * std::f64::consts::PI;
             assert!((mean(&lux) / expected - 1.0).abs() < 0.02, "{} lx, expected {expected}", mean(&lux));
         }
-        assert_eq!(luxfer_illuminance_release(stage), LUXFER_OK);
+        assert_eq!(luxfer_release(stage.cast()), LUXFER_OK);
         for image in [sky, below] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

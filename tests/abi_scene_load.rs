@@ -47,38 +47,28 @@ impl Drop for Folder {
 }
 
 fn params() -> luxfer_scene_load_params {
-    let mut params = luxfer_scene_load_params { struct_size: 0, outside: 7, unit: 7.0 };
+    let mut params = luxfer_scene_load_params { struct_size: 0, allow_external_files: 7, unit: 7.0 };
     assert_eq!(unsafe { luxfer_scene_load_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
-    assert_eq!((params.outside, params.unit), (0, 1.0));
+    assert_eq!((params.allow_external_files, params.unit), (0, 1.0));
     params
-}
-
-type Text = unsafe extern "C" fn(*mut luxfer_warnings, u32, *mut c_char, usize, *mut usize) -> luxfer_status;
-
-fn text(read: Text, warnings: *mut luxfer_warnings, index: u32) -> String {
-    let mut buffer = [0 as c_char; 512];
-    unsafe {
-        assert_eq!(read(warnings, index, buffer.as_mut_ptr(), buffer.len(), null_mut()), LUXFER_OK);
-        CStr::from_ptr(buffer.as_ptr()).to_str().unwrap().to_string()
-    }
 }
 
 /// Code, severity, message and advice of each warning of a scene.
 fn warnings(scene: *mut luxfer_scene) -> Vec<(luxfer_warning_code, f64, String)> {
-    let list = made(|out| unsafe { luxfer_scene_get_warnings(scene, out) });
+    let list = made(|out| unsafe { luxfer_get_warnings(scene.cast(), out) });
     let mut count = 0;
-    assert_eq!(unsafe { luxfer_warnings_count(list, &mut count) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_warnings_get_count(list, &mut count) }, LUXFER_OK);
     let read = |index| {
         let mut warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
-        warning.struct_size = size_of_val(&warning) as u32;
-        assert_eq!(unsafe { luxfer_warnings_get(list, index, &mut warning) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_warnings_get(list, index, &mut warning, size_of_val(&warning)) }, LUXFER_OK);
         assert_eq!((warning.stage, warning.has_place), (LUXFER_STAGE_SCENE, 0));
-        let words =
-            text(luxfer_warnings_get_message, list, index) + ": " + &text(luxfer_warnings_get_advice, list, index);
+        let [message, advice] =
+            [warning.message, warning.advice].map(|text| unsafe { CStr::from_ptr(text) }.to_str().unwrap());
+        let words = format!("{message}: {advice}");
         (warning.code, warning.severity, words)
     };
     let found = (0..count).map(read).collect();
-    assert_eq!(unsafe { luxfer_warnings_release(list) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_release(list.cast()) }, LUXFER_OK);
     found
 }
 
@@ -86,7 +76,7 @@ fn warnings(scene: *mut luxfer_scene) -> Vec<(luxfer_warning_code, f64, String)>
 fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
     let (context, folder) = (context(1), Folder::new("unit", 2700.0, "room.bin"));
     let file = folder.file();
-    let scene = made(|out| unsafe { luxfer_scene_load(context, file.as_ptr(), out) });
+    let scene = made(|out| unsafe { luxfer_scene_load(context, file.as_ptr(), null(), out) });
     let found = warnings(scene);
     assert_eq!(
         found.iter().map(|w| w.0).collect::<Vec<_>>(),
@@ -95,21 +85,21 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
     assert_eq!(found[0].1, 2700.0);
     assert!(found[0].2.contains("millimetre") && found[0].2.contains("unit = 0.001"), "{}", found[0].2);
     assert!(found[1].2.contains("KHR_materials_clearcoat") && found[1].2.contains("\"Paint\""), "{}", found[1].2);
-    unsafe { assert_eq!(luxfer_scene_release(scene), LUXFER_OK) };
+    unsafe { assert_eq!(luxfer_release(scene.cast()), LUXFER_OK) };
 
     let params = luxfer_scene_load_params { unit: 0.001, ..params() };
-    let scene = made(|out| unsafe { luxfer_scene_load_with(context, file.as_ptr(), &params, out) });
+    let scene = made(|out| unsafe { luxfer_scene_load(context, file.as_ptr(), &params, out) });
     assert_eq!(warnings(scene).iter().map(|w| w.0).collect::<Vec<_>>(), [LUXFER_WARNING_NOT_RENDERED]);
     let (mut positions, mut text) = ([0.0f32; 9], [0 as c_char; 4096]);
     unsafe {
         let status = luxfer_scene_read_mesh(scene, 0, 3, positions.as_mut_ptr(), null_mut(), 0, null_mut());
         assert_eq!((status, positions[3]), (LUXFER_OK, 2.7));
-        let status = luxfer_scene_requirements_text(scene, text.as_mut_ptr(), text.len(), null_mut());
+        let status = luxfer_scene_get_requirements_text(scene, text.as_mut_ptr(), text.len(), null_mut());
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let text = CStr::from_ptr(text.as_ptr()).to_str().unwrap();
         assert!(text.lines().any(|l| l.starts_with("KHR_materials_clearcoat: not rendered")), "{text}");
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -119,22 +109,22 @@ fn files_outside_the_folder_are_read_only_with_leave() {
     let file = folder.file();
     let mut scene = null_mut();
     unsafe {
-        assert_eq!(luxfer_scene_load(context, file.as_ptr(), &mut scene), LUXFER_UNSUPPORTED);
-        assert!(message(context).contains("luxfer_scene_load_params.outside"), "{}", message(context));
-        let open = luxfer_scene_load_params { outside: 1, ..params() };
-        assert_eq!(luxfer_scene_load_with(context, file.as_ptr(), &open, &mut scene), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_scene_load(context, file.as_ptr(), null(), &mut scene), LUXFER_UNSUPPORTED);
+        assert!(message(context).contains("luxfer_scene_load_params.allow_external_files"), "{}", message(context));
+        let open = luxfer_scene_load_params { allow_external_files: 1, ..params() };
+        assert_eq!(luxfer_scene_load(context, file.as_ptr(), &open, &mut scene), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         // Load from memory too, with the folder as base.
         let bytes = std::fs::read(folder.0.join("scene/room.gltf")).unwrap();
         let base = CString::new(folder.0.join("scene").to_str().unwrap()).unwrap();
         let mut load = |params: *const luxfer_scene_load_params| {
             let (data, base) = (bytes.as_ptr().cast(), base.as_ptr());
-            luxfer_scene_load_memory_with(context, data, bytes.len(), base, params, &mut scene)
+            luxfer_scene_load_memory(context, data, bytes.len(), base, params, &mut scene)
         };
         assert_eq!(load(null()), LUXFER_UNSUPPORTED);
         assert_eq!(load(&open), LUXFER_OK);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -142,13 +132,13 @@ fn files_outside_the_folder_are_read_only_with_leave() {
 fn settings_out_of_range_are_refused() {
     let (context, folder) = (context(1), Folder::new("range", 2.7, "room.bin"));
     let (file, mut scene) = (folder.file(), null_mut());
-    let mut load = |params| unsafe { luxfer_scene_load_with(context, file.as_ptr(), &params, &mut scene) };
+    let mut load = |params| unsafe { luxfer_scene_load(context, file.as_ptr(), &params, &mut scene) };
     for unit in [0.0, -1.0, 1e-7, 1e7, f64::INFINITY, f64::NAN] {
         assert_eq!(load(luxfer_scene_load_params { unit, ..params() }), LUXFER_INVALID_ARGUMENT, "{unit}");
         assert!(message(context).contains("unit is"), "{}", message(context));
     }
-    assert_eq!(load(luxfer_scene_load_params { outside: 2, ..params() }), LUXFER_INVALID_ARGUMENT);
+    assert_eq!(load(luxfer_scene_load_params { allow_external_files: 2, ..params() }), LUXFER_INVALID_ARGUMENT);
     assert_eq!(load(luxfer_scene_load_params { struct_size: 3, ..params() }), LUXFER_INVALID_ARGUMENT);
     assert!(scene.is_null());
-    assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
 }

@@ -16,8 +16,8 @@ fn a_mesh_comes_back_as_it_was_described() {
     let context = context(1);
     let scene = scene(context);
     unsafe {
-        let mut info = luxfer_mesh_info { struct_size: size_of::<luxfer_mesh_info>() as u32, ..zeroed() };
-        assert_eq!(luxfer_scene_get_mesh(scene, 1, &mut info), LUXFER_OK);
+        let mut info = std::mem::zeroed::<luxfer_mesh_info>();
+        assert_eq!(luxfer_scene_get_mesh(scene, 1, &mut info, size_of_val(&info)), LUXFER_OK);
         assert_eq!((info.material, info.vertex_count, info.triangle_count), (1, 4, 2));
         assert_eq!((info.has_normals, info.uv_sets), (0, 0));
         let (mut positions, mut indices) = ([0.0f32; 12], [0u32; 6]);
@@ -40,9 +40,9 @@ fn a_mesh_comes_back_as_it_was_described() {
         let (mut name, mut needed) = ([0u8; 8], 0);
         assert_eq!(luxfer_scene_get_mesh_name(scene, 1, name.as_mut_ptr().cast(), 8, &mut needed), LUXFER_OK);
         assert_eq!((&name[..needed], needed), (&b"Lamp\0"[..], 5));
-        assert_eq!(luxfer_scene_get_mesh(scene, 2, &mut info), LUXFER_NOT_FOUND);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_mesh(scene, 2, &mut info, size_of_val(&info)), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -57,13 +57,13 @@ fn materials_and_textures_come_back() {
         let status = luxfer_scene_place_emission(scene, name, light, 1.0, 2.0, 3.0, &mut mesh, &mut index);
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let mut material: luxfer_material_params = zeroed();
-        material.struct_size = size_of_val(&material) as u32;
-        assert_eq!(luxfer_scene_get_material(scene, index, &mut material), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_material(scene, index, &mut material, size_of_val(&material)), LUXFER_OK);
         assert_eq!((material.emission, material.double_sided, material.ior), ([1.0, 2.0, 3.0], 0, 1.5));
         assert!(material.name.is_null());
 
-        let mut used = luxfer_texture_use { struct_size: size_of::<luxfer_texture_use>() as u32, ..zeroed() };
-        let mut role = |role| (luxfer_scene_get_material_texture(scene, index, role, &mut used), used.texture);
+        let mut used = std::mem::zeroed::<luxfer_texture_use>();
+        let mut role =
+            |role| (luxfer_scene_get_material_texture(scene, index, role, &mut used, size_of_val(&used)), used.texture);
         assert_eq!(role(LUXFER_TEXTURE_BASE_COLOR), (LUXFER_OK, LUXFER_NONE));
         assert_eq!(role(LUXFER_TEXTURE_NORMAL), (LUXFER_OK, LUXFER_NONE));
         assert_eq!(role(4).0, LUXFER_INVALID_ARGUMENT);
@@ -72,16 +72,16 @@ fn materials_and_textures_come_back() {
         assert_eq!(used.transform, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         let texture = made(|out| luxfer_scene_get_texture(scene, used.texture, out));
         assert_eq!(luxfer_scene_get_texture(scene, 1, &mut null_mut()), LUXFER_NOT_FOUND);
-        assert_eq!(luxfer_scene_get_material(scene, 3, &mut material), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_scene_get_material(scene, 3, &mut material, size_of_val(&material)), LUXFER_NOT_FOUND);
 
         // A texture outlives its scene.
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         let (mut width, mut height) = (0, 0);
-        assert_eq!(luxfer_image_size(texture, &mut width, &mut height, null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_image_get_size(texture, &mut width, &mut height, null_mut()), LUXFER_OK);
         assert_eq!((width, height), (5, 3));
-        assert_eq!(luxfer_image_release(texture), LUXFER_OK);
-        assert_eq!(luxfer_image_release(light), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(texture.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(light.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -122,8 +122,8 @@ fn rays_hit_what_they_should_after_every_change() {
         assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, null_mut()), LUXFER_INVALID_ARGUMENT);
         let too_many = luxfer_scene_intersect(scene, rays.as_ptr(), usize::MAX / 2, hits.as_mut_ptr());
         assert_eq!(too_many, LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -133,7 +133,7 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
     unsafe {
         let mut scene = null_mut();
         for which in [-1, 4, i32::MAX] {
-            assert_eq!(luxfer_demo_scene(context, which, &mut scene), LUXFER_INVALID_ARGUMENT);
+            assert_eq!(luxfer_demo_create_scene(context, which, &mut scene), LUXFER_INVALID_ARGUMENT);
         }
         let source = image(context, 4, 4, 0.5);
         let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -141,7 +141,7 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
             let mut out = null_mut();
             let status = luxfer_image_warp(source, map.as_ptr(), width, height, &mut out);
             assert_eq!(status == LUXFER_OK, !out.is_null());
-            assert_eq!(luxfer_image_release(out), LUXFER_OK);
+            assert_eq!(luxfer_release(out.cast()), LUXFER_OK);
             status
         };
         assert_eq!(warp(&identity, 4, 4), LUXFER_OK);
@@ -149,8 +149,8 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
         assert_eq!(warp(&identity, 4, 65537), LUXFER_INVALID_ARGUMENT);
         assert_eq!(warp(&[f64::NAN; 9], 4, 4), LUXFER_INVALID_ARGUMENT);
         assert_eq!(warp(&[0.0; 9], 4, 4), LUXFER_OK, "a map to nowhere shows nothing");
-        assert_eq!(luxfer_image_release(source), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(source.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -212,25 +212,27 @@ fn materials_are_replaced_and_keep_their_textures() {
         }
         assert_eq!(luxfer_scene_set_material(scene, 2, &given), LUXFER_NOT_FOUND);
         let mut back: luxfer_material_params = zeroed();
-        back.struct_size = size_of_val(&back) as u32;
-        assert_eq!(luxfer_scene_get_material(scene, 0, &mut back), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_material(scene, 0, &mut back, size_of_val(&back)), LUXFER_OK);
         let numbers = |m: &luxfer_material_params| {
             let colours = [m.base_color, m.emission];
             let rest = [m.metallic, m.roughness, m.transmission, m.ior, m.alpha, m.alpha_cutoff, m.normal_scale];
             (colours, rest, m.alpha_mode, m.double_sided)
         };
         assert_eq!(numbers(&back), numbers(&given));
-        let mut used = luxfer_texture_use { struct_size: size_of::<luxfer_texture_use>() as u32, ..zeroed() };
+        let mut used = std::mem::zeroed::<luxfer_texture_use>();
         let role = LUXFER_TEXTURE_BASE_COLOR;
-        assert_eq!(luxfer_scene_get_material_texture(scene, 0, role, &mut used), LUXFER_OK);
+        assert_eq!(luxfer_scene_get_material_texture(scene, 0, role, &mut used, size_of_val(&used)), LUXFER_OK);
         assert_eq!((used.texture, used.uv_set, used.transform), (0, 1, transform));
         assert_eq!((used.wrap_u, used.wrap_v), (LUXFER_WRAP_MIRROR, LUXFER_WRAP_CLAMP));
-        assert_eq!(luxfer_scene_get_material_texture(scene, 0, LUXFER_TEXTURE_NORMAL, &mut used), LUXFER_OK);
+        assert_eq!(
+            luxfer_scene_get_material_texture(scene, 0, LUXFER_TEXTURE_NORMAL, &mut used, size_of_val(&used)),
+            LUXFER_OK
+        );
         assert_eq!(used.texture, LUXFER_NONE);
         for image in [picture, dark] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

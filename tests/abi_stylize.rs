@@ -26,7 +26,7 @@ fn drawn(
 fn pixels(image: *mut luxfer_image) -> (u32, u32, Vec<f32>) {
     let (mut width, mut height, mut channels) = (0, 0, 0);
     unsafe {
-        assert_eq!(luxfer_image_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
+        assert_eq!(luxfer_image_get_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
         let mut data = vec![0.0f32; (width * height * channels) as usize];
         let view = luxfer_image_view { channels, ..view(width, height, &mut data) };
         assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
@@ -55,8 +55,7 @@ fn params() -> luxfer_stylize_params {
 
 fn report(stylize: *mut luxfer_stylize) -> luxfer_stylize_report {
     let mut report = unsafe { std::mem::zeroed::<luxfer_stylize_report>() };
-    report.struct_size = size_of_val(&report) as u32;
-    assert_eq!(unsafe { luxfer_stylize_get_report(stylize, &mut report) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_stylize_get_report(stylize, &mut report, size_of_val(&report)) }, LUXFER_OK);
     report
 }
 
@@ -69,7 +68,7 @@ fn run(stylize: *mut luxfer_stylize, params: &luxfer_stylize_params) -> luxfer_s
     let job = made(|out| unsafe { luxfer_stylize_start(stylize, params, out) });
     unsafe {
         let status = luxfer_job_wait(job, -1, None, null_mut());
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     }
 }
@@ -83,7 +82,7 @@ fn ready(context: *mut luxfer_context, width: u32) -> *mut luxfer_stylize {
         let (name, light) = (c"light".as_ptr(), LUXFER_GUIDE_LIGHT);
         assert_eq!(luxfer_stylize_add_guide(stylize, name, images[1], images[2], 1.0, light), LUXFER_OK);
         for image in images {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
     }
     stylize
@@ -98,7 +97,7 @@ fn usage_can_be_a_cost() {
         assert_eq!(run(stylize, &params), LUXFER_OK, "{}", message(context));
         let picture = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         let (_, _, colours) = pixels(picture);
-        assert_eq!(unsafe { luxfer_image_release(picture) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_release(picture.cast()) }, LUXFER_OK);
         (colours, report(stylize).used)
     };
     let plain = with(LUXFER_STYLIZE_MODE_NEAREST, 1.0);
@@ -106,8 +105,8 @@ fn usage_can_be_a_cost() {
     let used = with(LUXFER_STYLIZE_MODE_OCCURRENCE, 1.0).1;
     assert!(used > plain.1, "{used} {}", plain.1);
     unsafe {
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -119,7 +118,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_image(stylize, 0, &mut null_mut()), LUXFER_NOT_READY);
         assert_eq!(run(stylize, &params()), LUXFER_OK, "{}", message(context));
         let all = report(stylize);
-        assert!(all.finished == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
+        assert!(all.is_complete == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
 
         // Read the rounds of the level and their passes, whose coverage rises.
@@ -127,19 +126,19 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_level(stylize, 0, &mut width, null_mut(), &mut rounds), LUXFER_OK);
         // One round under the error budget and three rounds of polish, which have no passes.
         assert_eq!((width, rounds), (70, 4));
-        let mut round = luxfer_stylize_round { struct_size: 16, passes: 0, energy: 0.0 };
-        assert_eq!(luxfer_stylize_get_round(stylize, 0, 3, &mut round), LUXFER_OK);
+        let mut round = std::mem::zeroed::<luxfer_stylize_round>();
+        assert_eq!(luxfer_stylize_get_round(stylize, 0, 3, &mut round, size_of_val(&round)), LUXFER_OK);
         assert!(round.passes == 0 && round.energy == all.energy);
-        assert_eq!(luxfer_stylize_get_round(stylize, 0, 0, &mut round), LUXFER_OK);
+        assert_eq!(luxfer_stylize_get_round(stylize, 0, 0, &mut round, size_of_val(&round)), LUXFER_OK);
         assert!(round.passes > 0 && round.energy >= all.energy);
         let mut covered = 0.0;
         for index in 0..round.passes {
-            let mut pass = luxfer_stylize_pass { struct_size: 32, ..std::mem::zeroed() };
-            assert_eq!(luxfer_stylize_get_pass(stylize, 0, 0, index, &mut pass), LUXFER_OK);
+            let mut pass = std::mem::zeroed::<luxfer_stylize_pass>();
+            assert_eq!(luxfer_stylize_get_pass(stylize, 0, 0, index, &mut pass, size_of_val(&pass)), LUXFER_OK);
             assert!(pass.coverage >= covered && pass.coverage <= 1.0);
             covered = pass.coverage;
         }
-        assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round, size_of_val(&round)), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_stylize_get_level(stylize, 1, null_mut(), null_mut(), null_mut()), LUXFER_NOT_FOUND);
 
         // Every pixel is copied from the artwork, and the sources state its place.
@@ -155,17 +154,17 @@ fn a_target_is_stylised_and_reported_level_by_level() {
 
         // The preview preset makes half the size.
         let mut preview = params();
-        assert_eq!(luxfer_stylize_params_preset(&mut preview, LUXFER_STYLIZE_PREVIEW), LUXFER_OK);
-        assert_eq!(luxfer_stylize_params_preset(&mut preview, 4), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_stylize_params_preset(&mut preview, LUXFER_STYLIZE_PREVIEW, 104), LUXFER_OK);
+        assert_eq!(luxfer_stylize_params_preset(&mut preview, 4, 104), LUXFER_INVALID_ARGUMENT);
         assert_eq!(run(stylize, &preview), LUXFER_OK);
         let half = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         assert_eq!(pixels(half).0, 35);
         assert_eq!(report(stylize).halvings, 1);
         for image in images.into_iter().chain([half, art]) {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -173,7 +172,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
 unsafe extern "C" fn cancel_at_first_picture(user: *mut c_void, _: f64) -> i32 {
     let mut image = null_mut();
     let status = unsafe { luxfer_stylize_get_image(user.cast(), LUXFER_STYLIZE_IMAGE_PICTURE, &mut image) };
-    unsafe { luxfer_image_release(image) };
+    unsafe { luxfer_release(image.cast()) };
     i32::from(status == LUXFER_OK)
 }
 
@@ -187,17 +186,17 @@ fn a_cancelled_run_keeps_the_picture_of_its_last_level() {
         let job = made(|out| luxfer_stylize_start(stylize, &params, out));
         assert_eq!(luxfer_stylize_clear_guides(stylize), LUXFER_INVALID_OPERATION, "a job runs");
         assert_eq!(luxfer_job_wait(job, -1, Some(cancel_at_first_picture), stylize.cast()), LUXFER_CANCELLED);
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         let so_far = report(stylize);
-        assert!(so_far.finished == 0 && so_far.levels >= 1 && so_far.halvings >= 1 && so_far.energy > 0.0);
+        assert!(so_far.is_complete == 0 && so_far.levels >= 1 && so_far.halvings >= 1 && so_far.energy > 0.0);
         let picture = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         assert_eq!(pixels(picture).0, 2000 >> so_far.halvings);
-        assert_eq!(luxfer_image_release(picture), LUXFER_OK);
+        assert_eq!(luxfer_release(picture.cast()), LUXFER_OK);
         let mut image = null_mut();
         assert_eq!(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_SOURCES, &mut image), LUXFER_NOT_READY);
         assert_eq!(luxfer_stylize_update(stylize, null_mut(), null_mut(), null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -213,7 +212,7 @@ fn new_paint_is_followed_where_it_is() {
         let job = made(|out| unsafe { luxfer_stylize_update(stylize, artwork, changed, out) });
         unsafe {
             let status = luxfer_job_wait(job, -1, None, null_mut());
-            assert_eq!(luxfer_job_release(job), LUXFER_OK);
+            assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
             status
         }
     };
@@ -231,10 +230,10 @@ fn new_paint_is_followed_where_it_is() {
         assert_eq!(at(40, 20), [1.0, 0.0, 0.0], "the disc is red");
         assert_ne!(at(3, 45), [1.0, 0.0, 0.0], "the ground is not");
         for image in [art, red, changed, picture] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -262,10 +261,10 @@ fn the_rest_of_a_half_painted_picture_is_painted() {
         let right = || sources.chunks_exact(2).enumerate().filter(|(i, _)| i % 60 >= 32);
         assert!(right().all(|(_, s)| s[0] < 30.0), "paint comes from what is painted");
         for image in images.into_iter().chain([scene, painted, art]) {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -284,7 +283,7 @@ fn handles_and_settings_that_are_wrong_are_refused() {
             assert_eq!(luxfer_stylize_start(bad, null(), &mut job), LUXFER_INVALID_ARGUMENT);
             assert_eq!(luxfer_stylize_set_artwork(stylize, bad.cast()) == LUXFER_OK, bad == three.cast());
         }
-        assert_eq!(luxfer_stylize_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_release(null_mut()), LUXFER_OK);
         assert_eq!(luxfer_stylize_set_artwork(stylize, foreign), LUXFER_INVALID_ARGUMENT);
         let add = |name, a, b, weight, range| luxfer_stylize_add_guide(stylize, name, a, b, weight, range);
         for (name, a, b, weight, range, why) in [
@@ -327,11 +326,11 @@ fn handles_and_settings_that_are_wrong_are_refused() {
         assert_eq!(luxfer_stylize_start(stylize, &good, &mut job), LUXFER_INVALID_OPERATION, "no guides");
         assert!(message(context).contains("luxfer_stylize_add_guide"));
         for image in [two, three, foreign] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(other), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(other.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -353,8 +352,8 @@ fn extreme(from: (u32, u32), size: (u32, u32), channels: u32, weight: f32, broke
                 (drawn(context, (from.0, from.1, count), value), drawn(context, (size.0, size.1, count), value));
             let name = std::ffi::CString::new(format!("{first}")).unwrap();
             assert_eq!(luxfer_stylize_add_guide(stylize, name.as_ptr(), a, b, weight, 0), LUXFER_OK);
-            assert_eq!(luxfer_image_release(a), LUXFER_OK);
-            assert_eq!(luxfer_image_release(b), LUXFER_OK);
+            assert_eq!(luxfer_release(a.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(b.cast()), LUXFER_OK);
         }
         let status = run(stylize, &params());
         if status == LUXFER_OK {
@@ -363,13 +362,13 @@ fn extreme(from: (u32, u32), size: (u32, u32), channels: u32, weight: f32, broke
             assert_eq!((width, height), size);
             assert!(data.iter().all(|v| (0.0..=1.0).contains(v)), "every pixel is one of the artwork's");
             assert_eq!(report(stylize).broken_source > 0, broken.is_some_and(|b| !b.is_finite()));
-            assert_eq!(luxfer_image_release(picture), LUXFER_OK);
+            assert_eq!(luxfer_release(picture.cast()), LUXFER_OK);
         } else {
             assert!(!message(context).is_empty());
         }
-        assert_eq!(luxfer_image_release(art), LUXFER_OK);
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(art.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
         status
     }
 }
@@ -427,13 +426,13 @@ fn images_that_do_not_fit_each_other_end_the_job_with_a_message() {
             let name = std::ffi::CString::new(format!("{i}")).unwrap();
             let four = drawn(context, (60, 44, 4), |_, _, _| 0.5);
             status = luxfer_stylize_add_guide(stylize, name.as_ptr(), four, four, 1.0, LUXFER_GUIDE_DATA);
-            assert_eq!(luxfer_image_release(four), LUXFER_OK);
+            assert_eq!(luxfer_release(four.cast()), LUXFER_OK);
         }
         assert_eq!(status, LUXFER_INVALID_ARGUMENT, "more than 60 channels");
         for image in [small, none, wide, broken, art] {
-            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

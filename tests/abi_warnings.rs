@@ -5,7 +5,7 @@ mod host;
 
 use host::{context, made, message, view};
 use luxfer::ffi::*;
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, c_char, c_void};
 use std::ptr::null_mut;
 
 /// A segmentation that must warn: a uniform photo with strokes of both classes.
@@ -17,11 +17,15 @@ fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
     let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
     unsafe {
         assert_eq!(luxfer_segment_set_features(segment, features), LUXFER_OK);
+        let strokes = made(|out| luxfer_strokes_create(context, width, height, out));
         for (y, positive) in [(8.0f32, 1), (16.0, 0), (32.0, 1), (40.0, 0)] {
             let points = [4.0f32, y, 60.0, y];
-            assert_eq!(luxfer_segment_add_stroke(segment, points.as_ptr(), 2, 2.0, positive), LUXFER_OK);
+            let status = luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 2.0, positive);
+            assert_eq!(status, LUXFER_OK);
         }
-        assert_eq!(luxfer_image_release(features), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(luxfer_release(strokes.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
     }
     segment
 }
@@ -30,38 +34,28 @@ fn run(segment: *mut luxfer_segment) {
     let job = made(|out| unsafe { luxfer_segment_start(segment, std::ptr::null(), out) });
     unsafe {
         assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
     }
 }
 
 fn empty() -> luxfer_warning {
-    let mut warning = unsafe { std::mem::zeroed::<luxfer_warning>() };
-    warning.struct_size = size_of::<luxfer_warning>() as u32;
-    warning
+    unsafe { std::mem::zeroed() }
 }
 
 fn list(warnings: *mut luxfer_warnings) -> Vec<luxfer_warning> {
     let mut count = u32::MAX;
-    assert_eq!(unsafe { luxfer_warnings_count(warnings, &mut count) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_warnings_get_count(warnings, &mut count) }, LUXFER_OK);
     let read = |index| {
         let mut warning = empty();
-        assert_eq!(unsafe { luxfer_warnings_get(warnings, index, &mut warning) }, LUXFER_OK);
+        assert_eq!(unsafe { luxfer_warnings_get(warnings, index, &mut warning, size_of_val(&warning)) }, LUXFER_OK);
         warning
     };
     (0..count).map(read).collect()
 }
 
-type Text = unsafe extern "C" fn(*mut luxfer_warnings, u32, *mut c_char, usize, *mut usize) -> luxfer_status;
-
-/// Reads a text: first its length, then its bytes.
-fn text(read: Text, warnings: *mut luxfer_warnings, index: u32) -> String {
-    let mut needed = 0;
-    unsafe {
-        assert_eq!(read(warnings, index, null_mut(), 0, &mut needed), LUXFER_OK);
-        let mut buffer = vec![0 as c_char; needed];
-        assert_eq!(read(warnings, index, buffer.as_mut_ptr(), needed, null_mut()), LUXFER_OK);
-        CStr::from_ptr(buffer.as_ptr()).to_str().unwrap().to_string()
-    }
+/// A text of a list that is alive.
+fn text(text: *const c_char) -> &'static str {
+    unsafe { CStr::from_ptr(text) }.to_str().unwrap()
 }
 
 #[test]
@@ -69,23 +63,21 @@ fn a_doubtful_mask_says_so_with_figure_limit_place_and_advice() {
     let context = context(1);
     let segment = doubtful(context);
     let mut none: *mut luxfer_warnings = null_mut();
-    assert_eq!(unsafe { luxfer_segment_get_warnings(segment, &mut none) }, LUXFER_NOT_READY);
+    assert_eq!(unsafe { luxfer_get_warnings(segment.cast(), &mut none) }, LUXFER_NOT_READY);
     assert!(none.is_null());
     run(segment);
-    let warnings = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
+    let warnings = made(|out| unsafe { luxfer_get_warnings(segment.cast(), out) });
     let found = list(warnings);
     assert!(
         found.iter().any(|w| w.code == LUXFER_WARNING_UNCERTAIN_MASK),
         "{:?}",
         found.iter().map(|w| w.code).collect::<Vec<_>>()
     );
-    for (index, warning) in found.iter().enumerate() {
+    for warning in &found {
         assert_eq!(warning.stage, LUXFER_STAGE_PLANE);
         assert_eq!(warning.severity > warning.limit, warning.code != LUXFER_WARNING_EMPTY_MASK);
         assert_eq!(warning.has_place == 0, warning.place == [0.0; 2]);
-        let index = index as u32;
-        let (what, advice) =
-            (text(luxfer_warnings_get_message, warnings, index), text(luxfer_warnings_get_advice, warnings, index));
+        let (what, advice) = (text(warning.message), text(warning.advice));
         assert!(what.len() > 10 && advice.len() > 10 && what != advice, "{what}; {advice}");
     }
 
@@ -100,53 +92,54 @@ fn a_doubtful_mask_says_so_with_figure_limit_place_and_advice() {
     let within = made(|out| unsafe { luxfer_image_create(context, &within, out) });
     assert_eq!(unsafe { luxfer_segment_set_region(segment, within) }, LUXFER_OK);
     run(segment);
-    let lights = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
+    let lights = made(|out| unsafe { luxfer_get_warnings(segment.cast(), out) });
     assert!(list(lights).iter().all(|w| w.stage == LUXFER_STAGE_LIGHTS));
 
     // The first list stays unchanged after everything else is released.
     unsafe {
-        assert_eq!(luxfer_warnings_release(lights), LUXFER_OK);
-        assert_eq!(luxfer_image_release(within), LUXFER_OK);
-        assert_eq!(luxfer_segment_release(segment), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(lights.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(within.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(segment.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
     let again = list(warnings);
+    assert!(again.iter().zip(&found).all(|(a, b)| text(a.message) == text(b.message)));
     assert_eq!(again.iter().map(|w| w.code).collect::<Vec<_>>(), found.iter().map(|w| w.code).collect::<Vec<_>>());
     unsafe {
-        assert_eq!(luxfer_warnings_retain(warnings), LUXFER_OK);
-        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
-        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
-        assert_eq!(luxfer_warnings_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_retain(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(null_mut()), LUXFER_OK);
     }
 }
 
 #[test]
-fn wrong_arguments_are_errors_and_texts_are_cut() {
+fn wrong_arguments_are_errors() {
     let context = context(1);
     let segment = doubtful(context);
     run(segment);
-    let warnings = made(|out| unsafe { luxfer_segment_get_warnings(segment, out) });
+    let warnings = made(|out| unsafe { luxfer_get_warnings(segment.cast(), out) });
     let count = list(warnings).len() as u32;
     let mut warning = empty();
     unsafe {
-        assert_eq!(luxfer_warnings_get(warnings, count, &mut warning), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_warnings_get(warnings, count, &mut warning, size_of_val(&warning)), LUXFER_NOT_FOUND);
         assert!(message(context).contains("warning"), "{}", message(context));
-        assert_eq!(luxfer_warnings_get_message(warnings, count, null_mut(), 0, null_mut()), LUXFER_NOT_FOUND);
-        assert_eq!(luxfer_warnings_get_advice(warnings, u32::MAX, null_mut(), 0, null_mut()), LUXFER_NOT_FOUND);
-        warning.struct_size = 20;
-        assert_eq!(luxfer_warnings_get(warnings, 0, &mut warning), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_warnings_get(warnings, 0, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_warnings_count(warnings, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_warnings_count(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_segment_get_warnings(segment, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get(warnings, u32::MAX, &mut warning, size_of_val(&warning)), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_warnings_get(warnings, 0, &mut warning, 20), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get(warnings, 0, null_mut(), 0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get_count(warnings, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_warnings_get_count(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_get_warnings(segment.cast(), null_mut()), LUXFER_INVALID_ARGUMENT);
 
-        let whole = text(luxfer_warnings_get_message, warnings, 0);
-        let mut buffer = [1 as c_char; 8];
-        assert_eq!(luxfer_warnings_get_message(warnings, 0, buffer.as_mut_ptr(), 8, null_mut()), LUXFER_OK);
-        assert_eq!(CStr::from_ptr(buffer.as_ptr()).to_str().unwrap(), &whole[..7]);
-        assert_eq!(luxfer_warnings_release(warnings), LUXFER_OK);
-        assert_eq!(luxfer_segment_release(segment), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        // Only stages and scenes have warnings.
+        let mut none = null_mut();
+        for bad in [null_mut(), context.cast(), warnings.cast::<c_void>()] {
+            assert_eq!(luxfer_get_warnings(bad, &mut none), LUXFER_INVALID_ARGUMENT);
+        }
+        assert!(none.is_null());
+        assert_eq!(luxfer_release(warnings.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(segment.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -160,17 +153,17 @@ fn stages_without_a_result_have_no_list() {
         let features = made(|out| luxfer_features_create(context, out));
         let emission = made(|out| luxfer_emission_create(context, out));
         let relight = made(|out| luxfer_relight_create(context, out));
-        assert_eq!(luxfer_transfer_get_warnings(transfer, &mut list), LUXFER_NOT_READY);
-        assert_eq!(luxfer_rectify_get_warnings(rectify, &mut list), LUXFER_NOT_READY);
-        assert_eq!(luxfer_features_get_warnings(features, &mut list), LUXFER_NOT_READY);
-        assert_eq!(luxfer_emission_get_warnings(emission, &mut list), LUXFER_NOT_READY);
-        assert_eq!(luxfer_relight_get_warnings(relight, &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_get_warnings(transfer.cast(), &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_get_warnings(rectify.cast(), &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_get_warnings(features.cast(), &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_get_warnings(emission.cast(), &mut list), LUXFER_NOT_READY);
+        assert_eq!(luxfer_get_warnings(relight.cast(), &mut list), LUXFER_NOT_READY);
         assert!(list.is_null());
-        assert_eq!(luxfer_relight_release(relight), LUXFER_OK);
-        assert_eq!(luxfer_emission_release(emission), LUXFER_OK);
-        assert_eq!(luxfer_features_release(features), LUXFER_OK);
-        assert_eq!(luxfer_rectify_release(rectify), LUXFER_OK);
-        assert_eq!(luxfer_transfer_release(transfer), LUXFER_OK);
-        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        assert_eq!(luxfer_release(relight.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(emission.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(rectify.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(transfer.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

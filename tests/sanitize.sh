@@ -65,7 +65,7 @@ int main() {
     view.data = pixels.data();
     luxfer_image *image = nullptr;
     luxfer_image_create(context.get(), &view, &image);
-    luxfer_image_release(image);
+    luxfer_release(image);
 }
 END
 if run seen "$build/$kind.cpp" >"$build/seen.log" 2>&1 || ! grep -Eq "data race|heap-buffer-overflow" "$build/seen.log"; then

@@ -97,6 +97,11 @@ ITEM = re.compile(
 )
 
 
+def header_text() -> str:
+    """The text of luxfer.h with its parts."""
+    return re.sub(r'#include "(luxfer/\w+\.h)"', lambda m: (HEADER.parent / m[1]).read_text(), HEADER.read_text())
+
+
 def read(text: str) -> Header:
     header, section = Header(), ""
     for match in ITEM.finditer(text):
@@ -187,7 +192,7 @@ class Writer:
         self.header = header
         self.enums = enumerations(header)
         self.is_output = {
-            s for s in header.structs if re.search(r"Set struct_size before|An element of arrays", header.docs[s])
+            s for s in header.structs if f"{s}_init" not in header.functions
         }
 
     def prose(self, text: str) -> str:
@@ -204,7 +209,7 @@ class Writer:
 
     def comment(self, text: str, indent: str) -> str:
         """A docstring of it, wrapped."""
-        text = re.sub(r"\s*(Fill (it|them)|Set struct_size) [^.]*\.(?=$|\s)", "", " ".join(self.prose(text).split()))
+        text = re.sub(r"\s*Fill (it|them) [^.]*\.(?=$|\s)", "", " ".join(self.prose(text).split()))
         if not text:
             return ""
         return (
@@ -317,7 +322,7 @@ class Writer:
 
 
 def main() -> int:
-    writer = Writer(read(HEADER.read_text()))
+    writer = Writer(read(header_text()))
     status = 0
     for name, text in (("_abi.py", writer.abi()), ("types.py", writer.types())):
         path = HERE / "luxfer" / name

@@ -21,7 +21,7 @@ LIBRARY = ROOT / "target" / "release" / NAME
 
 
 def version() -> str:
-    header = (ROOT / "include" / "luxfer.h").read_text()
+    header = (ROOT / "include" / "luxfer" / "core.h").read_text()
     return ".".join(re.search(rf"#define LUXFER_VERSION_{part} (\d+)", header)[1] for part in ("MAJOR", "MINOR", "PATCH"))
 
 

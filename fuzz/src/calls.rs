@@ -97,44 +97,54 @@ impl Arguments<'_> {
         time.as_millis() as i32
     }
 
-    /// A handle of this kind; or none, or what is none, or one of another kind.
-    fn pick(&mut self, kind: &'static str) -> (Option<usize>, *mut u8) {
-        let byte = self.number::<u8>();
+    /// A pointer that is not a handle, for these bytes.
+    fn stranger(&mut self, byte: u8) -> Option<*mut u8> {
         match byte {
-            250 => (None, std::ptr::null_mut()),
-            251 => (None, self.room().cast()),
-            252 => (None, self.room().wrapping_byte_add(1).cast()),
-            253.. => (
-                None,
-                self.handles
-                    .iter()
-                    .filter(|(other, _)| **other != kind)
-                    .flat_map(|(_, h)| h)
-                    .next()
-                    .copied()
-                    .unwrap_or_default(),
-            ),
-            _ => match self.handles.get(kind).filter(|handles| !handles.is_empty()) {
-                Some(handles) => (Some(usize::from(byte) % handles.len()), handles[usize::from(byte) % handles.len()]),
-                None => (None, std::ptr::null_mut()),
-            },
+            250 => Some(std::ptr::null_mut()),
+            251 => Some(self.room().cast()),
+            252 => Some(self.room().wrapping_byte_add(1).cast()),
+            _ => None,
         }
     }
 
+    /// A handle of this kind or of another, NULL, or a pointer that is not a handle.
     fn handle(&mut self, kind: &'static str) -> *mut u8 {
-        self.pick(kind).1
+        let byte = self.number::<u8>();
+        if let Some(stranger) = self.stranger(byte) {
+            return stranger;
+        }
+        let mut others = self.handles.iter().filter(|(other, _)| **other != kind).flat_map(|(_, handles)| handles);
+        match (byte, self.handles.get(kind)) {
+            (253.., _) => others.next().copied().unwrap_or_default(),
+            (_, Some(handles)) if !handles.is_empty() => handles[usize::from(byte) % handles.len()],
+            _ => std::ptr::null_mut(),
+        }
     }
 
-    fn retained(&mut self, kind: &'static str) -> *mut u8 {
-        let (place, handle) = self.pick(kind);
-        self.retained = place.map(|_| (kind, handle));
-        handle
+    /// The place of a handle of any kind, or else a pointer that is not a handle.
+    fn pick(&mut self) -> Result<(&'static str, usize), *mut u8> {
+        let byte = self.number::<u8>();
+        if let Some(stranger) = self.stranger(byte) {
+            return Err(stranger);
+        }
+        let all = || self.handles.iter().flat_map(|(kind, handles)| (0..handles.len()).map(|i| (*kind, i)));
+        all().nth(usize::from(byte) % all().count().max(1)).ok_or(std::ptr::null_mut())
     }
 
-    fn given_back(&mut self, kind: &'static str) -> *mut u8 {
-        match self.pick(kind) {
-            (Some(place), _) => self.handles.get_mut(kind).expect("it was picked").remove(place),
-            (None, stranger) => stranger,
+    fn any(&mut self) -> *mut u8 {
+        self.pick().map_or_else(|stranger| stranger, |(kind, place)| self.handles[kind][place])
+    }
+
+    fn retained(&mut self) -> *mut u8 {
+        let picked = self.pick().map(|(kind, place)| (kind, self.handles[kind][place]));
+        self.retained = picked.ok();
+        picked.map_or_else(|stranger| stranger, |(_, handle)| handle)
+    }
+
+    fn given_back(&mut self) -> *mut u8 {
+        match self.pick() {
+            Ok((kind, place)) => self.handles.get_mut(kind).expect("it was picked").remove(place),
+            Err(stranger) => stranger,
         }
     }
 
@@ -198,7 +208,7 @@ impl Arguments<'_> {
     }
 
     fn record(&mut self, record: &'static Record) -> *mut u8 {
-        let base = self.number::<u8>() % 4;
+        let base = self.number::<u8>() % 3;
         if base == 0 {
             return std::ptr::null_mut();
         }
@@ -247,13 +257,13 @@ impl Arguments<'_> {
         [None, Some(take as _), Some(refuse as _)][usize::from(self.number::<u8>() % 3)]
     }
 
-    /// Gives back all that is left, kind by kind in the table's order; none may be refused.
+    /// Releases every handle that is left; all of these calls must succeed.
     fn release(&mut self) {
-        for (name, call) in CALLS.iter().filter(|(name, _)| name.ends_with("_release")) {
-            let kind = name.strip_suffix("_release").expect("filtered by it");
-            while self.handles.get(kind).is_some_and(|handles| !handles.is_empty()) {
-                self.input = &[0];
-                assert!(check(name, call(self)), "{name} of a live handle");
+        for (kind, handles) in std::mem::take(&mut self.handles) {
+            for handle in handles {
+                // SAFETY: a live handle with a reference of ours.
+                let status = unsafe { luxfer_release(handle.cast()) };
+                assert!(check("luxfer_release", status), "luxfer_release of a live {kind}");
             }
         }
     }

@@ -51,8 +51,8 @@ fn context() -> *mut luxfer_context {
 /// A scene to render, as seeds.py has it.
 fn demo() -> *mut luxfer_scene {
     static SCENE: LazyLock<Shared<luxfer_scene>> = LazyLock::new(|| {
-        let make = |out| unsafe { luxfer_demo_scene(context(), LUXFER_DEMO_SPHERE_ON_TABLE, out) };
-        Shared(made("luxfer_demo_scene", make).expect("a scene"))
+        let make = |out| unsafe { luxfer_demo_create_scene(context(), LUXFER_DEMO_SPHERE_ON_TABLE, out) };
+        Shared(made("luxfer_demo_create_scene", make).expect("a scene"))
     });
     SCENE.0
 }
@@ -72,7 +72,7 @@ pub fn image(data: &[u8]) {
     let load =
         |out| unsafe { luxfer_image_load_memory(context(), data.as_ptr().cast(), data.len(), LUXFER_COLOUR_SRGB, out) };
     if let Some(image) = made("luxfer_image_load_memory", load) {
-        unsafe { luxfer_image_release(image) };
+        unsafe { luxfer_release(image.cast()) };
     }
 }
 
@@ -81,7 +81,7 @@ pub fn scene(data: &[u8]) {
     extern "C" fn take(_: *mut c_void, _: *const c_void, _: usize) -> i32 {
         0
     }
-    let load = |out| unsafe { luxfer_scene_load_memory(context(), data.as_ptr().cast(), data.len(), null(), out) };
+    let load = |out| unsafe { luxfer_scene_load_memory(context(), data.as_ptr().cast(), data.len(), null(), null(), out) };
     let Some(scene) = made("luxfer_scene_load_memory", load) else { return };
     let rays = [[0.0, -1.0, 0.1], [0.1, 0.0, -1.0]].map(|direction| luxfer_ray {
         origin: [0.01, 0.5, 0.02],
@@ -92,10 +92,9 @@ pub fn scene(data: &[u8]) {
         let mut hits: [luxfer_hit; 2] = std::mem::zeroed();
         check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, hits.as_mut_ptr()));
         let mut needs: luxfer_requirements = std::mem::zeroed();
-        needs.struct_size = size_of_val(&needs) as u32;
-        check("luxfer_scene_requirements", luxfer_scene_requirements(scene, 0.01, &mut needs));
+        check("luxfer_scene_get_requirements", luxfer_scene_get_requirements(scene, 0.01, &mut needs, size_of_val(&needs)));
         check("luxfer_scene_export_memory", luxfer_scene_export_memory(scene, Some(take), null_mut()));
-        luxfer_scene_release(scene);
+        luxfer_release(scene.cast());
     }
 }
 
@@ -107,7 +106,7 @@ pub fn distribution(data: &[u8], format: luxfer_distribution_format) {
     unsafe {
         let mut intensity = 0.0;
         check("luxfer_distribution_get_intensity", luxfer_distribution_get_intensity(lamp, 0.3, 0.7, &mut intensity));
-        luxfer_distribution_release(lamp);
+        luxfer_release(lamp.cast());
     }
 }
 
@@ -120,9 +119,9 @@ pub fn network(data: &[u8]) {
             let photo = photo();
             check("luxfer_features_set_photo", luxfer_features_set_photo(stage, photo));
             wait(made("luxfer_features_start", |out| luxfer_features_start(stage, null(), out)));
-            luxfer_image_release(photo);
+            luxfer_release(photo.cast());
         }
-        luxfer_features_release(stage);
+        luxfer_release(stage.cast());
     }
 }
 
@@ -136,7 +135,7 @@ pub fn expression(data: &[u8]) {
             check("luxfer_render_set_scene", luxfer_render_set_scene(stage, demo()));
             wait(made("luxfer_render_start", |out| luxfer_render_start(stage, &small(), out)));
         }
-        luxfer_render_release(stage);
+        luxfer_release(stage.cast());
     }
 }
 
@@ -144,12 +143,9 @@ pub fn expression(data: &[u8]) {
 pub fn strokes(data: &[u8]) {
     let Ok(text) = CString::new(data) else { return };
     unsafe {
-        let (stage, photo) = (made("luxfer_features_create", |out| luxfer_features_create(context(), out)), photo());
-        let stage = stage.expect("a stage");
-        check("luxfer_features_set_photo", luxfer_features_set_photo(stage, photo));
-        check("luxfer_features_add_strokes_text", luxfer_features_add_strokes_text(stage, text.as_ptr()));
-        luxfer_image_release(photo);
-        luxfer_features_release(stage);
+        let strokes = made("luxfer_strokes_create", |out| luxfer_strokes_create(context(), 48, 32, out)).expect("strokes");
+        check("luxfer_strokes_add_text", luxfer_strokes_add_text(strokes, text.as_ptr()));
+        luxfer_release(strokes.cast());
     }
 }
 
@@ -163,7 +159,7 @@ pub fn part(data: &[u8]) {
                 wait(made("luxfer_render_start_merge", |out| luxfer_render_start_merge(stage, &small(), out)));
             }
         });
-        luxfer_render_release(stage);
+        luxfer_release(stage.cast());
     }
 }
 
@@ -172,7 +168,7 @@ unsafe fn wait(job: Option<*mut luxfer_job>) {
     if let Some(job) = job {
         unsafe {
             check("luxfer_job_wait", luxfer_job_wait(job, 1000, None, null_mut()));
-            luxfer_job_release(job);
+            luxfer_release(job.cast());
         }
     }
 }

@@ -126,7 +126,7 @@ impl Params {
         check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
         check_range("emission.offset.x", self.offset.x, -1e6, 1e6)?;
         check_range("emission.offset.y", self.offset.y, -1e6, 1e6)?;
-        check_range("emission.least_regularity", self.least_regularity, 0.0, 1.0)?;
+        check_range("emission.min_regularity", self.least_regularity, 0.0, 1.0)?;
         if self.max_magnification != 0.0 {
             check_range("emission.max_magnification", self.max_magnification, 1.0, 1e6)?;
         }

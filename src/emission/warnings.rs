@@ -68,7 +68,7 @@ impl Emission {
         let is_free = self.continuation == Continuation::Free;
         let message =
             || format!("the lamps form no lattice, and the texture differs from the photo by {}", percent(self.error));
-        let advice = "lower least_regularity of the emission if the lamps are regular";
+        let advice = "lower min_regularity of the emission if the lamps are regular";
         is_free.then(|| Warning::above(Code::NoLattice, self.error, MAX_FREE_ERROR, message, advice)).flatten()
     }
 }

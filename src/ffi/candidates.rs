@@ -7,13 +7,13 @@
 use super::context::Context;
 use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{Report, Versioned};
-use super::pointer::{Out, copy_text};
+use super::params::{Report, Versioned, versioned};
+use super::pointer::{Out, c_string};
 use super::scene::{luxfer_scene, missing};
 use super::status::luxfer_status;
 use crate::error::Result;
 use crate::scene::surface::{self, Candidate, Kind};
-use std::ffi::c_char;
+use std::ffi::{CString, c_char};
 use std::sync::Arc;
 
 /// A list of candidates. See luxfer_scene_get_candidates.
@@ -28,11 +28,11 @@ pub const LUXFER_CANDIDATE_OBJECT: luxfer_candidate_kind = 0;
 /// All triangles of one material.
 pub const LUXFER_CANDIDATE_MATERIAL: luxfer_candidate_kind = 1;
 
-/// An object or a material of a scene. Set struct_size before the call.
+/// An object or a material of a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_candidate {
-    /// sizeof(luxfer_candidate), set by the caller.
+    /// sizeof(luxfer_candidate), set by the function that fills the struct.
     pub struct_size: u32,
     /// LUXFER_CANDIDATE_ value.
     pub kind: luxfer_candidate_kind,
@@ -57,36 +57,44 @@ pub struct luxfer_candidate {
     pub score: f32,
     /// 0.
     pub reserved: u32,
+    /// Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates.
+    pub name: *const c_char,
+    /// The reason for the score, in English and with its figures.
+    pub reason: *const c_char,
 }
 
-const SIZE: usize = 56;
+const SIZE: usize = 72;
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_candidate {
-    const NAME: &'static str = "luxfer_candidate";
-    const SIZES: &'static [usize] = &[SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: SIZE as u32,
-            kind: LUXFER_CANDIDATE_OBJECT,
-            index: 0,
-            triangles: 0,
-            area: 0.0,
-            level_area: 0.0,
-            height: 0.0,
-            low: 0.0,
-            high: 0.0,
-            normal: [0.0; 3],
-            score: 0.0,
-            reserved: 0,
-        }
+versioned!(luxfer_candidate, [SIZE], {
+    Self {
+        struct_size: SIZE as u32,
+        kind: LUXFER_CANDIDATE_OBJECT,
+        index: 0,
+        triangles: 0,
+        area: 0.0,
+        level_area: 0.0,
+        height: 0.0,
+        low: 0.0,
+        high: 0.0,
+        normal: [0.0; 3],
+        score: 0.0,
+        reserved: 0,
+        name: std::ptr::null(),
+        reason: std::ptr::null(),
     }
-}
+});
 
 /// The candidates behind a handle.
 pub(super) struct Candidates {
     context: Arc<Context>,
-    list: Vec<Candidate>,
+    list: Vec<Entry>,
+}
+
+/// A candidate, and its texts as C strings.
+struct Entry {
+    candidate: Candidate,
+    name: CString,
+    reason: CString,
 }
 
 impl Owned for Candidates {
@@ -102,7 +110,7 @@ impl Handle for luxfer_candidates {
 }
 
 impl Candidates {
-    fn get(&self, index: u32) -> Result<&Candidate> {
+    fn get(&self, index: u32) -> Result<&Entry> {
         self.list.get(index as usize).ok_or_else(|| missing("candidate", index, self.list.len()))
     }
 }
@@ -119,7 +127,12 @@ pub unsafe extern "C" fn luxfer_scene_get_candidates(
         let out = Out::new(candidates, "candidates")?;
         let scene = object.snapshot();
         scene.validate()?;
-        let list = surface::candidates(&scene)?;
+        let entry = |candidate: Candidate| Entry {
+            name: c_string(&candidate.name),
+            reason: c_string(&candidate.reason),
+            candidate,
+        };
+        let list = surface::candidates(&scene)?.into_iter().map(entry).collect();
         out.set(handle::give(Arc::new(Candidates { context: object.context().clone(), list })));
         Ok(())
     })
@@ -127,24 +140,29 @@ pub unsafe extern "C" fn luxfer_scene_get_candidates(
 
 /// Counts the candidates of a list. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_count(candidates: *mut luxfer_candidates, count: *mut u32) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_candidates_get_count(
+    candidates: *mut luxfer_candidates,
+    count: *mut u32,
+) -> luxfer_status {
     enter(candidates, |object| {
         Out::new(count, "count")?.set(u32::try_from(object.list.len()).unwrap_or(u32::MAX));
         Ok(())
     })
 }
 
-/// Gets the figures of a candidate. Any thread.
+/// Gets a candidate of a list. size is sizeof *candidate. Any thread.
 /// LUXFER_NOT_FOUND if there is no such candidate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_candidates_get(
     candidates: *mut luxfer_candidates,
     index: u32,
     candidate: *mut luxfer_candidate,
+    size: usize,
 ) -> luxfer_status {
     enter(candidates, |object| {
-        let out = Report::new(candidate)?;
-        let found = object.get(index)?;
+        let out = Report::new(candidate, size)?;
+        let entry = object.get(index)?;
+        let found = &entry.candidate;
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         out.set(luxfer_candidate {
             kind: match found.kind {
@@ -160,47 +178,10 @@ pub unsafe extern "C" fn luxfer_candidates_get(
             high: found.high as f32,
             normal: found.normal.as_vec3().to_array(),
             score: found.score as f32,
+            name: entry.name.as_ptr(),
+            reason: entry.reason.as_ptr(),
             ..luxfer_candidate::defaults()
         });
         Ok(())
     })
-}
-
-/// Copies the name of a candidate into buffer, as luxfer_context_last_error copies a message. Any thread.
-/// LUXFER_NOT_FOUND if there is no such candidate.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_get_name(
-    candidates: *mut luxfer_candidates,
-    index: u32,
-    buffer: *mut c_char,
-    capacity: usize,
-    needed: *mut usize,
-) -> luxfer_status {
-    enter(candidates, |object| copy_text(&object.get(index)?.name, buffer, capacity, needed))
-}
-
-/// Copies the reason for the score of a candidate, in English and with its figures, as luxfer_candidates_get_name
-/// copies the name. Any thread.
-/// LUXFER_NOT_FOUND if there is no such candidate.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_get_reason(
-    candidates: *mut luxfer_candidates,
-    index: u32,
-    buffer: *mut c_char,
-    capacity: usize,
-    needed: *mut usize,
-) -> luxfer_status {
-    enter(candidates, |object| copy_text(&object.get(index)?.reason, buffer, capacity, needed))
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_retain(candidates: *mut luxfer_candidates) -> luxfer_status {
-    handle::retain(candidates)
-}
-
-/// Gives a reference back. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_candidates_release(candidates: *mut luxfer_candidates) -> luxfer_status {
-    handle::release(candidates)
 }

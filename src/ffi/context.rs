@@ -4,9 +4,12 @@
 //! context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
 //! (LUXFER_INVALID_ARGUMENT).
 //!
-//! Handles of every kind are reference counted: X_retain adds a reference, X_release removes one, and removing the last
-//! reference frees the object. Releasing NULL does nothing. Each call checks its handles: NULL and a handle of another
-//! kind give LUXFER_INVALID_ARGUMENT; so does a released handle in most cases, but not if its memory has been reused.
+//! Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
+//! reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was
+//! built with an older header works with a newer library: fields that it does not know keep their defaults.
+//!
+//! Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
+//! handle in most cases, but not if its memory has been reused.
 //!
 //! Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
 //! use different objects at the same time, and also the same object: calls that change an object wait for each other.
@@ -18,8 +21,8 @@
 //! allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
 //!
 //! Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
-//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_last_error gives the reason, and X_release returns
-//! LUXFER_OK and frees nothing. A child may create contexts of its own.
+//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
+//! luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
 //!
 //! Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
 //!
@@ -31,7 +34,7 @@ pub(super) use super::shared_context::{Charge, Context};
 
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::{Out, copy_text};
 use super::shared_context::INHERITED;
 use super::status::luxfer_status;
@@ -59,14 +62,7 @@ pub struct luxfer_context_params {
     pub memory_budget_mib: u64,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_context_params {
-    const NAME: &'static str = "luxfer_context_params";
-    const SIZES: &'static [usize] = &[16];
-    fn defaults() -> Self {
-        Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 }
-    }
-}
+versioned!(luxfer_context_params, [16], { Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 } });
 
 /// A handle's own reference to its context.
 pub(super) struct ContextObject(Arc<Context>);
@@ -109,26 +105,13 @@ pub unsafe extern "C" fn luxfer_context_create(
     })
 }
 
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_context_retain(context: *mut luxfer_context) -> luxfer_status {
-    handle::retain(context)
-}
-
-/// Removes a reference. When the context and all objects created in it are released, the call waits until the worker
-/// threads have ended. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_context_release(context: *mut luxfer_context) -> luxfer_status {
-    handle::release(context)
-}
-
 /// Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,
 /// truncated to capacity bytes. *needed, unless NULL, receives the capacity that the whole message needs. If no call
 /// has failed, the message is empty. A message stays until the thread's next failure; the messages of the 256 threads
 /// that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
 /// valid leaves no message. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_context_last_error(
+pub unsafe extern "C" fn luxfer_context_get_last_error(
     context: *mut luxfer_context,
     buffer: *mut c_char,
     capacity: usize,

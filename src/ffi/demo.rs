@@ -40,7 +40,7 @@ pub const LUXFER_ARTWORK_PAINT: luxfer_artwork = 2;
 /// Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_demo_scene(
+pub unsafe extern "C" fn luxfer_demo_create_scene(
     context: *mut luxfer_context,
     which: luxfer_demo,
     scene: *mut *mut luxfer_scene,
@@ -57,7 +57,7 @@ pub unsafe extern "C" fn luxfer_demo_scene(
 /// *image. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_demo_artwork(
+pub unsafe extern "C" fn luxfer_demo_create_artwork(
     guides: *mut luxfer_guides,
     style: luxfer_artwork,
     image: *mut *mut luxfer_image,

@@ -8,7 +8,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::Out;
 use super::stage::Stage;
 use super::status::luxfer_status;
@@ -26,7 +26,7 @@ pub struct luxfer_demo_photo {
 pub type luxfer_demo_photo_image = i32;
 /// The photo: linear RGB, 1 = display white; its lamps are clipped.
 pub const LUXFER_DEMO_PHOTO_PICTURE: luxfer_demo_photo_image = 0;
-/// The strokes on it, in the colours of luxfer_segment_add_strokes_image.
+/// The strokes on it, in the colours of luxfer_strokes_add_image.
 pub const LUXFER_DEMO_PHOTO_STROKES: luxfer_demo_photo_image = 1;
 
 /// Settings of the photo. Fill them with luxfer_demo_photo_params_init.
@@ -45,15 +45,10 @@ pub struct luxfer_demo_photo_params {
     pub seed: u64,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_demo_photo_params {
-    const NAME: &'static str = "luxfer_demo_photo_params";
-    const SIZES: &'static [usize] = &[24];
-    fn defaults() -> Self {
-        let d = photo::Params::default();
-        Self { struct_size: 24, width: d.width as u32, height: d.height as u32, samples: d.samples, seed: d.seed }
-    }
-}
+versioned!(luxfer_demo_photo_params, [24], {
+    let d = photo::Params::default();
+    Self { struct_size: 24, width: d.width as u32, height: d.height as u32, samples: d.samples, seed: d.seed }
+});
 
 /// The photo and the drawing of its strokes.
 pub(super) struct Taken {
@@ -132,16 +127,4 @@ pub unsafe extern "C" fn luxfer_demo_photo_get_image(
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_demo_photo_retain(demo: *mut luxfer_demo_photo) -> luxfer_status {
-    handle::retain(demo)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_demo_photo_release(demo: *mut luxfer_demo_photo) -> luxfer_status {
-    handle::release(demo)
 }

@@ -6,46 +6,39 @@
 use super::context::luxfer_context;
 use super::geometry::{list, numbers};
 use super::guard::enter;
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, bytes_mut, copy_text};
 use super::scene::missing;
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::photometry::presets::{PRESETS, Preset};
-use crate::photometry::{power_density, temperature};
+use crate::photometry::temperature;
 use crate::relight::{MAX_PRIMARIES, mix_primaries};
 use glam::DVec3;
 use std::ffi::c_char;
 
-/// A colour mixed from primaries. Set struct_size before the call.
+/// A colour mixed from primaries.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_mixture {
-    /// sizeof(luxfer_mixture), set by the caller.
+    /// sizeof(luxfer_mixture), set by the function that fills the struct.
     pub struct_size: u32,
     /// 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
     /// mixture.
-    pub reached: u32,
+    pub in_gamut: u32,
     /// Linear colour of the mixture.
     pub colour: [f64; 3],
     /// CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
     pub delta_e: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_mixture {
-    const NAME: &'static str = "luxfer_mixture";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self { struct_size: 40, reached: 0, colour: [0.0; 3], delta_e: 0.0 }
-    }
-}
+versioned!(luxfer_mixture, [40], { Self { struct_size: 40, in_gamut: 0, colour: [0.0; 3], delta_e: 0.0 } });
 
-/// The blackbody light that fits a target best. Set struct_size before the call.
+/// The blackbody light that fits a target best.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_temperature_fit {
-    /// sizeof(luxfer_temperature_fit), set by the caller.
+    /// sizeof(luxfer_temperature_fit), set by the function that fills the struct.
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
@@ -59,21 +52,16 @@ pub struct luxfer_temperature_fit {
     pub delta_e: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_temperature_fit {
-    const NAME: &'static str = "luxfer_temperature_fit";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        Self { struct_size: 56, reserved: 0, kelvin: 0.0, luminance: 0.0, achieved: [0.0; 3], delta_e: 0.0 }
-    }
-}
+versioned!(luxfer_temperature_fit, [56], {
+    Self { struct_size: 56, reserved: 0, kelvin: 0.0, luminance: 0.0, achieved: [0.0; 3], delta_e: 0.0 }
+});
 
 /// Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the standard itself
-/// is binding. Set struct_size before the call.
+/// is binding.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_preset {
-    /// sizeof(luxfer_preset), set by the caller.
+    /// sizeof(luxfer_preset), set by the function that fills the struct.
     pub struct_size: u32,
     /// Year of the edition of the standard.
     pub edition: u32,
@@ -91,20 +79,15 @@ pub struct luxfer_preset {
     pub ceiling: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_preset {
-    const NAME: &'static str = "luxfer_preset";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        let (illuminance, glare, uniformity, rendering) = (0.0, 0.0, 0.0, 0.0);
-        Self { struct_size: 56, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0 }
-    }
-}
+versioned!(luxfer_preset, [56], {
+    let (illuminance, glare, uniformity, rendering) = (0.0, 0.0, 0.0, 0.0);
+    Self { struct_size: 56, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0 }
+});
 
-/// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
-/// linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
-/// drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the colour, the one
-/// with the smallest sum of squared drive levels is returned. Any thread.
+/// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds
+/// the linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1,
+/// 64]. drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the
+/// colour, the one with the smallest sum of squared drive levels is returned. size is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
@@ -115,9 +98,10 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
     colour: *const f64,
     drives: *mut f64,
     mixture: *mut luxfer_mixture,
+    size: usize,
 ) -> luxfer_status {
     enter(context, |_| {
-        let out = Report::new(mixture)?;
+        let out = Report::new(mixture, size)?;
         check_range("count", count as usize, 1, MAX_PRIMARIES)?;
         let primaries = list(primaries, 3 * count as usize, "primaries")?;
         let primaries: Vec<DVec3> = primaries.chunks_exact(3).map(DVec3::from_slice).collect();
@@ -127,7 +111,7 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
             place.copy_from_slice(&drive.to_ne_bytes());
         }
         out.set(luxfer_mixture {
-            reached: u32::from(mixed.reached),
+            in_gamut: u32::from(mixed.reached),
             colour: mixed.colour.to_array(),
             delta_e: mixed.delta_e,
             ..luxfer_mixture::defaults()
@@ -138,7 +122,8 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
 
 /// Finds the temperature and luminance of the blackbody light that brings a target nearest to a mean radiance. Each
 /// array holds three channels: response is the response to a white emission, from luxfer_relight_get_report or
-/// luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. Any thread.
+/// luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. size is
+/// sizeof *fit. Any thread.
 /// LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(
@@ -147,9 +132,10 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
     background: *const f64,
     target: *const f64,
     fit: *mut luxfer_temperature_fit,
+    size: usize,
 ) -> luxfer_status {
     enter(context, |_| {
-        let out = Report::new(fit)?;
+        let out = Report::new(fit, size)?;
         let vector = |place, name: &str| -> Result<DVec3> {
             let vector = DVec3::from_array(numbers(place, name)?);
             if vector.is_finite() {
@@ -174,46 +160,26 @@ pub unsafe extern "C" fn luxfer_fit_temperature(
     })
 }
 
-/// Computes the electric power per floor area, in W/m²: flux is the luminous flux in lumens, >= 0, efficacy that of the
-/// luminaires in lumens per watt, area in m², both > 0. Any thread.
-/// LUXFER_INVALID_ARGUMENT if a number is out of range.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_power_density(
-    context: *mut luxfer_context,
-    flux: f64,
-    efficacy: f64,
-    area: f64,
-    density: *mut f64,
-) -> luxfer_status {
-    enter(context, |_| {
-        let out = Out::new(density, "density")?;
-        check_range("flux", flux, 0.0, f64::MAX)?;
-        check_range("efficacy", efficacy, f64::MIN_POSITIVE, f64::MAX)?;
-        check_range("area", area, f64::MIN_POSITIVE, f64::MAX)?;
-        out.set(power_density(flux, efficacy, area));
-        Ok(())
-    })
-}
-
 /// Gets the number of presets. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_preset_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_preset_get_count(context: *mut luxfer_context, count: *mut u32) -> luxfer_status {
     enter(context, |_| {
         Out::new(count, "count")?.set(PRESETS.len() as u32);
         Ok(())
     })
 }
 
-/// Gets the requirements of a preset. Any thread.
+/// Gets the requirements of a preset. size is sizeof *preset. Any thread.
 /// LUXFER_NOT_FOUND if there is no such preset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_preset_get(
     context: *mut luxfer_context,
     index: u32,
     preset: *mut luxfer_preset,
+    size: usize,
 ) -> luxfer_status {
     enter(context, |_| {
-        let out = Report::new(preset)?;
+        let out = Report::new(preset, size)?;
         let p = find(index)?;
         out.set(luxfer_preset {
             edition: p.edition,
@@ -233,7 +199,7 @@ pub unsafe extern "C" fn luxfer_preset_get(
 /// capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
 /// LUXFER_NOT_FOUND if there is no such preset.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_preset_name(
+pub unsafe extern "C" fn luxfer_preset_get_name(
     context: *mut luxfer_context,
     index: u32,
     buffer: *mut c_char,

@@ -6,7 +6,7 @@
 use super::context::{Context, luxfer_context};
 use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, bytes, copy_text, text};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -28,11 +28,11 @@ pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
 /// EULUMDAT.
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 
-/// Summary of a distribution. Set struct_size before the call.
+/// Summary of a distribution.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_distribution_report {
-    /// sizeof(luxfer_distribution_report), set by the caller.
+    /// sizeof(luxfer_distribution_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of C planes.
     pub planes: u32,
@@ -50,23 +50,9 @@ pub struct luxfer_distribution_report {
     pub size: [f64; 3],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_distribution_report {
-    const NAME: &'static str = "luxfer_distribution_report";
-    const SIZES: &'static [usize] = &[64];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 64,
-            planes: 0,
-            angles: 0,
-            reserved: 0,
-            flux: 0.0,
-            lamp_flux: 0.0,
-            watts: 0.0,
-            size: [0.0; 3],
-        }
-    }
-}
+versioned!(luxfer_distribution_report, [64], {
+    Self { struct_size: 64, planes: 0, angles: 0, reserved: 0, flux: 0.0, lamp_flux: 0.0, watts: 0.0, size: [0.0; 3] }
+});
 
 pub(super) struct Distribution {
     context: Arc<Context>,
@@ -170,15 +156,16 @@ pub unsafe extern "C" fn luxfer_distribution_save(
     })
 }
 
-/// Gets the summary of a distribution. Any thread.
+/// Gets the summary of a distribution. size is sizeof *report. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_report(
     distribution: *mut luxfer_distribution,
     report: *mut luxfer_distribution_report,
+    size: usize,
 ) -> luxfer_status {
     enter(distribution, |object| {
         let l = &object.luminaire;
-        Report::new(report)?.set(luxfer_distribution_report {
+        Report::new(report, size)?.set(luxfer_distribution_report {
             planes: l.planes.len() as u32,
             angles: l.gammas.len() as u32,
             flux: l.flux(),
@@ -220,16 +207,4 @@ pub unsafe extern "C" fn luxfer_distribution_get_intensity(
         out.set(object.luminaire.intensity(c, gamma));
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_distribution_retain(distribution: *mut luxfer_distribution) -> luxfer_status {
-    handle::retain(distribution)
-}
-
-/// Removes a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_distribution_release(distribution: *mut luxfer_distribution) -> luxfer_status {
-    handle::release(distribution)
 }

@@ -10,7 +10,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
@@ -43,7 +43,7 @@ pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 pub type luxfer_emission_law = i32;
 /// The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that the correlation of the lights tells, by least_regularity.
+/// The law that the correlation of the lights tells, by min_regularity.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// A lattice of two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
@@ -78,7 +78,7 @@ pub struct luxfer_emission_params {
     pub seed: u64,
     /// Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
     /// continued exactly; at 1 no repetition is, and patches may lie anywhere.
-    pub least_regularity: f32,
+    pub min_regularity: f32,
     /// 1, the default: every lamp stays in one piece; 0: seams may cut lamps.
     pub whole_lamps: u32,
     /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
@@ -112,36 +112,31 @@ pub struct luxfer_emission_params {
     pub max_magnification: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_emission_params {
-    const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[104];
-    fn defaults() -> Self {
-        let d = emission::Params::default();
-        Self {
-            struct_size: 104,
-            width: d.width as u32,
-            height: d.height as u32,
-            block: d.block as u32,
-            scale: d.scale,
-            working_side: d.working_side as u32,
-            metadata_weight: d.metadata_weight,
-            seed: d.seed,
-            least_regularity: d.least_regularity,
-            whole_lamps: u32::from(d.whole_lamps),
-            offset: d.offset.to_array(),
-            clip_level: d.clip_level,
-            even_lamps: u32::from(d.even_lamps),
-            tileable: u32::from(d.tileable),
-            centred: u32::from(d.centred),
-            candidates: d.candidates as u32,
-            reserved: 0,
-            law: LUXFER_LAW_BEST,
-            clean_lamps: u32::from(d.clean_lamps),
-            max_magnification: d.max_magnification,
-        }
+versioned!(luxfer_emission_params, [104], {
+    let d = emission::Params::default();
+    Self {
+        struct_size: 104,
+        width: d.width as u32,
+        height: d.height as u32,
+        block: d.block as u32,
+        scale: d.scale,
+        working_side: d.working_side as u32,
+        metadata_weight: d.metadata_weight,
+        seed: d.seed,
+        min_regularity: d.least_regularity,
+        whole_lamps: u32::from(d.whole_lamps),
+        offset: d.offset.to_array(),
+        clip_level: d.clip_level,
+        even_lamps: u32::from(d.even_lamps),
+        tileable: u32::from(d.tileable),
+        centred: u32::from(d.centred),
+        candidates: d.candidates as u32,
+        reserved: 0,
+        law: LUXFER_LAW_BEST,
+        clean_lamps: u32::from(d.clean_lamps),
+        max_magnification: d.max_magnification,
     }
-}
+});
 
 impl luxfer_emission_params {
     pub(super) fn params(&self) -> Result<emission::Params> {
@@ -156,7 +151,7 @@ impl luxfer_emission_params {
             working_side: self.working_side as usize,
             metadata_weight: self.metadata_weight,
             offset: DVec2::from_array(self.offset),
-            least_regularity: self.least_regularity,
+            least_regularity: self.min_regularity,
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
             even_lamps: params::flag(self.even_lamps, "even_lamps")?,
             tileable: params::flag(self.tileable, "tileable")?,
@@ -171,11 +166,11 @@ impl luxfer_emission_params {
     }
 }
 
-/// Quality of the texture. Set struct_size before the call.
+/// Quality of the texture.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
-    /// sizeof(luxfer_emission_report), set by the caller.
+    /// sizeof(luxfer_emission_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of luminaires; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
@@ -205,31 +200,26 @@ pub struct luxfer_emission_report {
     pub margin: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_emission_report {
-    const NAME: &'static str = "luxfer_emission_report";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 56,
-            luminaires: 0,
-            error: 0.0,
-            regularity: 0.0,
-            exemplar_lamps: 0,
-            sampling_error: 0.0,
-            law: LUXFER_LAW_COPY,
-            runner_up: LUXFER_LAW_COPY,
-            law_score: f64::NAN,
-            margin: f64::NAN,
-        }
+versioned!(luxfer_emission_report, [56], {
+    Self {
+        struct_size: 56,
+        luminaires: 0,
+        error: 0.0,
+        regularity: 0.0,
+        exemplar_lamps: 0,
+        sampling_error: 0.0,
+        law: LUXFER_LAW_COPY,
+        runner_up: LUXFER_LAW_COPY,
+        law_score: f64::NAN,
+        margin: f64::NAN,
     }
-}
+});
 
-/// A lamp of the texture. Set struct_size before the call.
+/// A lamp of the texture.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_luminaire {
-    /// sizeof(luxfer_luminaire), set by the caller.
+    /// sizeof(luxfer_luminaire), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of corners of the outline.
     pub corners: u32,
@@ -250,24 +240,19 @@ pub struct luxfer_luminaire {
     pub kind: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_luminaire {
-    const NAME: &'static str = "luxfer_luminaire";
-    const SIZES: &'static [usize] = &[80];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 80,
-            corners: 0,
-            centre: [0.0; 2],
-            size: [0.0; 2],
-            orientation: 0.0,
-            area: 0.0,
-            flux_share: 0.0,
-            colour: [0.0; 3],
-            kind: 0,
-        }
+versioned!(luxfer_luminaire, [80], {
+    Self {
+        struct_size: 80,
+        corners: 0,
+        centre: [0.0; 2],
+        size: [0.0; 2],
+        orientation: 0.0,
+        area: 0.0,
+        flux_share: 0.0,
+        colour: [0.0; 3],
+        kind: 0,
     }
-}
+});
 
 /// An exemplar as the caller has given it.
 #[derive(Clone)]
@@ -486,15 +471,16 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Gets the quality of the texture, or the contents of a plan. Any thread.
+/// Gets the quality of the texture, or the contents of a plan. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
     emission: *mut luxfer_emission,
     report: *mut luxfer_emission_report,
+    size: usize,
 ) -> luxfer_status {
     enter(emission, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let made = stage.output()?;
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let (error, sampling_error, regularity, exemplar_lamps) = match (&made.plan, &made.texture) {
@@ -525,16 +511,17 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 
 /// Describes a luminaire of the texture. A plan has no texels yet, so its luminaires are described as the exemplar
 /// shows them, cut at the edges of the texture; only lights that cross their whole exemplar are described as in the
-/// texture. Any thread.
+/// texture. size is sizeof *luminaire. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
     emission: *mut luxfer_emission,
     index: u32,
     luminaire: *mut luxfer_luminaire,
+    size: usize,
 ) -> luxfer_status {
     enter(emission, |stage| {
-        let out = Report::new(luminaire)?;
+        let out = Report::new(luminaire, size)?;
         let output = stage.output()?;
         let lamp = output.luminaire(index)?;
         out.set(luxfer_luminaire {
@@ -576,16 +563,4 @@ pub unsafe extern "C" fn luxfer_emission_get_corner(
         out_y.set(point.y);
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_retain(emission: *mut luxfer_emission) -> luxfer_status {
-    handle::retain(emission)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_release(emission: *mut luxfer_emission) -> luxfer_status {
-    handle::release(emission)
 }

@@ -5,7 +5,7 @@
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::Out;
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -44,22 +44,17 @@ pub struct luxfer_false_colour_params {
     pub maximum: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_false_colour_params {
-    const NAME: &'static str = "luxfer_false_colour_params";
-    const SIZES: &'static [usize] = &[32];
-    fn defaults() -> Self {
-        let d = Params::default();
-        Self {
-            struct_size: 32,
-            scale: LUXFER_SCALE_LINEAR,
-            unit: LUXFER_UNIT_LUMINANCE,
-            bar: u32::from(d.bar),
-            minimum: d.minimum,
-            maximum: d.maximum,
-        }
+versioned!(luxfer_false_colour_params, [32], {
+    let d = Params::default();
+    Self {
+        struct_size: 32,
+        scale: LUXFER_SCALE_LINEAR,
+        unit: LUXFER_UNIT_LUMINANCE,
+        bar: u32::from(d.bar),
+        minimum: d.minimum,
+        maximum: d.maximum,
     }
-}
+});
 
 impl luxfer_false_colour_params {
     fn params(&self) -> Result<Params> {

@@ -10,12 +10,12 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::{Out, text};
 use super::rectify::luxfer_rectify;
-use super::segment::stroke;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
+use super::strokes::{Painted, luxfer_strokes};
 use crate::error::{Error, ErrorKind, Result};
 #[cfg(feature = "onnx")]
 use crate::features::DepthNetwork;
@@ -24,7 +24,7 @@ use crate::image::Image;
 #[cfg(feature = "onnx")]
 use crate::image::io;
 use crate::rectify::View;
-use crate::segment::{Stroke, strokes};
+use crate::segment::Stroke;
 use std::ffi::c_char;
 #[cfg(feature = "onnx")]
 use std::path::Path;
@@ -94,15 +94,10 @@ pub struct luxfer_features_params {
     pub normal_radius: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_features_params {
-    const NAME: &'static str = "luxfer_features_params";
-    const SIZES: &'static [usize] = &[16];
-    fn defaults() -> Self {
-        let features::Params { near, far, normal_radius } = features::Params::default();
-        Self { struct_size: 16, near_plane: near, far_plane: far, normal_radius: normal_radius as u32 }
-    }
-}
+versioned!(luxfer_features_params, [16], {
+    let features::Params { near, far, normal_radius } = features::Params::default();
+    Self { struct_size: 16, near_plane: near, far_plane: far, normal_radius: normal_radius as u32 }
+});
 
 impl luxfer_features_params {
     pub(super) fn params(&self) -> features::Params {
@@ -110,11 +105,11 @@ impl luxfer_features_params {
     }
 }
 
-/// Quality of the features. Set struct_size before the call.
+/// Quality of the features.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_features_report {
-    /// sizeof(luxfer_features_report), set by the caller.
+    /// sizeof(luxfer_features_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// LUXFER_DEPTH_FROM_ value.
     pub depth_source: luxfer_depth_source,
@@ -125,14 +120,9 @@ pub struct luxfer_features_report {
     pub replaced_pixels: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_features_report {
-    const NAME: &'static str = "luxfer_features_report";
-    const SIZES: &'static [usize] = &[24];
-    fn defaults() -> Self {
-        Self { struct_size: 24, depth_source: 0, depth_confidence: 0.0, replaced_pixels: 0 }
-    }
-}
+versioned!(luxfer_features_report, [24], {
+    Self { struct_size: 24, depth_source: 0, depth_confidence: 0.0, replaced_pixels: 0 }
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -140,14 +130,7 @@ pub(super) struct Inputs {
     depth: Option<(Arc<Pixels>, DepthKind)>,
     network: Option<Arc<DepthNetwork>>,
     view: Option<Arc<View>>,
-    strokes: Vec<Stroke>,
-}
-
-impl Inputs {
-    fn size(&self) -> Result<(usize, usize)> {
-        let image = need(&self.photo, "luxfer_features_set_photo")?.image();
-        Ok((image.width, image.height))
-    }
+    strokes: Painted<Vec<Stroke>>,
 }
 
 /// The result, and the depth that a network has estimated.
@@ -200,10 +183,7 @@ pub unsafe extern "C" fn luxfer_features_set_photo(
     enter(features, |stage| {
         let photo = handle::borrow_in(stage.context(), photo, "photo")?;
         stage.change(|inputs| {
-            let size = (photo.image().width, photo.image().height);
-            if inputs.size().is_ok_and(|before| before != size) {
-                inputs.strokes.clear();
-            }
+            inputs.strokes.keep_for(photo.size());
             inputs.photo = Some(photo);
             Ok(())
         })
@@ -319,71 +299,22 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
-/// Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the
-/// ceiling that carries the lights, and 0 off this plane. Strokes affect only a room that is fitted to lines
-/// (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one face and all others off this
-/// face. Any thread.
-/// LUXFER_INVALID_OPERATION before the photo is set.
+/// Sets strokes on the photo, of which the fit of a room takes those for LUXFER_PHASE_PLANE and the positive strokes on
+/// lights: on one plane of the room, such as the ceiling that carries the lights, or off this plane. They affect only a
+/// room that is fitted to lines (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one
+/// face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL:
+/// no strokes. Any thread.
+/// LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_add_stroke(
+pub unsafe extern "C" fn luxfer_features_set_strokes(
     features: *mut luxfer_features,
-    points: *const f32,
-    point_count: usize,
-    radius: f32,
-    positive: i32,
+    strokes: *mut luxfer_strokes,
 ) -> luxfer_status {
     enter(features, |stage| {
+        let strokes = Painted::copy(stage.context(), strokes, |set| Ok(set.plane_examples()))?;
         stage.change(|inputs| {
-            let stroke = stroke(points.cast(), point_count, radius, positive, inputs.size()?)?;
-            inputs.strokes.push(stroke);
-            Ok(())
-        })
-    })
-}
-
-/// Adds the strokes for the plane from a drawing of the photo's size, as luxfer_segment_add_strokes_image does with
-/// LUXFER_PHASE_PLANE. Any thread.
-/// LUXFER_INVALID_OPERATION before the photo is set; LUXFER_INVALID_ARGUMENT if the size differs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_add_strokes_image(
-    features: *mut luxfer_features,
-    drawing: *mut luxfer_image,
-) -> luxfer_status {
-    enter(features, |stage| {
-        let drawing = handle::borrow_in(stage.context(), drawing, "drawing")?;
-        stage.change(|inputs| {
-            let photo = need(&inputs.photo, "luxfer_features_set_photo")?.image();
-            photo.check_same_size("the photo", drawing.image(), "the drawing")?;
-            inputs.strokes.extend(strokes::from_image(drawing.image())?.plane_examples());
-            Ok(())
-        })
-    })
-}
-
-/// Adds the strokes for the plane from a text in UTF-8, as luxfer_segment_add_strokes_text does with
-/// LUXFER_PHASE_PLANE. Any thread.
-/// LUXFER_INVALID_OPERATION before the photo is set; LUXFER_FORMAT, naming the line, if the text is malformed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_add_strokes_text(
-    features: *mut luxfer_features,
-    description: *const c_char,
-) -> luxfer_status {
-    enter(features, |stage| {
-        let description = text(description, "description")?;
-        stage.change(|inputs| {
-            let (width, height) = inputs.size()?;
-            inputs.strokes.extend(strokes::parse(description, width, height)?.plane_examples());
-            Ok(())
-        })
-    })
-}
-
-/// Removes all strokes. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_clear_strokes(features: *mut luxfer_features) -> luxfer_status {
-    enter(features, |stage| {
-        stage.change(|inputs| {
-            inputs.strokes.clear();
+            strokes.check_size(inputs.photo.as_ref().map(|photo| photo.size()), "the photo")?;
+            inputs.strokes = strokes;
             Ok(())
         })
     })
@@ -404,7 +335,7 @@ pub unsafe extern "C" fn luxfer_features_start(
         stage.start(job, move |inputs, _, job| {
             let photo = need(&inputs.photo, "luxfer_features_set_photo")?.image();
             let depth = inputs.depth.as_ref();
-            let painted = inputs.strokes.iter();
+            let painted = inputs.strokes.taken.iter();
             let strokes: Vec<_> = painted.map(|s| PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
             let input = features::Input {
                 photo,
@@ -449,15 +380,16 @@ pub unsafe extern "C" fn luxfer_features_get_image(
     })
 }
 
-/// Gets the quality of the features. Any thread.
+/// Gets the quality of the features. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_get_report(
     features: *mut luxfer_features,
     report: *mut luxfer_features_report,
+    size: usize,
 ) -> luxfer_status {
     enter(features, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?.features.clone();
         let confidence = &output.depth_confidence.data;
         out.set(luxfer_features_report {
@@ -473,16 +405,4 @@ pub unsafe extern "C" fn luxfer_features_get_report(
         });
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_retain(features: *mut luxfer_features) -> luxfer_status {
-    handle::retain(features)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_release(features: *mut luxfer_features) -> luxfer_status {
-    handle::release(features)
 }

@@ -9,7 +9,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::Out;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::stage::{Stage, need};
@@ -66,23 +66,18 @@ pub struct luxfer_guides_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_guides_params {
-    const NAME: &'static str = "luxfer_guides_params";
-    const SIZES: &'static [usize] = &[32];
-    fn defaults() -> Self {
-        let d = guides::Params::default();
-        Self {
-            struct_size: 32,
-            width: d.width as u32,
-            height: d.height as u32,
-            samples: d.samples,
-            camera: 0,
-            smooth: u32::from(d.smooth),
-            seed: d.seed,
-        }
+versioned!(luxfer_guides_params, [32], {
+    let d = guides::Params::default();
+    Self {
+        struct_size: 32,
+        width: d.width as u32,
+        height: d.height as u32,
+        samples: d.samples,
+        camera: 0,
+        smooth: u32::from(d.smooth),
+        seed: d.seed,
     }
-}
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -192,7 +187,7 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 /// visible. The caller releases *motion. Any thread.
 /// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_guides_motion(
+pub unsafe extern "C" fn luxfer_guides_get_motion(
     guides: *mut luxfer_guides,
     before: *mut luxfer_guides,
     motion: *mut *mut luxfer_image,
@@ -205,16 +200,4 @@ pub unsafe extern "C" fn luxfer_guides_motion(
         out.set(handle::give(image));
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_guides_retain(guides: *mut luxfer_guides) -> luxfer_status {
-    handle::retain(guides)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_guides_release(guides: *mut luxfer_guides) -> luxfer_status {
-    handle::release(guides)
 }

@@ -5,9 +5,8 @@
 //! invalid, and the object may live on.
 
 use super::context::Context;
-use super::guard::guard;
-use super::status::luxfer_status;
 use crate::error::{Error, Result};
+use std::ffi::c_void;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -53,16 +52,24 @@ pub(super) fn give<H: Handle>(object: Arc<H::Object>) -> *mut H {
     Arc::into_raw(Arc::new(shell)).cast_mut().cast()
 }
 
+/// The first word behind a pointer that claims to be a handle, which tells its kind.
+pub(super) fn read_tag(handle: *const c_void) -> Option<u64> {
+    let tag: *const AtomicU64 = handle.cast();
+    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is no handle is the host's mistake;
+    // reading one aligned word is the least harmful way to detect it.
+    (!tag.is_null() && tag.is_aligned()).then(|| unsafe { (*tag).load(Ordering::Acquire) })
+}
+
 /// The shell behind a pointer, after a check of its tag.
 fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Object>> {
     if handle.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));
     }
-    let shell: *const Shell<H::Object> = handle.cast();
-    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is no handle is the host's mistake;
-    // reading one aligned word is the least harmful way to detect it.
-    let is_ours = shell.is_aligned() && unsafe { (*shell).tag.load(Ordering::Acquire) } == H::TAG;
-    if is_ours { Ok(shell) } else { Err(Error::argument(format!("{name} is not a live {}", H::NAME))) }
+    if read_tag(handle.cast()) == Some(H::TAG) {
+        Ok(handle.cast())
+    } else {
+        Err(Error::argument(format!("{name} is not a live {}", H::NAME)))
+    }
 }
 
 /// The object behind a handle, kept alive for the length of the call. Returns an error in a forked child of the process
@@ -91,32 +98,27 @@ pub(super) fn borrow_in<H: Handle>(context: &Arc<Context>, handle: *const H, nam
     }
 }
 
-pub(super) fn retain<H: Handle>(handle: *mut H) -> luxfer_status {
-    guard(|| {
-        let shell = shell(handle, "the handle")?;
-        // SAFETY: the shell came from `Arc::into_raw` in `give` and is alive.
-        unsafe {
-            (*shell).object.context().check_process()?;
-            Arc::increment_strong_count(shell);
-        }
-        Ok(())
-    })
+/// Adds a reference of the host.
+pub(super) fn retain<H: Handle>(handle: *mut H) -> Result<()> {
+    let shell = shell(handle, "the handle")?;
+    // SAFETY: the shell came from `Arc::into_raw` in `give` and is alive.
+    unsafe {
+        (*shell).object.context().check_process()?;
+        Arc::increment_strong_count(shell);
+    }
+    Ok(())
 }
 
-pub(super) fn release<H: Handle>(handle: *mut H) -> luxfer_status {
-    guard(|| {
-        if handle.is_null() {
-            return Ok(());
+/// Removes a reference of the host.
+pub(super) fn release<H: Handle>(handle: *mut H) -> Result<()> {
+    let shell = shell(handle, "the handle")?;
+    // SAFETY: as above; this is the reference that the host gives back.
+    unsafe {
+        // In a forked child there are no threads to join, and a lock that another thread held during the fork stays
+        // locked. So the object is not freed.
+        if (*shell).object.context().check_process().is_ok() {
+            drop(Arc::from_raw(shell));
         }
-        let shell = shell(handle, "the handle")?;
-        // SAFETY: as above; this is the reference that the host gives back.
-        unsafe {
-            // In a forked child there are no threads to join, and a lock that another thread held during the fork stays
-            // locked. So the object is not freed.
-            if (*shell).object.context().check_process().is_ok() {
-                drop(Arc::from_raw(shell));
-            }
-        }
-        Ok(())
-    })
+    }
+    Ok(())
 }

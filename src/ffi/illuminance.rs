@@ -8,7 +8,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::scene::{SceneObject, luxfer_scene};
 use super::stage::{Stage, need};
@@ -47,15 +47,10 @@ pub struct luxfer_illuminance_params {
     pub seed: u64,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_illuminance_params {
-    const NAME: &'static str = "luxfer_illuminance_params";
-    const SIZES: &'static [usize] = &[24];
-    fn defaults() -> Self {
-        let d = illuminance::Params::default();
-        Self { struct_size: 24, columns: d.columns as u32, rows: d.rows as u32, samples: d.samples, seed: d.seed }
-    }
-}
+versioned!(luxfer_illuminance_params, [24], {
+    let d = illuminance::Params::default();
+    Self { struct_size: 24, columns: d.columns as u32, rows: d.rows as u32, samples: d.samples, seed: d.seed }
+});
 
 /// A calculation grid. Fill it with luxfer_illuminance_grid_init; the default is a square metre at the origin that
 /// faces up.
@@ -77,21 +72,16 @@ pub struct luxfer_illuminance_grid {
     pub reserved: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_illuminance_grid {
-    const NAME: &'static str = "luxfer_illuminance_grid";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 56,
-            origin: [0.0; 3],
-            across: [1.0, 0.0, 0.0],
-            down: [0.0, 0.0, 1.0],
-            normal: [0.0, 1.0, 0.0],
-            reserved: 0,
-        }
+versioned!(luxfer_illuminance_grid, [56], {
+    Self {
+        struct_size: 56,
+        origin: [0.0; 3],
+        across: [1.0, 0.0, 0.0],
+        down: [0.0, 0.0, 1.0],
+        normal: [0.0, 1.0, 0.0],
+        reserved: 0,
     }
-}
+});
 
 impl luxfer_illuminance_grid {
     /// Origin, across, down and normal.
@@ -103,11 +93,11 @@ impl luxfer_illuminance_grid {
     }
 }
 
-/// Summary of the illuminance, in lux. Set struct_size before the call.
+/// Summary of the illuminance, in lux.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_illuminance_report {
-    /// sizeof(luxfer_illuminance_report), set by the caller.
+    /// sizeof(luxfer_illuminance_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of points; on a mesh, the texels that the surface covers.
     pub points: u32,
@@ -121,14 +111,9 @@ pub struct luxfer_illuminance_report {
     pub mean_error: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_illuminance_report {
-    const NAME: &'static str = "luxfer_illuminance_report";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self { struct_size: 40, points: 0, minimum: 0.0, mean: 0.0, maximum: 0.0, mean_error: 0.0 }
-    }
-}
+versioned!(luxfer_illuminance_report, [40], {
+    Self { struct_size: 40, points: 0, minimum: 0.0, mean: 0.0, maximum: 0.0, mean_error: 0.0 }
+});
 
 impl Handle for luxfer_illuminance {
     type Object = Stage<Inputs, Output>;
@@ -263,15 +248,16 @@ pub unsafe extern "C" fn luxfer_illuminance_get_image(
     })
 }
 
-/// Gets the summary of the illuminance. Any thread.
+/// Gets the summary of the illuminance. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_illuminance_get_report(
     illuminance: *mut luxfer_illuminance,
     report: *mut luxfer_illuminance_report,
+    size: usize,
 ) -> luxfer_status {
     enter(illuminance, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         out.set(luxfer_illuminance_report {
             points: output.points as u32,
@@ -283,16 +269,4 @@ pub unsafe extern "C" fn luxfer_illuminance_get_report(
         });
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_illuminance_retain(illuminance: *mut luxfer_illuminance) -> luxfer_status {
-    handle::retain(illuminance)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_illuminance_release(illuminance: *mut luxfer_illuminance) -> luxfer_status {
-    handle::release(illuminance)
 }

@@ -7,7 +7,7 @@
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::{Out, bytes, bytes_mut, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -76,27 +76,22 @@ pub struct luxfer_image_view {
 
 const VIEW_SIZE: usize = 32 + 4 * size_of::<usize>();
 
-// SAFETY: integers, and a pointer that is checked before use.
-unsafe impl Versioned for luxfer_image_view {
-    const NAME: &'static str = "luxfer_image_view";
-    const SIZES: &'static [usize] = &[VIEW_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: VIEW_SIZE as u32,
-            channels: 3,
-            sample: LUXFER_SAMPLE_F32,
-            colour_space: LUXFER_COLOUR_LINEAR,
-            width: 0,
-            height: 0,
-            flags: 0,
-            reserved: 0,
-            pixel_stride: 0,
-            row_stride: 0,
-            byte_size: 0,
-            data: std::ptr::null_mut(),
-        }
+versioned!(luxfer_image_view, [VIEW_SIZE], {
+    Self {
+        struct_size: VIEW_SIZE as u32,
+        channels: 3,
+        sample: LUXFER_SAMPLE_F32,
+        colour_space: LUXFER_COLOUR_LINEAR,
+        width: 0,
+        height: 0,
+        flags: 0,
+        reserved: 0,
+        pixel_stride: 0,
+        row_stride: 0,
+        byte_size: 0,
+        data: std::ptr::null_mut(),
     }
-}
+});
 
 impl luxfer_image_view {
     fn layout(&self) -> Result<Layout> {
@@ -170,6 +165,11 @@ impl Pixels {
             Source::Own(image, _) => image,
             Source::Result(holder) => holder.image(),
         }
+    }
+
+    /// Width and height.
+    pub(super) fn size(&self) -> (usize, usize) {
+        (self.image().width, self.image().height)
     }
 
     /// The image with an owner of its own; a part of a result is copied.
@@ -373,7 +373,7 @@ fn encode_exr(image: &Image) -> Result<Vec<u8>> {
 
 /// Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_size(
+pub unsafe extern "C" fn luxfer_image_get_size(
     image: *mut luxfer_image,
     width: *mut u32,
     height: *mut u32,
@@ -419,16 +419,4 @@ pub unsafe extern "C" fn luxfer_image_read(
         }
         view::write(&part, layout, pixels)
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_retain(image: *mut luxfer_image) -> luxfer_status {
-    handle::retain(image)
-}
-
-/// Removes a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_release(image: *mut luxfer_image) -> luxfer_status {
-    handle::release(image)
 }

@@ -10,7 +10,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::relight::{Emitter, LUXFER_QUANTITY_OUTGOING, luxfer_quantity, luxfer_relight_report, quantity};
 use super::scene::{colour, luxfer_scene};
@@ -53,31 +53,26 @@ pub struct luxfer_importance_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_importance_params {
-    const NAME: &'static str = "luxfer_importance_params";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        let d = MapParams::default();
-        Self {
-            struct_size: 40,
-            width: d.width as u32,
-            height: d.height as u32,
-            quantity: LUXFER_QUANTITY_OUTGOING,
-            paths: d.tracing.paths,
-            target_error: d.tracing.target_error,
-            time_budget_ms: d.tracing.time_budget_ms,
-            reserved: 0,
-            seed: d.tracing.seed,
-        }
+versioned!(luxfer_importance_params, [40], {
+    let d = MapParams::default();
+    Self {
+        struct_size: 40,
+        width: d.width as u32,
+        height: d.height as u32,
+        quantity: LUXFER_QUANTITY_OUTGOING,
+        paths: d.tracing.paths,
+        target_error: d.tracing.target_error,
+        time_budget_ms: d.tracing.time_budget_ms,
+        reserved: 0,
+        seed: d.tracing.seed,
     }
-}
+});
 
-/// The light that the target receives from a texture. Set struct_size before the call.
+/// The light that the target receives from a texture.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_importance_report {
-    /// sizeof(luxfer_importance_report), set by the caller.
+    /// sizeof(luxfer_importance_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of paths of the map.
     pub paths: u32,
@@ -90,14 +85,9 @@ pub struct luxfer_importance_report {
     pub band_error: [f64; 3],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_importance_report {
-    const NAME: &'static str = "luxfer_importance_report";
-    const SIZES: &'static [usize] = &[80];
-    fn defaults() -> Self {
-        Self { struct_size: 80, paths: 0, response: [0.0; 3], half_width: [0.0; 3], band_error: [0.0; 3] }
-    }
-}
+versioned!(luxfer_importance_report, [80], {
+    Self { struct_size: 80, paths: 0, response: [0.0; 3], half_width: [0.0; 3], band_error: [0.0; 3] }
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -218,8 +208,8 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
 }
 
 /// Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps the
-/// surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the identity.
-/// Takes a few milliseconds. Any thread.
+/// surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the
+/// identity. Takes a few milliseconds. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_respond(
@@ -227,9 +217,10 @@ pub unsafe extern "C" fn luxfer_importance_respond(
     texture: *mut luxfer_image,
     placement: *const f64,
     report: *mut luxfer_importance_report,
+    size: usize,
 ) -> luxfer_status {
     enter(importance, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let (map, response) = respond(stage, texture, placement)?;
         out.set(luxfer_importance_report {
             paths: map.paths,
@@ -242,8 +233,9 @@ pub unsafe extern "C" fn luxfer_importance_respond(
     })
 }
 
-/// Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each finite
-/// and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond. Any thread.
+/// Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each
+/// finite and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond.
+/// size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_solve(
@@ -254,9 +246,10 @@ pub unsafe extern "C" fn luxfer_importance_solve(
     green: f32,
     blue: f32,
     report: *mut luxfer_relight_report,
+    size: usize,
 ) -> luxfer_status {
     enter(importance, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let target = colour("target", red, green, blue)?;
         let (map, response) = respond(stage, texture, placement)?;
         out.set(luxfer_relight_report::new(&map.solve(&response, target)?));
@@ -280,16 +273,4 @@ fn respond(
     let monitor = Monitor::default();
     let response = stage.context().quick.run(|| map.respond(&texture, &placement, monitor.job()))?;
     Ok((map, response))
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_importance_retain(importance: *mut luxfer_importance) -> luxfer_status {
-    handle::retain(importance)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_importance_release(importance: *mut luxfer_importance) -> luxfer_status {
-    handle::release(importance)
 }

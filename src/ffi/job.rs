@@ -10,9 +10,9 @@
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};
-use super::handle::{self, Handle, Owned, tag};
+use super::handle::{Handle, Owned, tag};
 use super::pointer::set_optional;
-use super::status::luxfer_status;
+use super::status::{LUXFER_NOT_READY, LUXFER_OK, luxfer_status};
 use crate::error::{Error, ErrorKind, Result};
 use crate::exec::spawn;
 use crate::job::Monitor;
@@ -153,28 +153,29 @@ pub unsafe extern "C" fn luxfer_job_wait(
     })
 }
 
-/// Gets the progress of a job without waiting. *fraction receives the progress in [0, 1]; *finished receives 1 if the
-/// job has ended, with or without success, else 0. Either may be NULL. Any thread.
+/// Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1]; *outcome
+/// receives the status with which the job has ended, as luxfer_job_wait returns it, or LUXFER_NOT_READY while the job
+/// runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_poll(
+pub unsafe extern "C" fn luxfer_job_get_progress(
     job: *mut luxfer_job,
     fraction: *mut f64,
-    finished: *mut i32,
+    outcome: *mut luxfer_status,
 ) -> luxfer_status {
     enter(job, |job| {
         let result = job.wait(Duration::ZERO);
         let progress = job.shared.monitor.progress();
         set_optional(fraction, if matches!(result, Some(Ok(()))) { 1.0 } else { progress.min(1.0 - f64::EPSILON) });
-        set_optional(finished, i32::from(result.is_some()));
+        set_optional(
+            outcome,
+            match result {
+                None => LUXFER_NOT_READY,
+                Some(Ok(())) => LUXFER_OK,
+                Some(Err(error)) => error.kind as luxfer_status,
+            },
+        );
         Ok(())
     })
-}
-
-/// Gets the status with which a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any
-/// thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_status(job: *mut luxfer_job) -> luxfer_status {
-    enter(job, |job| job.wait(Duration::ZERO).unwrap_or_else(|| Err(Job::is_running())))
 }
 
 /// Asks a job to end early and returns at once; the work ends within about 100 ms. A request cannot be withdrawn; a
@@ -185,16 +186,4 @@ pub unsafe extern "C" fn luxfer_job_cancel(job: *mut luxfer_job) -> luxfer_statu
         job.shared.monitor.cancel();
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_retain(job: *mut luxfer_job) -> luxfer_status {
-    handle::retain(job)
-}
-
-/// Removes a reference. Removing the last reference cancels a running job and waits until it has ended. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_release(job: *mut luxfer_job) -> luxfer_status {
-    handle::release(job)
 }

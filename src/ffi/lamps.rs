@@ -9,7 +9,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
 use super::lamp_goal::StoredGoal;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::Out;
 use super::query::LUXFER_NONE;
 use super::scene::{SceneObject, luxfer_scene, missing};
@@ -36,14 +36,14 @@ pub const LUXFER_GROUP_ALL: luxfer_group = 0;
 /// Each lamp is a group of its own.
 pub const LUXFER_GROUP_EACH: luxfer_group = 1;
 /// Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes.
-pub const LUXFER_GROUP_FIRST: luxfer_group = 2;
+pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
 /// Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes.
-pub const LUXFER_GROUP_SECOND: luxfer_group = 3;
+pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 /// Lamps whose centres agree in their third coordinate form a group: z of meshes.
-pub const LUXFER_GROUP_THIRD: luxfer_group = 4;
+pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
 /// Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
 /// luminaires of one distribution.
-pub const LUXFER_GROUP_TYPE: luxfer_group = 5;
+pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
 /// Settings of the calculation. Fill them with luxfer_lamps_params_init.
 #[repr(C)]
@@ -80,28 +80,23 @@ pub struct luxfer_lamps_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamps_params {
-    const NAME: &'static str = "luxfer_lamps_params";
-    const SIZES: &'static [usize] = &[64];
-    fn defaults() -> Self {
-        let (tracing, groups) = (relight::Params::default(), GroupParams::default());
-        Self {
-            struct_size: 64,
-            group: LUXFER_GROUP_EACH,
-            row_tolerance: 0.01,
-            free_colour: 0,
-            max_scale: f64::INFINITY,
-            regularisation: groups.regularisation,
-            tolerance: groups.tolerance,
-            paths: tracing.paths,
-            target_error: tracing.target_error,
-            time_budget_ms: tracing.time_budget_ms,
-            reserved: 0,
-            seed: tracing.seed,
-        }
+versioned!(luxfer_lamps_params, [64], {
+    let (tracing, groups) = (relight::Params::default(), GroupParams::default());
+    Self {
+        struct_size: 64,
+        group: LUXFER_GROUP_EACH,
+        row_tolerance: 0.01,
+        free_colour: 0,
+        max_scale: f64::INFINITY,
+        regularisation: groups.regularisation,
+        tolerance: groups.tolerance,
+        paths: tracing.paths,
+        target_error: tracing.target_error,
+        time_budget_ms: tracing.time_budget_ms,
+        reserved: 0,
+        seed: tracing.seed,
     }
-}
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -224,7 +219,7 @@ impl luxfer_lamps_params {
         if self.free_colour > 1 || self.reserved != 0 {
             return Err(Error::argument("free_colour must be 0 or 1, and reserved 0"));
         }
-        if !(LUXFER_GROUP_ALL..=LUXFER_GROUP_TYPE).contains(&self.group) {
+        if !(LUXFER_GROUP_ALL..=LUXFER_GROUP_BY_TYPE).contains(&self.group) {
             return Err(Error::argument(format!("group is {}; it must be a LUXFER_GROUP_ value", self.group)));
         }
         if !(self.row_tolerance >= 0.0) {
@@ -245,8 +240,8 @@ impl luxfer_lamps_params {
         match self.group {
             LUXFER_GROUP_ALL => lamps.together(),
             LUXFER_GROUP_EACH => lamps.each(),
-            LUXFER_GROUP_TYPE => lamps.types(),
-            other => lamps.rows((other - LUXFER_GROUP_FIRST) as usize, self.row_tolerance),
+            LUXFER_GROUP_BY_TYPE => lamps.types(),
+            other => lamps.rows((other - LUXFER_GROUP_BY_X) as usize, self.row_tolerance),
         }
     }
 
@@ -269,16 +264,4 @@ impl luxfer_lamps_params {
             tolerance: self.tolerance,
         }
     }
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_retain(lamps: *mut luxfer_lamps) -> luxfer_status {
-    handle::retain(lamps)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_release(lamps: *mut luxfer_lamps) -> luxfer_status {
-    handle::release(lamps)
 }

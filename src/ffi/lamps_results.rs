@@ -6,7 +6,7 @@ use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::lamps::luxfer_lamps;
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, copy_text};
 use super::relight::{luxfer_outcome, reach_value};
 use super::scene::missing;
@@ -18,11 +18,11 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::ffi::c_char;
 
-/// Summary of the result. Set struct_size before the call.
+/// Summary of the result.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_report {
-    /// sizeof(luxfer_lamps_report), set by the caller.
+    /// sizeof(luxfer_lamps_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of lamps.
     pub lamps: u32,
@@ -33,23 +33,18 @@ pub struct luxfer_lamps_report {
     /// Number of paths traced for each goal.
     pub paths: u32,
     /// 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason.
-    pub met: u32,
+    pub all_goals_met: u32,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_lamps_report {
-    const NAME: &'static str = "luxfer_lamps_report";
-    const SIZES: &'static [usize] = &[24];
-    fn defaults() -> Self {
-        Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, met: 0 }
-    }
-}
+versioned!(luxfer_lamps_report, [24], {
+    Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, all_goals_met: 0 }
+});
 
-/// One lamp. Set struct_size before the call.
+/// One lamp.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamp {
-    /// sizeof(luxfer_lamp), set by the caller.
+    /// sizeof(luxfer_lamp), set by the function that fills the struct.
     pub struct_size: u32,
     /// Index of its group.
     pub group: u32,
@@ -61,20 +56,15 @@ pub struct luxfer_lamp {
     pub half_width: [f64; 3],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamp {
-    const NAME: &'static str = "luxfer_lamp";
-    const SIZES: &'static [usize] = &[80];
-    fn defaults() -> Self {
-        Self { struct_size: 80, group: 0, centre: [0.0; 3], scale: [0.0; 3], half_width: [0.0; 3] }
-    }
-}
+versioned!(luxfer_lamp, [80], {
+    Self { struct_size: 80, group: 0, centre: [0.0; 3], scale: [0.0; 3], half_width: [0.0; 3] }
+});
 
-/// The light that a goal receives. Set struct_size before the call.
+/// The light that a goal receives.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_goal {
-    /// sizeof(luxfer_lamps_goal), set by the caller.
+    /// sizeof(luxfer_lamps_goal), set by the function that fills the struct.
     pub struct_size: u32,
     /// LUXFER_OUTCOME_ value of each channel.
     pub outcome: [luxfer_outcome; 3],
@@ -97,32 +87,27 @@ pub struct luxfer_lamps_goal {
     pub background_lux: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamps_goal {
-    const NAME: &'static str = "luxfer_lamps_goal";
-    const SIZES: &'static [usize] = &[144];
-    fn defaults() -> Self {
-        let zero = [0.0; 3];
-        Self {
-            struct_size: 144,
-            outcome: [0; 3],
-            target: zero,
-            achieved: zero,
-            half_width: zero,
-            background: zero,
-            target_lux: 0.0,
-            achieved_lux: 0.0,
-            half_width_lux: 0.0,
-            background_lux: 0.0,
-        }
+versioned!(luxfer_lamps_goal, [144], {
+    let zero = [0.0; 3];
+    Self {
+        struct_size: 144,
+        outcome: [0; 3],
+        target: zero,
+        achieved: zero,
+        half_width: zero,
+        background: zero,
+        target_lux: 0.0,
+        achieved_lux: 0.0,
+        half_width_lux: 0.0,
+        background_lux: 0.0,
     }
-}
+});
 
-/// The light that one goal receives from one lamp. Set struct_size before the call.
+/// The light that one goal receives from one lamp.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_response {
-    /// sizeof(luxfer_lamps_response), set by the caller.
+    /// sizeof(luxfer_lamps_response), set by the function that fills the struct.
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
@@ -132,47 +117,44 @@ pub struct luxfer_lamps_response {
     pub half_width: [f64; 3],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamps_response {
-    const NAME: &'static str = "luxfer_lamps_response";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        Self { struct_size: 56, reserved: 0, mean: [0.0; 3], half_width: [0.0; 3] }
-    }
-}
+versioned!(luxfer_lamps_response, [56], {
+    Self { struct_size: 56, reserved: 0, mean: [0.0; 3], half_width: [0.0; 3] }
+});
 
-/// Gets the summary of the result. Any thread.
+/// Gets the summary of the result. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_report(
     lamps: *mut luxfer_lamps,
     report: *mut luxfer_lamps_report,
+    size: usize,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let o = stage.output()?;
         out.set(luxfer_lamps_report {
             lamps: o.lamps.count() as u32,
             groups: o.solution.scale.len() as u32,
             goals: o.targets.len() as u32,
             paths: o.responses.paths,
-            met: u32::from(o.solution.unreachable.is_none()),
+            all_goals_met: u32::from(o.solution.unreachable.is_none()),
             ..luxfer_lamps_report::defaults()
         });
         Ok(())
     })
 }
 
-/// Gets the power of a lamp. Any thread.
+/// Gets the power of a lamp. size is sizeof *lamp. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_lamp(
     lamps: *mut luxfer_lamps,
     index: u32,
     lamp: *mut luxfer_lamp,
+    size: usize,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let out = Report::new(lamp)?;
+        let out = Report::new(lamp, size)?;
         let o = stage.output()?;
         let &group = o.group_of.get(index as usize).ok_or_else(|| missing("lamp", index, o.group_of.len()))?;
         out.set(luxfer_lamp {
@@ -186,16 +168,17 @@ pub unsafe extern "C" fn luxfer_lamps_get_lamp(
     })
 }
 
-/// Gets the light that a goal receives. Any thread.
+/// Gets the light that a goal receives. size is sizeof *goal. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_goal(
     lamps: *mut luxfer_lamps,
     index: u32,
     goal: *mut luxfer_lamps_goal,
+    size: usize,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let out = Report::new(goal)?;
+        let out = Report::new(goal, size)?;
         let o = stage.output()?;
         let i = index as usize;
         let outcome = o.solution.outcomes.get(i).ok_or_else(|| missing("goal", index, o.targets.len()))?;
@@ -218,7 +201,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
     })
 }
 
-/// Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. Any thread.
+/// Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. size is sizeof *response.
+/// Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_response(
@@ -226,9 +210,10 @@ pub unsafe extern "C" fn luxfer_lamps_get_response(
     goal: u32,
     lamp: u32,
     response: *mut luxfer_lamps_response,
+    size: usize,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let out = Report::new(response)?;
+        let out = Report::new(response, size)?;
         let o = stage.output()?;
         if goal as usize >= o.responses.goals() {
             return Err(missing("goal", goal, o.responses.goals()));

@@ -6,7 +6,7 @@
 //! - [`params`] copies the caller's versioned structs, old or new, and never trusts their size;
 //! - [`stage`] holds what all stages share: inputs, one job at a time, a result that appears only on success.
 //!
-//! The comments of the exported items, and the heads of the files they are in, become `include/luxfer.h`; the test
+//! The comments of the exported items, and the heads of the files they are in, become `include/luxfer/*.h`; the test
 //! `abi_header` generates it. Nothing exported may be made by a macro: cbindgen would not see it.
 
 // C names; the contract of each unsafe function is its text in the header.
@@ -54,6 +54,7 @@ mod plan;
 mod plan_stylize;
 mod query;
 mod rectify;
+mod references;
 mod relight;
 mod render;
 mod render_outputs;
@@ -68,6 +69,7 @@ mod scene_read;
 mod segment;
 mod sheet;
 mod status;
+mod strokes;
 #[cfg(feature = "stylize")]
 mod stylize;
 #[cfg(not(feature = "stylize"))]
@@ -111,6 +113,7 @@ pub use plan::*;
 pub use plan_stylize::*;
 pub use query::*;
 pub use rectify::*;
+pub use references::*;
 pub use relight::*;
 pub use render::*;
 pub use render_outputs::*;
@@ -125,6 +128,7 @@ pub use scene_read::*;
 pub use segment::*;
 pub use sheet::*;
 pub use status::*;
+pub use strokes::*;
 #[cfg(feature = "stylize")]
 pub use stylize::*;
 #[cfg(not(feature = "stylize"))]

@@ -22,18 +22,36 @@ pub(super) unsafe trait Versioned: Copy {
     fn defaults() -> Self;
 }
 
-/// Checks that a struct of `size` bytes is one that some version of this library has, or will have.
-fn check_size<P: Versioned>(size: usize) -> Result<()> {
+/// Implements `Versioned` for a struct of numbers and pointers, from its sizes in all versions and its defaults.
+macro_rules! versioned {
+    ($type:ident, $sizes:expr, { $($defaults:tt)* }) => {
+        const _: () = assert!(std::mem::offset_of!($type, struct_size) == 0);
+
+        // SAFETY: `struct_size` is the first field, and any bits are valid in numbers and pointers.
+        unsafe impl $crate::ffi::params::Versioned for $type {
+            const NAME: &'static str = stringify!($type);
+            const SIZES: &'static [usize] = &$sizes;
+            fn defaults() -> Self {
+                $($defaults)*
+            }
+        }
+    };
+}
+pub(super) use versioned;
+
+/// Whether some version of this library has a struct of `size` bytes, or will have.
+fn is_known<P: Versioned>(size: usize) -> bool {
     debug_assert_eq!(P::SIZES.last(), Some(&size_of::<P>()));
-    if P::SIZES.contains(&size) || (size_of::<P>()..=LARGEST).contains(&size) {
+    P::SIZES.contains(&size) || (size_of::<P>()..=LARGEST).contains(&size)
+}
+
+/// Checks the `size` with which a function that fills the caller's struct is called.
+fn check_size<P: Versioned>(size: usize) -> Result<()> {
+    if is_known::<P>(size) {
         return Ok(());
     }
-    Err(Error::argument(format!(
-        "{}.struct_size is {size}; call {}_init with sizeof the struct, {} bytes in this version",
-        P::NAME,
-        P::NAME,
-        size_of::<P>()
-    )))
+    let (name, needed) = (P::NAME, size_of::<P>());
+    Err(Error::argument(format!("size is {size}; it must be sizeof({name}), {needed} bytes in this version")))
 }
 
 fn not_null<T>(place: *const T, name: &str) -> Result<()> {
@@ -81,15 +99,17 @@ pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
     }
 }
 
-/// A place for a report, whose `struct_size` the caller has set.
+/// A place for a report, with the size that the caller's compiler gave it.
 pub(super) struct Report<P> {
     place: *mut P,
     size: usize,
 }
 
 impl<P: Versioned> Report<P> {
-    pub(super) fn new(place: *mut P) -> Result<Self> {
-        Ok(Self { place, size: size_at(place)? })
+    pub(super) fn new(place: *mut P, size: usize) -> Result<Self> {
+        not_null(place, P::NAME)?;
+        check_size::<P>(size)?;
+        Ok(Self { place, size })
     }
 
     /// Writes the fields of the report that the caller's version has; fields unknown to this version become zero.
@@ -103,8 +123,13 @@ fn size_at<P: Versioned>(place: *const P) -> Result<usize> {
     not_null(place, P::NAME)?;
     // SAFETY: not null; every version of the struct starts with this field.
     let size = unsafe { place.cast::<u32>().read_unaligned() } as usize;
-    check_size::<P>(size)?;
-    Ok(size)
+    if is_known::<P>(size) {
+        return Ok(size);
+    }
+    let (name, needed) = (P::NAME, size_of::<P>());
+    Err(Error::argument(format!(
+        "{name}.struct_size is {size}; call {name}_init with sizeof the struct, {needed} bytes in this version"
+    )))
 }
 
 fn write<P: Versioned>(place: *mut P, value: P, size: usize) {
@@ -177,11 +202,12 @@ mod tests {
     #[test]
     fn a_report_fits_the_caller() {
         for size in [8usize, 16, 40] {
-            let mut bytes = memory(size as u32);
-            Report::new(bytes.as_mut_ptr().cast::<Sample>()).unwrap().set(Sample::defaults());
+            let mut bytes = memory(0);
+            Report::new(bytes.as_mut_ptr().cast::<Sample>(), size).unwrap().set(Sample::defaults());
             assert_eq!(bytes[..8], [(size as u32).to_ne_bytes(), 1u32.to_ne_bytes()].concat());
             assert!(bytes[size..].iter().all(|&b| b == 0xaa));
         }
-        assert!(Report::new(memory(12).as_mut_ptr().cast::<Sample>()).is_err());
+        assert!(Report::new(memory(0).as_mut_ptr().cast::<Sample>(), 12).is_err());
+        assert!(Report::<Sample>::new(std::ptr::null_mut(), 16).is_err());
     }
 }

@@ -3,7 +3,7 @@
 //! Size, rotation and offset of the light pattern of a transfer on the surface, and the areas without lamps.
 
 use super::guard::guard;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::transfer::{Pattern, Scale};
@@ -48,23 +48,18 @@ pub struct luxfer_pattern_params {
     pub margin: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_pattern_params {
-    const NAME: &'static str = "luxfer_pattern_params";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        let d = Pattern::default();
-        Self {
-            struct_size: 56,
-            scale: LUXFER_PATTERN_DISTANCE,
-            length: 1.0,
-            texel_size: d.texel_size,
-            rotation: d.rotation,
-            offset: d.offset.to_array(),
-            margin: d.margin,
-        }
+versioned!(luxfer_pattern_params, [56], {
+    let d = Pattern::default();
+    Self {
+        struct_size: 56,
+        scale: LUXFER_PATTERN_DISTANCE,
+        length: 1.0,
+        texel_size: d.texel_size,
+        rotation: d.rotation,
+        offset: d.offset.to_array(),
+        margin: d.margin,
     }
-}
+});
 
 impl luxfer_pattern_params {
     pub(super) fn pattern(&self) -> Result<Pattern> {

@@ -8,7 +8,7 @@
 
 use super::guard::enter;
 use super::image::luxfer_image;
-use super::params::{Report, Versioned};
+use super::params::{Report, versioned};
 use super::status::luxfer_status;
 use crate::image::photo::PhotoMetadata;
 
@@ -30,11 +30,11 @@ pub const LUXFER_FILE_COLOUR_UNCONVERTED: luxfer_file_colour = 4;
 /// The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged.
 pub const LUXFER_FILE_COLOUR_DATA: luxfer_file_colour = 5;
 
-/// Metadata of the file of a loaded photo. Set struct_size before the call.
+/// Metadata of the file of a loaded photo.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_photo_metadata {
-    /// sizeof(luxfer_photo_metadata), set by the caller.
+    /// sizeof(luxfer_photo_metadata), set by the function that fills the struct.
     pub struct_size: u32,
     /// EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied it: 2
     /// mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90 degrees, 8
@@ -67,14 +67,7 @@ pub struct luxfer_photo_metadata {
 
 const SIZE: usize = 8 + 8 * 8 + 8;
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_photo_metadata {
-    const NAME: &'static str = "luxfer_photo_metadata";
-    const SIZES: &'static [usize] = &[SIZE];
-    fn defaults() -> Self {
-        Self::new(&PhotoMetadata::default())
-    }
-}
+versioned!(luxfer_photo_metadata, [SIZE], { Self::new(&PhotoMetadata::default()) });
 
 impl luxfer_photo_metadata {
     fn new(known: &PhotoMetadata) -> Self {
@@ -98,14 +91,15 @@ impl luxfer_photo_metadata {
 }
 
 /// Gets the metadata of the file that an image was loaded from. All values are unknown if the image was not loaded
-/// from a file, or if the file has no metadata. Any thread.
+/// from a file, or if the file has no metadata. size is sizeof *metadata. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_get_metadata(
     image: *mut luxfer_image,
     metadata: *mut luxfer_photo_metadata,
+    size: usize,
 ) -> luxfer_status {
     enter(image, |object| {
-        Report::new(metadata)?.set(luxfer_photo_metadata::new(object.metadata()));
+        Report::new(metadata, size)?.set(luxfer_photo_metadata::new(object.metadata()));
         Ok(())
     })
 }

@@ -6,7 +6,7 @@
 use super::context::luxfer_context;
 use super::guard::enter;
 use super::image::luxfer_image;
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::Out;
 use super::status::luxfer_status;
 use crate::error::{Error, check_range};
@@ -14,11 +14,11 @@ use crate::photometry::glare;
 use crate::photometry::temperature::{self, MAX_KELVIN, MIN_KELVIN, Temperature};
 use glam::DVec3;
 
-/// The glare of a view. Set struct_size before the call.
+/// The glare of a view.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_glare_report {
-    /// sizeof(luxfer_glare_report), set by the caller.
+    /// sizeof(luxfer_glare_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of glare sources.
     pub sources: u32,
@@ -33,21 +33,16 @@ pub struct luxfer_glare_report {
     pub solid_angle: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_glare_report {
-    const NAME: &'static str = "luxfer_glare_report";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self { struct_size: 40, sources: 0, ugr: 0.0, background: 0.0, threshold: 0.0, solid_angle: 0.0 }
-    }
-}
+versioned!(luxfer_glare_report, [40], {
+    Self { struct_size: 40, sources: 0, ugr: 0.0, background: 0.0, threshold: 0.0, solid_angle: 0.0 }
+});
 
 /// Gets the correlated colour temperature of a linear colour: *kelvin receives the temperature of the nearest
 /// blackbody, in [1000, 20000], *duv the distance from the blackbody in the CIE 1960 diagram, positive for greenish
 /// colours. Any thread.
 /// LUXFER_DEGENERATE if the colour is black or not finite.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_colour_temperature(
+pub unsafe extern "C" fn luxfer_colour_to_temperature(
     context: *mut luxfer_context,
     red: f64,
     green: f64,
@@ -72,7 +67,7 @@ pub unsafe extern "C" fn luxfer_colour_temperature(
 /// Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_colour_of_temperature(
+pub unsafe extern "C" fn luxfer_temperature_to_colour(
     context: *mut luxfer_context,
     kelvin: f64,
     duv: f64,
@@ -87,20 +82,21 @@ pub unsafe extern "C" fn luxfer_colour_of_temperature(
     })
 }
 
-/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with the
-/// vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
+/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with
+/// the vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
 /// threshold; 0: five times the mean luminance. A wider angle of view gives a better estimate of the background
-/// luminance. Any thread.
+/// luminance. size is sizeof *report. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_glare(
+pub unsafe extern "C" fn luxfer_image_get_glare(
     image: *mut luxfer_image,
     fov_y: f64,
     threshold: f64,
     report: *mut luxfer_glare_report,
+    size: usize,
 ) -> luxfer_status {
     enter(image, |object| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let rating = glare::rate(object.image(), &glare::Params { fov_y, threshold })?;
         out.set(luxfer_glare_report {
             sources: rating.sources.len() as u32,

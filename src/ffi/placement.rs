@@ -8,7 +8,7 @@ use super::handle::{self, Owned};
 use super::image::luxfer_image;
 use super::importance::{Traced, luxfer_importance};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{Aim, PlaceParams, Pose};
@@ -17,9 +17,9 @@ use glam::{DVec2, Vec3};
 /// Objective of a placement: a LUXFER_AIM_ value.
 pub type luxfer_aim = i32;
 /// The largest luminance of the target.
-pub const LUXFER_AIM_MOST: luxfer_aim = 0;
+pub const LUXFER_AIM_MAX_LUMINANCE: luxfer_aim = 0;
 /// The smallest luminance of the target.
-pub const LUXFER_AIM_LEAST: luxfer_aim = 1;
+pub const LUXFER_AIM_MIN_LUMINANCE: luxfer_aim = 1;
 /// The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 
@@ -30,7 +30,7 @@ pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 pub struct luxfer_placement_params {
     /// sizeof(luxfer_placement_params), set by luxfer_placement_params_init.
     pub struct_size: u32,
-    /// LUXFER_AIM_ value; default LUXFER_AIM_MOST.
+    /// LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE.
     pub aim: luxfer_aim,
     /// Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0.
     pub radiance: [f32; 3],
@@ -53,27 +53,22 @@ pub struct luxfer_placement_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_placement_params {
-    const NAME: &'static str = "luxfer_placement_params";
-    const SIZES: &'static [usize] = &[112];
-    fn defaults() -> Self {
-        let d = PlaceParams::default();
-        Self {
-            struct_size: 112,
-            aim: LUXFER_AIM_MOST,
-            radiance: [0.0; 3],
-            starts: d.starts as u32,
-            min_offset: d.min.offset.to_array(),
-            max_offset: d.max.offset.to_array(),
-            min_scale: d.min.scale.to_array(),
-            max_scale: d.max.scale.to_array(),
-            min_rotation: d.min.rotation,
-            max_rotation: d.max.rotation,
-            seed: d.seed,
-        }
+versioned!(luxfer_placement_params, [112], {
+    let d = PlaceParams::default();
+    Self {
+        struct_size: 112,
+        aim: LUXFER_AIM_MAX_LUMINANCE,
+        radiance: [0.0; 3],
+        starts: d.starts as u32,
+        min_offset: d.min.offset.to_array(),
+        max_offset: d.max.offset.to_array(),
+        min_scale: d.min.scale.to_array(),
+        max_scale: d.max.scale.to_array(),
+        min_rotation: d.min.rotation,
+        max_rotation: d.max.rotation,
+        seed: d.seed,
     }
-}
+});
 
 impl luxfer_placement_params {
     fn params(&self) -> Result<PlaceParams> {
@@ -84,8 +79,8 @@ impl luxfer_placement_params {
         };
         Ok(PlaceParams {
             aim: match self.aim {
-                LUXFER_AIM_MOST => Aim::Brightest,
-                LUXFER_AIM_LEAST => Aim::Darkest,
+                LUXFER_AIM_MAX_LUMINANCE => Aim::Brightest,
+                LUXFER_AIM_MIN_LUMINANCE => Aim::Darkest,
                 LUXFER_AIM_RADIANCE => Aim::Radiance(Vec3::from_array(self.radiance)),
                 other => return Err(Error::argument(format!("aim is {other}; it must be a LUXFER_AIM_ value"))),
             },
@@ -97,11 +92,11 @@ impl luxfer_placement_params {
     }
 }
 
-/// The best placement, and the light that the target then receives. Set struct_size before the call.
+/// The best placement, and the light that the target then receives.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_placement {
-    /// sizeof(luxfer_placement), set by the caller.
+    /// sizeof(luxfer_placement), set by the function that fills the struct.
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
@@ -122,24 +117,19 @@ pub struct luxfer_placement {
     pub band_error: [f64; 3],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_placement {
-    const NAME: &'static str = "luxfer_placement";
-    const SIZES: &'static [usize] = &[192];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 192,
-            reserved: 0,
-            placement: [0.0; 9],
-            offset: [0.0; 2],
-            scale: [0.0; 2],
-            rotation: 0.0,
-            response: [0.0; 3],
-            half_width: [0.0; 3],
-            band_error: [0.0; 3],
-        }
+versioned!(luxfer_placement, [192], {
+    Self {
+        struct_size: 192,
+        reserved: 0,
+        placement: [0.0; 9],
+        offset: [0.0; 2],
+        scale: [0.0; 2],
+        rotation: 0.0,
+        response: [0.0; 3],
+        half_width: [0.0; 3],
+        band_error: [0.0; 3],
     }
-}
+});
 
 /// Fills *params with the defaults: any offset, with fixed scale 1 and rotation 0; size is sizeof *params.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -174,16 +164,17 @@ pub unsafe extern "C" fn luxfer_importance_start_placement(
     })
 }
 
-/// Gets the placement that was found. Any thread.
+/// Gets the placement that was found. size is sizeof *placement. Any thread.
 /// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
 /// started.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_get_placement(
     importance: *mut luxfer_importance,
     placement: *mut luxfer_placement,
+    size: usize,
 ) -> luxfer_status {
     enter(importance, |stage| {
-        let out = Report::new(placement)?;
+        let out = Report::new(placement, size)?;
         let output = stage.output()?;
         let best = output.placement.as_ref().ok_or_else(|| {
             Error::new(

@@ -13,7 +13,7 @@ use super::context::luxfer_context;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::relight::luxfer_relight_params;
 use super::render::{luxfer_render, luxfer_render_params};
@@ -47,14 +47,7 @@ pub struct luxfer_plan_params {
     pub reserved: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_plan_params {
-    const NAME: &'static str = "luxfer_plan_params";
-    const SIZES: &'static [usize] = &[16];
-    fn defaults() -> Self {
-        Self { struct_size: 16, time_budget_ms: 0, target_error: 0.0, reserved: 0 }
-    }
-}
+versioned!(luxfer_plan_params, [16], { Self { struct_size: 16, time_budget_ms: 0, target_error: 0.0, reserved: 0 } });
 
 impl luxfer_plan_params {
     pub(super) fn goal(&self) -> Result<Goal> {
@@ -75,11 +68,11 @@ impl luxfer_plan_params {
     }
 }
 
-/// Times and errors that a plan predicts. Set struct_size before the call.
+/// Times and errors that a plan predicts.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_plan_report {
-    /// sizeof(luxfer_plan_report), set by the caller.
+    /// sizeof(luxfer_plan_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// 1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation.
     pub relights: u32,
@@ -99,23 +92,18 @@ pub struct luxfer_plan_report {
     pub render_error: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_plan_report {
-    const NAME: &'static str = "luxfer_plan_report";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 56,
-            relights: 0,
-            seconds: 0.0,
-            error: 0.0,
-            relight_seconds: 0.0,
-            relight_error: 0.0,
-            render_seconds: 0.0,
-            render_error: 0.0,
-        }
+versioned!(luxfer_plan_report, [56], {
+    Self {
+        struct_size: 56,
+        relights: 0,
+        seconds: 0.0,
+        error: 0.0,
+        relight_seconds: 0.0,
+        relight_error: 0.0,
+        render_seconds: 0.0,
+        render_error: 0.0,
     }
-}
+});
 
 /// The result of a plan: settings, and the predicted time and error of each stage.
 #[derive(Default)]
@@ -238,15 +226,16 @@ pub unsafe extern "C" fn luxfer_plan_start_transfer(
     })
 }
 
-/// Gets the predictions of the plan. Any thread.
+/// Gets the predictions of the plan. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_report(
     plan: *mut luxfer_plan,
     report: *mut luxfer_plan_report,
+    size: usize,
 ) -> luxfer_status {
     enter(plan, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let made = stage.output()?;
         let [solving, rendering] =
             [made.relight.as_ref().map(|r| r.1), made.render.as_ref().map(|r| r.1)].map(Option::unwrap_or_default);
@@ -267,15 +256,16 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
 /// Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
 /// rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths and sets
 /// time_budget_ms to a quarter more than they should take, so that every run gives an equal picture unless the machine
-/// becomes slower. Set params->struct_size before the call. Any thread.
+/// becomes slower. Set params->struct_size before the call. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(
     plan: *mut luxfer_plan,
     params: *mut luxfer_render_params,
+    size: usize,
 ) -> luxfer_status {
     enter(plan, |stage| {
-        let out = Report::new(params)?;
+        let out = Report::new(params, size)?;
         let made = stage.output()?;
         out.set(luxfer_render_params::of(&planned(&made.render, "renders")?.0));
         Ok(())
@@ -283,29 +273,18 @@ pub unsafe extern "C" fn luxfer_plan_get_render_params(
 }
 
 /// Gets the settings to relight with: the given settings with the choices of the plan. Set params->struct_size before
-/// the call. Any thread.
+/// the call. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_relight_params(
     plan: *mut luxfer_plan,
     params: *mut luxfer_relight_params,
+    size: usize,
 ) -> luxfer_status {
     enter(plan, |stage| {
-        let out = Report::new(params)?;
+        let out = Report::new(params, size)?;
         let made = stage.output()?;
         out.set(luxfer_relight_params::of(&planned(&made.relight, "relights")?.0));
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_plan_retain(plan: *mut luxfer_plan) -> luxfer_status {
-    handle::retain(plan)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_plan_release(plan: *mut luxfer_plan) -> luxfer_status {
-    handle::release(plan)
 }

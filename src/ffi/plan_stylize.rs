@@ -45,15 +45,16 @@ pub unsafe extern "C" fn luxfer_plan_start_stylize(
 }
 
 /// Gets the settings to stylise with: the given settings with the choices of the plan. Set params->struct_size before
-/// the call. Any thread.
+/// the call. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_stylize_params(
     plan: *mut luxfer_plan,
     params: *mut luxfer_stylize_params,
+    size: usize,
 ) -> luxfer_status {
     enter(plan, |stage| {
-        let out = Report::new(params)?;
+        let out = Report::new(params, size)?;
         let made = stage.output()?;
         let planned = made.stylize()?;
         out.set(luxfer_stylize_params {

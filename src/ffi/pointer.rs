@@ -1,7 +1,7 @@
 //! The caller's other pointers: results, strings and arrays, at any alignment.
 
 use crate::error::{Error, Result};
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, CString, c_char};
 
 /// A pointer for a result: checked not to be null before the work, written once on success.
 #[derive(Clone, Copy)]
@@ -62,6 +62,12 @@ pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed
     }
     set_optional(needed, text.len() + 1);
     Ok(())
+}
+
+/// A text of an object as a C string; zeros in it are left out.
+pub(super) fn c_string(text: &str) -> CString {
+    let bytes: Vec<u8> = text.bytes().filter(|&byte| byte != 0).collect();
+    CString::new(bytes).unwrap_or_default()
 }
 
 /// `len` bytes in the caller's memory.

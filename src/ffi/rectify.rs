@@ -9,7 +9,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
@@ -99,28 +99,23 @@ pub struct luxfer_rectify_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_rectify_params {
-    const NAME: &'static str = "luxfer_rectify_params";
-    const SIZES: &'static [usize] = &[80];
-    fn defaults() -> Self {
-        let (view, unwarp) = (rectify::Params::default(), UnwarpParams::default());
-        Self {
-            struct_size: 80,
-            detector: LUXFER_LINES_REGIONS,
-            search: LUXFER_SEARCH_MANHATTAN,
-            metric: LUXFER_METRIC_SEGMENT,
-            hough_band: view.hough_band,
-            focal: 0.0,
-            principal: [f64::NAN; 2],
-            plane_axes: [-1; 2],
-            max_side: unwarp.max_side as u32,
-            reserved: 0,
-            max_magnification: unwarp.max_magnification,
-            seed: view.seed,
-        }
+versioned!(luxfer_rectify_params, [80], {
+    let (view, unwarp) = (rectify::Params::default(), UnwarpParams::default());
+    Self {
+        struct_size: 80,
+        detector: LUXFER_LINES_REGIONS,
+        search: LUXFER_SEARCH_MANHATTAN,
+        metric: LUXFER_METRIC_SEGMENT,
+        hough_band: view.hough_band,
+        focal: 0.0,
+        principal: [f64::NAN; 2],
+        plane_axes: [-1; 2],
+        max_side: unwarp.max_side as u32,
+        reserved: 0,
+        max_magnification: unwarp.max_magnification,
+        seed: view.seed,
     }
-}
+});
 
 impl luxfer_rectify_params {
     pub(super) fn params(&self) -> Result<(rectify::Params, UnwarpParams)> {
@@ -164,11 +159,11 @@ impl luxfer_rectify_params {
     }
 }
 
-/// The camera found from the lines of a photo, and the unwarping of the plane. Set struct_size before the call.
+/// The camera found from the lines of a photo, and the unwarping of the plane.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_rectify_report {
-    /// sizeof(luxfer_rectify_report), set by the caller.
+    /// sizeof(luxfer_rectify_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of line segments found.
     pub segments: u32,
@@ -217,35 +212,30 @@ pub struct luxfer_rectify_report {
 
 const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 32 + 48;
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_rectify_report {
-    const NAME: &'static str = "luxfer_rectify_report";
-    const SIZES: &'static [usize] = &[REPORT_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: REPORT_SIZE as u32,
-            segments: 0,
-            vanishing_points: [[0.0; 3]; 3],
-            vanishing_errors: [0.0; 3],
-            vanishing_support: [0; 3],
-            focal_source: 0,
-            focal: 0.0,
-            principal: [0.0; 2],
-            axes: [[0.0; 3]; 3],
-            is_unwarped: 0,
-            reserved: 0,
-            to_photo: [0.0; 9],
-            corners: [[0.0; 2]; 4],
-            corner_errors: [0.0; 4],
-            pixel_size: 0.0,
-            aspect_confidence: 0.0,
-            distortion: f64::NAN,
-            distortion_error: f64::NAN,
-            squareness: [f64::NAN; 3],
-            squareness_errors: [f64::NAN; 3],
-        }
+versioned!(luxfer_rectify_report, [REPORT_SIZE], {
+    Self {
+        struct_size: REPORT_SIZE as u32,
+        segments: 0,
+        vanishing_points: [[0.0; 3]; 3],
+        vanishing_errors: [0.0; 3],
+        vanishing_support: [0; 3],
+        focal_source: 0,
+        focal: 0.0,
+        principal: [0.0; 2],
+        axes: [[0.0; 3]; 3],
+        is_unwarped: 0,
+        reserved: 0,
+        to_photo: [0.0; 9],
+        corners: [[0.0; 2]; 4],
+        corner_errors: [0.0; 4],
+        pixel_size: 0.0,
+        aspect_confidence: 0.0,
+        distortion: f64::NAN,
+        distortion_error: f64::NAN,
+        squareness: [f64::NAN; 3],
+        squareness_errors: [f64::NAN; 3],
     }
-}
+});
 
 impl luxfer_rectify_report {
     pub(super) fn new(view: &View, unwarped: Option<&Unwarped>) -> Self {
@@ -443,29 +433,18 @@ pub unsafe extern "C" fn luxfer_rectify_warp(
     })
 }
 
-/// Gets the results and their errors. Any thread.
+/// Gets the results and their errors. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_get_report(
     rectify: *mut luxfer_rectify,
     report: *mut luxfer_rectify_report,
+    size: usize,
 ) -> luxfer_status {
     enter(rectify, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         out.set(luxfer_rectify_report::new(&output.view, output.unwarped.as_deref()));
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_retain(rectify: *mut luxfer_rectify) -> luxfer_status {
-    handle::retain(rectify)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_release(rectify: *mut luxfer_rectify) -> luxfer_status {
-    handle::release(rectify)
 }

@@ -7,7 +7,7 @@ use super::context::{Context, luxfer_context};
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::scene::{SceneObject, colour, luxfer_scene, missing};
 use super::stage::{Stage, need};
@@ -81,14 +81,7 @@ pub struct luxfer_relight_params {
     pub seed: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_relight_params {
-    const NAME: &'static str = "luxfer_relight_params";
-    const SIZES: &'static [usize] = &[32];
-    fn defaults() -> Self {
-        Self::of(&relight::Params::default())
-    }
-}
+versioned!(luxfer_relight_params, [32], { Self::of(&relight::Params::default()) });
 
 impl luxfer_relight_params {
     pub(super) fn of(d: &relight::Params) -> Self {
@@ -126,11 +119,11 @@ impl luxfer_relight_params {
     }
 }
 
-/// The solution and its confidence. Set struct_size before the call.
+/// The solution and its confidence.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_relight_report {
-    /// sizeof(luxfer_relight_report), set by the caller.
+    /// sizeof(luxfer_relight_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of traced paths.
     pub paths: u32,
@@ -153,25 +146,20 @@ pub struct luxfer_relight_report {
     pub delta_e: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_relight_report {
-    const NAME: &'static str = "luxfer_relight_report";
-    const SIZES: &'static [usize] = &[136];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 136,
-            paths: 0,
-            scale: [0.0; 3],
-            half_width: [0.0; 3],
-            response: [0.0; 3],
-            background: [0.0; 3],
-            outcome: [0; 3],
-            reserved: 0,
-            error: 0.0,
-            delta_e: 0.0,
-        }
+versioned!(luxfer_relight_report, [136], {
+    Self {
+        struct_size: 136,
+        paths: 0,
+        scale: [0.0; 3],
+        half_width: [0.0; 3],
+        response: [0.0; 3],
+        background: [0.0; 3],
+        outcome: [0; 3],
+        reserved: 0,
+        error: 0.0,
+        delta_e: 0.0,
     }
-}
+});
 
 pub(super) fn quantity(value: luxfer_quantity) -> Result<Quantity> {
     match value {
@@ -292,9 +280,9 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
     })
 }
 
-/// Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips should be
-/// LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their target if this
-/// respects the limit, else the scale that reaches the limit. Any thread.
+/// Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips
+/// should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their
+/// target if this respects the limit, else the scale that reaches the limit. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_constraint(
@@ -361,28 +349,17 @@ pub unsafe extern "C" fn luxfer_relight_start(
     })
 }
 
-/// Gets the solution and its confidence. Any thread.
+/// Gets the solution and its confidence. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_get_report(
     relight: *mut luxfer_relight,
     report: *mut luxfer_relight_report,
+    size: usize,
 ) -> luxfer_status {
     enter(relight, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         out.set(luxfer_relight_report::new(&*stage.output()?));
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_retain(relight: *mut luxfer_relight) -> luxfer_status {
-    handle::retain(relight)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_release(relight: *mut luxfer_relight) -> luxfer_status {
-    handle::release(relight)
 }

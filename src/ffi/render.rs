@@ -8,7 +8,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::scene_parts::luxfer_camera_params;
@@ -69,7 +69,7 @@ pub struct luxfer_render_params {
     /// 0: no target.
     pub pixel_error: f32,
     /// Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light that
-    /// surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number of
+    /// surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the number of
     /// bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased.
     pub bounce_error: f32,
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default
@@ -81,14 +81,7 @@ pub struct luxfer_render_params {
     pub relative_error: f32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_render_params {
-    const NAME: &'static str = "luxfer_render_params";
-    const SIZES: &'static [usize] = &[48];
-    fn defaults() -> Self {
-        Self::of(&render::Params::default())
-    }
-}
+versioned!(luxfer_render_params, [48], { Self::of(&render::Params::default()) });
 
 impl luxfer_render_params {
     pub(super) fn of(d: &render::Params) -> Self {
@@ -124,11 +117,11 @@ impl luxfer_render_params {
     }
 }
 
-/// Quality of a rendering. Set struct_size before the call.
+/// Quality of a rendering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_render_report {
-    /// sizeof(luxfer_render_report), set by the caller.
+    /// sizeof(luxfer_render_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Mean number of paths per pixel so far.
     pub samples: u32,
@@ -146,19 +139,15 @@ pub struct luxfer_render_report {
     pub relative_error: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_render_report {
-    const NAME: &'static str = "luxfer_render_report";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self { struct_size: 40, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0, relative_error: 0.0 }
-    }
-}
+versioned!(luxfer_render_report, [40], {
+    Self { struct_size: 40, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0, relative_error: 0.0 }
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
-    camera: Viewpoint,
+    /// The first camera of the scene unless the caller gives one.
+    camera: Option<Camera>,
     pub(super) outputs: Outputs,
     /// Files to be merged.
     pub(super) parts: Vec<parts::File>,
@@ -170,11 +159,8 @@ impl Inputs {
         let object = need(&self.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
         let camera = match &self.camera {
-            Viewpoint::Own(camera) => camera.clone(),
-            Viewpoint::OfScene(index) => {
-                let found = scene.cameras.get(*index as usize).cloned();
-                found.ok_or_else(|| missing("camera", *index, scene.cameras.len()))?
-            }
+            Some(camera) => camera.clone(),
+            None => scene.cameras.first().cloned().ok_or_else(|| missing("camera", 0, 0))?,
         };
         Ok((object, scene, camera))
     }
@@ -199,18 +185,6 @@ impl Shot {
     /// The scene made ready.
     pub(super) fn world(&self, job: Job) -> Result<Arc<World>> {
         self.object.world(&self.scene, job)
-    }
-}
-
-#[derive(Clone)]
-enum Viewpoint {
-    OfScene(u32),
-    Own(Camera),
-}
-
-impl Default for Viewpoint {
-    fn default() -> Self {
-        Self::OfScene(0)
     }
 }
 
@@ -253,28 +227,17 @@ pub unsafe extern "C" fn luxfer_render_set_scene(
     })
 }
 
-/// Renders from a camera of the scene; the default is camera 0. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_set_camera_index(render: *mut luxfer_render, camera: u32) -> luxfer_status {
-    enter(render, |stage| {
-        stage.change(|inputs| {
-            inputs.camera = Viewpoint::OfScene(camera);
-            Ok(())
-        })
-    })
-}
-
-/// Renders from the given camera instead of one of the scene. camera may be NULL for the defaults of
-/// luxfer_camera_params. Any thread.
+/// Sets the camera, such as one that luxfer_scene_get_camera has written. camera may be NULL, the default: the first
+/// camera of the scene. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_camera(
     render: *mut luxfer_render,
     camera: *const luxfer_camera_params,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let camera = params::read(camera)?.camera()?;
+        let camera = if camera.is_null() { None } else { Some(params::read_required(camera)?.camera()?) };
         stage.change(|inputs| {
-            inputs.camera = Viewpoint::Own(camera);
+            inputs.camera = camera;
             Ok(())
         })
     })
@@ -343,15 +306,16 @@ pub unsafe extern "C" fn luxfer_render_get_image(
     })
 }
 
-/// Gets the current quality of the rendering. Any thread.
+/// Gets the current quality of the rendering. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before the first pass of a job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_report(
     render: *mut luxfer_render,
     report: *mut luxfer_render_report,
+    size: usize,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         out.set(luxfer_render_report {
             samples: output.samples,
@@ -363,16 +327,4 @@ pub unsafe extern "C" fn luxfer_render_get_report(
         });
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_retain(render: *mut luxfer_render) -> luxfer_status {
-    handle::retain(render)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_release(render: *mut luxfer_render) -> luxfer_status {
-    handle::release(render)
 }

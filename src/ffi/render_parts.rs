@@ -12,7 +12,7 @@
 
 use super::guard::{enter, guard};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::text;
 use super::render::{luxfer_render, luxfer_render_params};
 use super::status::luxfer_status;
@@ -44,14 +44,9 @@ pub struct luxfer_render_part {
     pub samples: u32,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_render_part {
-    const NAME: &'static str = "luxfer_render_part";
-    const SIZES: &'static [usize] = &[28];
-    fn defaults() -> Self {
-        Self { struct_size: 28, x: 0, y: 0, width: 0, height: 0, first_sample: 0, samples: 0 }
-    }
-}
+versioned!(luxfer_render_part, [28], {
+    Self { struct_size: 28, x: 0, y: 0, width: 0, height: 0, first_sample: 0, samples: 0 }
+});
 
 impl luxfer_render_part {
     fn part(&self, params: &Params) -> Part {
@@ -67,16 +62,17 @@ impl luxfer_render_part {
     }
 }
 
-/// Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is wrong.
+/// Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is
+/// wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_part_init(part: *mut luxfer_render_part, size: usize) -> luxfer_status {
     guard(|| params::init(part, size))
 }
 
-/// Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of about
-/// equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all rectangles
-/// of one range come before the next range. params may be NULL for the defaults; set part->struct_size before the call.
-/// Any thread.
+/// Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of
+/// about equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all
+/// rectangles of one range come before the next range. params may be NULL for the defaults; set part->struct_size
+/// before the call. size is sizeof *part. Any thread.
 /// LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
 /// would be empty.
 #[unsafe(no_mangle)]
@@ -88,9 +84,10 @@ pub unsafe extern "C" fn luxfer_render_split(
     ranges: u32,
     index: u32,
     part: *mut luxfer_render_part,
+    size: usize,
 ) -> luxfer_status {
     enter(render, |_| {
-        let out = Report::new(part)?;
+        let out = Report::new(part, size)?;
         let part = Part::split(&params::read(params)?.params(), [columns, rows, ranges], index)?;
         out.set(luxfer_render_part {
             x: part.x as u32,

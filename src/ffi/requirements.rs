@@ -5,7 +5,7 @@
 //! image. You need not call these functions: they only report what the renderer does by itself.
 
 use super::guard::enter;
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::copy_text;
 use super::query::LUXFER_NONE;
 use super::scene::luxfer_scene;
@@ -37,11 +37,11 @@ pub const LUXFER_LIGHTS_DIRECTIONAL: u32 = 16;
 /// The environment emits.
 pub const LUXFER_LIGHTS_ENVIRONMENT: u32 = 32;
 
-/// Features that a scene requires of the renderer. Set struct_size before the call.
+/// Features that a scene requires of the renderer.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_requirements {
-    /// sizeof(luxfer_requirements), set by the caller.
+    /// sizeof(luxfer_requirements), set by the function that fills the struct.
     pub struct_size: u32,
     /// Kinds of scattering that can occur: LUXFER_SCATTERING_ flags.
     pub scattering: u32,
@@ -62,35 +62,32 @@ pub struct luxfer_requirements {
     pub flat_triangles: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_requirements {
-    const NAME: &'static str = "luxfer_requirements";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 40,
-            scattering: 0,
-            lights: 0,
-            textures: 0,
-            bounces: 0,
-            brightest_material: LUXFER_NONE,
-            albedo: [0.0; 3],
-            flat_triangles: 0,
-        }
+versioned!(luxfer_requirements, [40], {
+    Self {
+        struct_size: 40,
+        scattering: 0,
+        lights: 0,
+        textures: 0,
+        bounces: 0,
+        brightest_material: LUXFER_NONE,
+        albedo: [0.0; 3],
+        flat_triangles: 0,
     }
-}
+});
 
 /// Gets the features that a scene requires of the renderer; error, in [0, 1), is the share of light for the field
-/// bounces. The first call after a change of the scene prepares it for tracing. Any thread.
+/// bounces. The first call after a change of the scene prepares it for tracing. size is sizeof *requirements. Any
+/// thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_requirements(
+pub unsafe extern "C" fn luxfer_scene_get_requirements(
     scene: *mut luxfer_scene,
     error: f32,
     requirements: *mut luxfer_requirements,
+    size: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let out = Report::new(requirements)?;
+        let out = Report::new(requirements, size)?;
         if !(0.0..1.0).contains(&error) {
             return Err(Error::argument(format!("error is {error}; it must lie in [0, 1)")));
         }
@@ -124,7 +121,7 @@ pub unsafe extern "C" fn luxfer_scene_requirements(
 /// capacity is 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_requirements_text(
+pub unsafe extern "C" fn luxfer_scene_get_requirements_text(
     scene: *mut luxfer_scene,
     buffer: *mut c_char,
     capacity: usize,

@@ -8,8 +8,8 @@
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, lock};
 use super::handle::{self, Handle, Owned, tag};
-use super::image::luxfer_image;
-use super::params::{Report, Versioned};
+use super::image::{Pixels, luxfer_image};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
@@ -34,11 +34,11 @@ pub struct luxfer_scene {
 /// throw an exception or leave by longjmp.
 pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
-/// Numbers of the objects in a scene. Set struct_size before the call.
+/// Numbers of the objects in a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_scene_counts {
-    /// sizeof(luxfer_scene_counts), set by the caller.
+    /// sizeof(luxfer_scene_counts), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below.
     pub meshes: u32,
@@ -54,20 +54,15 @@ pub struct luxfer_scene_counts {
     pub triangles: u64,
 }
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_scene_counts {
-    const NAME: &'static str = "luxfer_scene_counts";
-    const SIZES: &'static [usize] = &[32];
-    fn defaults() -> Self {
-        Self { struct_size: 32, meshes: 0, materials: 0, textures: 0, lights: 0, cameras: 0, triangles: 0 }
-    }
-}
+versioned!(luxfer_scene_counts, [32], {
+    Self { struct_size: 32, meshes: 0, materials: 0, textures: 0, lights: 0, cameras: 0, triangles: 0 }
+});
 
-/// A planar surface of a scene. Set struct_size before the call.
+/// A planar surface of a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_surface {
-    /// sizeof(luxfer_surface), set by the caller.
+    /// sizeof(luxfer_surface), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of triangles.
     pub triangles: u32,
@@ -88,24 +83,19 @@ pub struct luxfer_surface {
     pub sloped_area: f32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_surface {
-    const NAME: &'static str = "luxfer_surface";
-    const SIZES: &'static [usize] = &[72];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 72,
-            triangles: 0,
-            origin: [0.0; 3],
-            u_axis: [0.0; 3],
-            v_axis: [0.0; 3],
-            normal: [0.0; 3],
-            size: [0.0; 2],
-            area: 0.0,
-            sloped_area: 0.0,
-        }
+versioned!(luxfer_surface, [72], {
+    Self {
+        struct_size: 72,
+        triangles: 0,
+        origin: [0.0; 3],
+        u_axis: [0.0; 3],
+        v_axis: [0.0; 3],
+        normal: [0.0; 3],
+        size: [0.0; 2],
+        area: 0.0,
+        sloped_area: 0.0,
     }
-}
+});
 
 /// The object behind a `luxfer_scene` handle.
 pub(super) struct SceneObject {
@@ -280,14 +270,15 @@ pub unsafe extern "C" fn luxfer_scene_export_memory(
     })
 }
 
-/// Gets the numbers of the objects in a scene. Any thread.
+/// Gets the numbers of the objects in a scene. size is sizeof *counts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_counts(
     scene: *mut luxfer_scene,
     counts: *mut luxfer_scene_counts,
+    size: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let out = Report::new(counts)?;
+        let out = Report::new(counts, size)?;
         let scene = object.snapshot();
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         out.set(luxfer_scene_counts {
@@ -303,32 +294,14 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
     })
 }
 
-/// Sets an environment that emits the same radiance from all directions: red, green and blue in cd/m², each finite and
-/// >= 0. It replaces any earlier environment. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_set_environment(
-    scene: *mut luxfer_scene,
-    red: f32,
-    green: f32,
-    blue: f32,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let radiance = colour("environment", red, green, blue)?;
-        object.change(0, |scene| {
-            scene.environment = Some(Environment::Constant(radiance));
-            Ok(())
-        })
-    })
-}
-
-/// Sets an environment from an equirectangular image in linear values, multiplied by (red, green, blue), each finite
-/// and >= 0: radiance in cd/m². The renderer samples it in proportion to its brightness. The centre of the image is
-/// towards -z, its top towards +y, the centre of its right half towards +x. The image is copied and replaces any
-/// earlier environment. Any thread.
+/// Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
+/// or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
+/// image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
+/// right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_set_environment_image(
+pub unsafe extern "C" fn luxfer_scene_set_environment(
     scene: *mut luxfer_scene,
     image: *mut luxfer_image,
     red: f32,
@@ -336,8 +309,13 @@ pub unsafe extern "C" fn luxfer_scene_set_environment_image(
     blue: f32,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let image = handle::borrow_in(&object.context, image, "image")?;
         let strength = colour("environment", red, green, blue)?;
+        let Some(image) = Pixels::optional(&object.context, image, "image")? else {
+            return object.change(0, |scene| {
+                scene.environment = Some(Environment::Constant(strength));
+                Ok(())
+            });
+        };
         if let Some(v) = image.image().data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
             return Err(Error::argument(format!("a sample of the image is {v}; it must be finite and not negative")));
         }
@@ -378,8 +356,8 @@ pub unsafe extern "C" fn luxfer_scene_set_emission(
     })
 }
 
-/// Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. Any
-/// thread.
+/// Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. size is
+/// sizeof *found. Any thread.
 /// LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
 /// there is no planar surface.
 #[unsafe(no_mangle)]
@@ -387,9 +365,10 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
     scene: *mut luxfer_scene,
     name: *const c_char,
     found: *mut luxfer_surface,
+    size: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let out = Report::new(found)?;
+        let out = Report::new(found, size)?;
         let surface = surface::find(&object.snapshot(), text(name, "name")?)?;
         out.set(luxfer_surface {
             triangles: u32::try_from(surface.triangles.len()).unwrap_or(u32::MAX),
@@ -436,18 +415,6 @@ pub unsafe extern "C" fn luxfer_scene_place_emission(
         set_optional(material, placed.material as u32);
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_retain(scene: *mut luxfer_scene) -> luxfer_status {
-    handle::retain(scene)
-}
-
-/// Removes a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_release(scene: *mut luxfer_scene) -> luxfer_status {
-    handle::release(scene)
 }
 
 /// A colour that light can have.

@@ -6,7 +6,7 @@
 use super::distribution::luxfer_distribution;
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::set_optional;
 use super::scene::{colour, luxfer_scene};
 use super::status::luxfer_status;
@@ -49,23 +49,18 @@ pub struct luxfer_light_params {
     pub reserved: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_light_params {
-    const NAME: &'static str = "luxfer_light_params";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 56,
-            kind: LUXFER_LIGHT_POINT,
-            position: [0.0; 3],
-            direction: [0.0, -1.0, 0.0],
-            intensity: [1.0; 3],
-            inner_angle: 0.0,
-            outer_angle: std::f32::consts::FRAC_PI_4,
-            reserved: 0,
-        }
+versioned!(luxfer_light_params, [56], {
+    Self {
+        struct_size: 56,
+        kind: LUXFER_LIGHT_POINT,
+        position: [0.0; 3],
+        direction: [0.0, -1.0, 0.0],
+        intensity: [1.0; 3],
+        inner_angle: 0.0,
+        outer_angle: std::f32::consts::FRAC_PI_4,
+        reserved: 0,
     }
-}
+});
 
 impl luxfer_light_params {
     fn light(&self) -> Result<PunctualLight> {
@@ -137,22 +132,17 @@ pub struct luxfer_luminaire_params {
     pub colour: [f32; 3],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_luminaire_params {
-    const NAME: &'static str = "luxfer_luminaire_params";
-    const SIZES: &'static [usize] = &[64];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 64,
-            reserved: 0,
-            flux: 0.0,
-            position: [0.0; 3],
-            axis: [0.0, -1.0, 0.0],
-            c0: [1.0, 0.0, 0.0],
-            colour: [1.0; 3],
-        }
+versioned!(luxfer_luminaire_params, [64], {
+    Self {
+        struct_size: 64,
+        reserved: 0,
+        flux: 0.0,
+        position: [0.0; 3],
+        axis: [0.0, -1.0, 0.0],
+        c0: [1.0, 0.0, 0.0],
+        colour: [1.0; 3],
     }
-}
+});
 
 impl luxfer_luminaire_params {
     /// As light of a distribution of a flux, which gets an index.

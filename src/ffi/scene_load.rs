@@ -1,12 +1,12 @@
 //! Scene files
 //!
-//! Loads glTF 2.0 files. luxfer_scene_get_warnings and luxfer_scene_requirements_text name the features of a file that
+//! Loads glTF 2.0 files. luxfer_get_warnings and luxfer_scene_get_requirements_text name the features of a file that
 //! are not rendered.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pointer::{Out, bytes, text};
 use super::scene::{SceneObject, luxfer_scene};
 use super::status::luxfer_status;
@@ -25,7 +25,7 @@ pub struct luxfer_scene_load_params {
     /// 1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the default:
     /// this gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices or
     /// addresses on a network.
-    pub outside: u32,
+    pub allow_external_files: u32,
     /// Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
     /// leaves intensities and luminances as they are. 0.001: the file is in millimetres.
     pub unit: f64,
@@ -36,23 +36,16 @@ const SIZE: usize = 16;
 /// Units that can be meant: a micrometre to a thousand kilometres. [convention]
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_scene_load_params {
-    const NAME: &'static str = "luxfer_scene_load_params";
-    const SIZES: &'static [usize] = &[SIZE];
-    fn defaults() -> Self {
-        Self { struct_size: SIZE as u32, outside: 0, unit: 1.0 }
-    }
-}
+versioned!(luxfer_scene_load_params, [SIZE], { Self { struct_size: SIZE as u32, allow_external_files: 0, unit: 1.0 } });
 
 impl luxfer_scene_load_params {
     fn options(self, budget: &dyn gltf::Budget) -> Result<gltf::Options<'_>> {
-        crate::error::check_range("outside", self.outside, 0, 1)?;
+        crate::error::check_range("allow_external_files", self.allow_external_files, 0, 1)?;
         if !UNITS.contains(&self.unit) {
             let (low, high) = (UNITS.start(), UNITS.end());
             return Err(Error::argument(format!("unit is {}; it must lie in [{low}, {high}] metres", self.unit)));
         }
-        Ok(gltf::Options { budget, unit: self.unit, is_open: self.outside == 1 })
+        Ok(gltf::Options { budget, unit: self.unit, is_open: self.allow_external_files == 1 })
     }
 }
 
@@ -67,24 +60,13 @@ pub unsafe extern "C" fn luxfer_scene_load_params_init(
 }
 
 /// Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
-/// The caller releases *scene. Any thread.
+/// params may be NULL for the defaults. The caller releases *scene. Any thread.
 /// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
 /// LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
-/// file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out
+/// of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load(
-    context: *mut luxfer_context,
-    path: *const c_char,
-    scene: *mut *mut luxfer_scene,
-) -> luxfer_status {
-    // SAFETY: by the contract of this function.
-    unsafe { luxfer_scene_load_with(context, path, std::ptr::null(), scene) }
-}
-
-/// Loads a scene as luxfer_scene_load does, with settings; params may be NULL for the defaults.
-/// LUXFER_INVALID_ARGUMENT also if a setting is out of range.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_load_with(
     context: *mut luxfer_context,
     path: *const c_char,
     params: *const luxfer_scene_load_params,
@@ -104,20 +86,6 @@ pub unsafe extern "C" fn luxfer_scene_load_with(
 /// base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(
-    context: *mut luxfer_context,
-    data: *const c_void,
-    size: usize,
-    base_path: *const c_char,
-    scene: *mut *mut luxfer_scene,
-) -> luxfer_status {
-    // SAFETY: by the contract of this function.
-    unsafe { luxfer_scene_load_memory_with(context, data, size, base_path, std::ptr::null(), scene) }
-}
-
-/// Loads a scene as luxfer_scene_load_memory does, with settings; params may be NULL for the defaults.
-/// LUXFER_INVALID_ARGUMENT also if a setting is out of range.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_load_memory_with(
     context: *mut luxfer_context,
     data: *const c_void,
     size: usize,

@@ -7,7 +7,7 @@
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::{Out, bytes, set_optional};
 use super::query::LUXFER_NONE;
 use super::scene::{colour, luxfer_scene, missing};
@@ -63,28 +63,23 @@ pub struct luxfer_material_params {
 
 const MATERIAL_SIZE: usize = 64 + size_of::<usize>();
 
-// SAFETY: numbers, and a pointer that is checked before use.
-unsafe impl Versioned for luxfer_material_params {
-    const NAME: &'static str = "luxfer_material_params";
-    const SIZES: &'static [usize] = &[MATERIAL_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: MATERIAL_SIZE as u32,
-            double_sided: 1,
-            name: std::ptr::null(),
-            base_color: [0.8; 3],
-            metallic: 0.0,
-            roughness: 1.0,
-            emission: [0.0; 3],
-            transmission: 0.0,
-            ior: 1.5,
-            alpha: 1.0,
-            alpha_mode: LUXFER_ALPHA_OPAQUE,
-            alpha_cutoff: 0.5,
-            normal_scale: 1.0,
-        }
+versioned!(luxfer_material_params, [MATERIAL_SIZE], {
+    Self {
+        struct_size: MATERIAL_SIZE as u32,
+        double_sided: 1,
+        name: std::ptr::null(),
+        base_color: [0.8; 3],
+        metallic: 0.0,
+        roughness: 1.0,
+        emission: [0.0; 3],
+        transmission: 0.0,
+        ior: 1.5,
+        alpha: 1.0,
+        alpha_mode: LUXFER_ALPHA_OPAQUE,
+        alpha_cutoff: 0.5,
+        normal_scale: 1.0,
     }
-}
+});
 
 /// Purpose of a material's texture: a LUXFER_TEXTURE_ value.
 pub type luxfer_texture_role = i32;
@@ -106,11 +101,11 @@ pub const LUXFER_WRAP_CLAMP: luxfer_wrap = 1;
 /// The texture repeats, mirrored every second time.
 pub const LUXFER_WRAP_MIRROR: luxfer_wrap = 2;
 
-/// The texture that a material uses for one purpose. Set struct_size before the call.
+/// The texture that a material uses for one purpose.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_texture_use {
-    /// sizeof(luxfer_texture_use), set by the caller.
+    /// sizeof(luxfer_texture_use), set by the function that fills the struct.
     pub struct_size: u32,
     /// Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0.
     pub texture: u32,
@@ -124,14 +119,9 @@ pub struct luxfer_texture_use {
     pub transform: [f32; 6],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_texture_use {
-    const NAME: &'static str = "luxfer_texture_use";
-    const SIZES: &'static [usize] = &[44];
-    fn defaults() -> Self {
-        Self { struct_size: 44, texture: LUXFER_NONE, uv_set: 0, wrap_u: 0, wrap_v: 0, transform: [0.0; 6] }
-    }
-}
+versioned!(luxfer_texture_use, [44], {
+    Self { struct_size: 44, texture: LUXFER_NONE, uv_set: 0, wrap_u: 0, wrap_v: 0, transform: [0.0; 6] }
+});
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
@@ -185,16 +175,18 @@ pub unsafe extern "C" fn luxfer_scene_set_material(
     })
 }
 
-/// Reads a material; set params->struct_size before the call. params->name becomes NULL. Any thread.
+/// Reads a material; set params->struct_size before the call. params->name becomes NULL. size is sizeof *params. Any
+/// thread.
 /// LUXFER_NOT_FOUND if there is no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_material(
     scene: *mut luxfer_scene,
     index: u32,
     params: *mut luxfer_material_params,
+    size: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let out = Report::new(params)?;
+        let out = Report::new(params, size)?;
         let scene = object.snapshot();
         let material = material(&scene, index)?;
         let defaults = luxfer_material_params::defaults();
@@ -294,7 +286,8 @@ pub unsafe extern "C" fn luxfer_scene_set_material_texture(
     })
 }
 
-/// Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread.
+/// Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. size is sizeof *texture_use.
+/// Any thread.
 /// LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_material_texture(
@@ -302,9 +295,10 @@ pub unsafe extern "C" fn luxfer_scene_get_material_texture(
     material_index: u32,
     role: luxfer_texture_role,
     texture_use: *mut luxfer_texture_use,
+    size: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let out = Report::new(texture_use)?;
+        let out = Report::new(texture_use, size)?;
         let scene = object.snapshot();
         let used = *slot(&mut material(&scene, material_index)?.clone(), role)?;
         out.set(used.map_or_else(luxfer_texture_use::defaults, |used| told(&scene, &used)));

@@ -4,7 +4,7 @@
 //! copy the arrays, which may have any alignment and stride.
 
 use super::guard::{enter, guard};
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::{bytes, set_optional, text};
 use super::scene::{luxfer_scene, missing};
 use super::status::luxfer_status;
@@ -54,30 +54,25 @@ pub struct luxfer_mesh_params {
 
 const MESH_SIZE: usize = 8 + 13 * size_of::<usize>();
 
-// SAFETY: integers, and pointers that are checked before use.
-unsafe impl Versioned for luxfer_mesh_params {
-    const NAME: &'static str = "luxfer_mesh_params";
-    const SIZES: &'static [usize] = &[MESH_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: MESH_SIZE as u32,
-            material: 0,
-            name: std::ptr::null(),
-            vertex_count: 0,
-            positions: std::ptr::null(),
-            position_stride: 0,
-            normals: std::ptr::null(),
-            normal_stride: 0,
-            uvs: std::ptr::null(),
-            uv_stride: 0,
-            triangle_count: 0,
-            indices: std::ptr::null(),
-            index_stride: 0,
-            colours: std::ptr::null(),
-            colour_stride: 0,
-        }
+versioned!(luxfer_mesh_params, [MESH_SIZE], {
+    Self {
+        struct_size: MESH_SIZE as u32,
+        material: 0,
+        name: std::ptr::null(),
+        vertex_count: 0,
+        positions: std::ptr::null(),
+        position_stride: 0,
+        normals: std::ptr::null(),
+        normal_stride: 0,
+        uvs: std::ptr::null(),
+        uv_stride: 0,
+        triangle_count: 0,
+        indices: std::ptr::null(),
+        index_stride: 0,
+        colours: std::ptr::null(),
+        colour_stride: 0,
     }
-}
+});
 
 /// A pinhole camera. Fill it with luxfer_camera_params_init.
 #[repr(C)]
@@ -97,21 +92,9 @@ pub struct luxfer_camera_params {
     pub reserved: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_camera_params {
-    const NAME: &'static str = "luxfer_camera_params";
-    const SIZES: &'static [usize] = &[48];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 48,
-            fov_y: 1.0,
-            position: [0.0; 3],
-            target: [0.0, 0.0, -1.0],
-            up: [0.0, 1.0, 0.0],
-            reserved: 0,
-        }
-    }
-}
+versioned!(luxfer_camera_params, [48], {
+    Self { struct_size: 48, fov_y: 1.0, position: [0.0; 3], target: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], reserved: 0 }
+});
 
 impl luxfer_camera_params {
     pub(super) fn camera(&self) -> Result<Camera> {
@@ -284,16 +267,17 @@ pub unsafe extern "C" fn luxfer_scene_set_camera(
     })
 }
 
-/// Reads a camera; set params->struct_size before the call. Any thread.
+/// Reads a camera; set params->struct_size before the call. size is sizeof *params. Any thread.
 /// LUXFER_NOT_FOUND if there is no such camera.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_camera(
     scene: *mut luxfer_scene,
     index: u32,
     params: *mut luxfer_camera_params,
+    size: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let out = Report::new(params)?;
+        let out = Report::new(params, size)?;
         let scene = object.snapshot();
         let camera = scene.cameras.get(index as usize).ok_or_else(|| missing("camera", index, scene.cameras.len()))?;
         out.set(luxfer_camera_params {

@@ -4,7 +4,7 @@
 //! cameras, a host can copy a whole scene.
 
 use super::guard::enter;
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{bytes_mut, copy_text};
 use super::query::LUXFER_NONE;
 use super::scene::{luxfer_scene, missing};
@@ -13,11 +13,11 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Mesh, Scene};
 use std::ffi::c_char;
 
-/// A mesh of a scene. Set struct_size before the call.
+/// A mesh of a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_mesh_info {
-    /// sizeof(luxfer_mesh_info), set by the caller.
+    /// sizeof(luxfer_mesh_info), set by the function that fills the struct.
     pub struct_size: u32,
     /// Index of the mesh's material.
     pub material: u32,
@@ -37,35 +37,31 @@ pub struct luxfer_mesh_info {
 
 const MESH_INFO_SIZE: usize = 24 + 2 * size_of::<usize>();
 
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_mesh_info {
-    const NAME: &'static str = "luxfer_mesh_info";
-    const SIZES: &'static [usize] = &[MESH_INFO_SIZE];
-    fn defaults() -> Self {
-        let struct_size = MESH_INFO_SIZE as u32;
-        Self {
-            struct_size,
-            material: 0,
-            vertex_count: 0,
-            triangle_count: 0,
-            has_normals: 0,
-            uv_sets: 0,
-            has_colours: 0,
-            reserved: 0,
-        }
+versioned!(luxfer_mesh_info, [MESH_INFO_SIZE], {
+    let struct_size = MESH_INFO_SIZE as u32;
+    Self {
+        struct_size,
+        material: 0,
+        vertex_count: 0,
+        triangle_count: 0,
+        has_normals: 0,
+        uv_sets: 0,
+        has_colours: 0,
+        reserved: 0,
     }
-}
+});
 
-/// Gets the sizes and attributes of a mesh. Any thread.
+/// Gets the sizes and attributes of a mesh. size is sizeof *info. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_mesh(
     scene: *mut luxfer_scene,
     index: u32,
     info: *mut luxfer_mesh_info,
+    size: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let out = Report::new(info)?;
+        let out = Report::new(info, size)?;
         let scene = object.snapshot();
         let mesh = mesh(&scene, index)?;
         out.set(luxfer_mesh_info {
@@ -81,7 +77,7 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh(
     })
 }
 
-/// Copies the name of a mesh into buffer, as luxfer_context_last_error copies a message. Any thread.
+/// Copies the name of a mesh into buffer, as luxfer_context_get_last_error copies a message. Any thread.
 /// LUXFER_NOT_FOUND if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
@@ -151,7 +147,8 @@ pub unsafe extern "C" fn luxfer_scene_read_mesh_uvs(
 
 /// Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
 /// number of vertices. Any thread.
-/// LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+/// LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too
+/// small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_read_mesh_colours(
     scene: *mut luxfer_scene,

@@ -8,28 +8,20 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
-use super::pointer::{Out, bytes, text};
+use super::params::{self, Report, Versioned, versioned};
+use super::pointer::Out;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
+use super::strokes::{Painted, luxfer_phase, luxfer_strokes, of_phase};
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::segment::{self, Segmentation, Stroke, StrokeSet, Subject, strokes};
-use glam::DVec2;
-use std::ffi::{c_char, c_void};
+use crate::segment::{self, Segmentation, Stroke, Subject};
 use std::sync::Arc;
 
 /// A segmentation by strokes. See luxfer_segment_create.
 pub struct luxfer_segment {
     _opaque: [u8; 0],
 }
-
-/// The mask that strokes are for: a LUXFER_PHASE_ value.
-pub type luxfer_phase = i32;
-/// The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too.
-pub const LUXFER_PHASE_PLANE: luxfer_phase = 0;
-/// The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them.
-pub const LUXFER_PHASE_LIGHTS: luxfer_phase = 1;
 
 /// An image of a segmentation: a LUXFER_SEGMENT_ value.
 pub type luxfer_segment_image = i32;
@@ -46,9 +38,9 @@ pub type luxfer_subject = i32;
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is judged by its features.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
-/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
-/// without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as well. Negative strokes are
-/// not needed. The first three channels of the features must be CIELAB.
+/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or
+/// more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_region are found as
+/// well. Negative strokes are not needed. The first three channels of the features must be CIELAB.
 pub const LUXFER_SUBJECT_LAMPS: luxfer_subject = 2;
 
 /// Settings of a segmentation. Fill them with luxfer_segment_params_init.
@@ -81,25 +73,20 @@ pub struct luxfer_segment_params {
     pub reserved: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_segment_params {
-    const NAME: &'static str = "luxfer_segment_params";
-    const SIZES: &'static [usize] = &[48];
-    fn defaults() -> Self {
-        let defaults = segment::Params::default();
-        Self {
-            struct_size: 48,
-            samples_per_class: defaults.samples_per_class as u32,
-            channels: defaults.channels,
-            refine_radius: defaults.refine_radius as u32,
-            ridge: defaults.ridge,
-            seed: defaults.seed,
-            refine_tolerance: defaults.refine_tolerance,
-            subject: LUXFER_SUBJECT_AUTO,
-            reserved: 0,
-        }
+versioned!(luxfer_segment_params, [48], {
+    let defaults = segment::Params::default();
+    Self {
+        struct_size: 48,
+        samples_per_class: defaults.samples_per_class as u32,
+        channels: defaults.channels,
+        refine_radius: defaults.refine_radius as u32,
+        ridge: defaults.ridge,
+        seed: defaults.seed,
+        refine_tolerance: defaults.refine_tolerance,
+        subject: LUXFER_SUBJECT_AUTO,
+        reserved: 0,
     }
-}
+});
 
 impl luxfer_segment_params {
     pub(super) fn params(&self) -> Result<segment::Params> {
@@ -127,11 +114,11 @@ fn subject(value: luxfer_subject) -> Result<Subject> {
     }
 }
 
-/// Quality of a segmentation. Set struct_size before the call.
+/// Quality of a segmentation.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_segment_report {
-    /// sizeof(luxfer_segment_report), set by the caller.
+    /// sizeof(luxfer_segment_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Channels of the features that were used, bit i for channel i.
     pub channels: u32,
@@ -145,69 +132,21 @@ pub struct luxfer_segment_report {
     pub contradictory_pixels: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_segment_report {
-    const NAME: &'static str = "luxfer_segment_report";
-    const SIZES: &'static [usize] = &[40];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 40,
-            channels: 0,
-            error: 0.0,
-            negative_samples: 0,
-            positive_samples: 0,
-            contradictory_pixels: 0,
-        }
-    }
-}
+versioned!(luxfer_segment_report, [40], {
+    Self { struct_size: 40, channels: 0, error: 0.0, negative_samples: 0, positive_samples: 0, contradictory_pixels: 0 }
+});
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     pub(super) features: Option<Arc<Pixels>>,
     pub(super) region: Option<Arc<Pixels>>,
-    pub(super) strokes: Vec<Stroke>,
+    pub(super) strokes: Painted<Vec<Stroke>>,
 }
 
 impl Handle for luxfer_segment {
     type Object = Stage<Inputs, Segmentation>;
     const TAG: u64 = tag(b"lux.segm");
     const NAME: &'static str = "luxfer_segment";
-}
-
-/// A stroke from the caller's points, for an image of the given size.
-pub(super) fn stroke(
-    points: *const c_void,
-    point_count: usize,
-    radius: f32,
-    positive: i32,
-    (width, height): (usize, usize),
-) -> Result<Stroke> {
-    let size = point_count.checked_mul(8).ok_or_else(|| Error::argument(format!("point_count is {point_count}")))?;
-    let float = |b: &[u8]| f64::from(f32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
-    let points: Vec<DVec2> = bytes(points.cast(), size, "points")?
-        .chunks_exact(8)
-        .map(|b| DVec2::new(float(&b[..4]), float(&b[4..])))
-        .collect();
-    match positive {
-        0 | 1 => Stroke::polyline(&points, radius.into(), positive == 1, width, height),
-        _ => Err(Error::argument(format!("positive is {positive}; it must be 0 or 1"))),
-    }
-}
-
-/// The strokes of one phase.
-fn of_phase(set: StrokeSet, phase: luxfer_phase) -> Result<Vec<Stroke>> {
-    match phase {
-        LUXFER_PHASE_PLANE => Ok(set.plane_examples()),
-        LUXFER_PHASE_LIGHTS => Ok(set.lights),
-        other => Err(Error::argument(format!("phase is {other}; it must be a LUXFER_PHASE_ value"))),
-    }
-}
-
-impl Inputs {
-    fn size(&self) -> Result<(usize, usize)> {
-        let image = need(&self.features, "luxfer_segment_set_features")?.image();
-        Ok((image.width, image.height))
-    }
 }
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -238,10 +177,7 @@ pub unsafe extern "C" fn luxfer_segment_set_features(
     enter(segment, |stage| {
         let features = handle::borrow_in(stage.context(), features, "features")?;
         stage.change(|inputs| {
-            let size = (features.image().width, features.image().height);
-            if inputs.size().is_ok_and(|before| before != size) {
-                inputs.strokes.clear();
-            }
+            inputs.strokes.keep_for(features.size());
             inputs.features = Some(features);
             Ok(())
         })
@@ -264,74 +200,20 @@ pub unsafe extern "C" fn luxfer_segment_set_region(
     })
 }
 
-/// Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the centre of the
-/// top-left pixel is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for the class that is sought,
-/// 0 for the other. One point makes a dot. Any thread.
-/// LUXFER_INVALID_OPERATION before the features are set.
+/// Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier
+/// strokes; strokes may be NULL: no strokes. Any thread.
+/// LUXFER_INVALID_ARGUMENT if they are for images of another size than the features.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_add_stroke(
+pub unsafe extern "C" fn luxfer_segment_set_strokes(
     segment: *mut luxfer_segment,
-    points: *const f32,
-    point_count: usize,
-    radius: f32,
-    positive: i32,
-) -> luxfer_status {
-    enter(segment, |stage| {
-        stage.change(|inputs| {
-            let stroke = stroke(points.cast(), point_count, radius, positive, inputs.size()?)?;
-            inputs.strokes.push(stroke);
-            Ok(())
-        })
-    })
-}
-
-/// Adds the strokes for phase, a LUXFER_PHASE_ value, from a drawing of the features' size: green (0, 255, 0) is plane,
-/// red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
-/// pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
-/// LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_add_strokes_image(
-    segment: *mut luxfer_segment,
-    drawing: *mut luxfer_image,
+    strokes: *mut luxfer_strokes,
     phase: luxfer_phase,
 ) -> luxfer_status {
     enter(segment, |stage| {
-        let drawing = handle::borrow_in(stage.context(), drawing, "drawing")?;
+        let strokes = Painted::copy(stage.context(), strokes, |set| of_phase(set, phase))?;
         stage.change(|inputs| {
-            let features = need(&inputs.features, "luxfer_segment_set_features")?.image();
-            features.check_same_size("the features", drawing.image(), "the drawing")?;
-            inputs.strokes.extend(of_phase(strokes::from_image(drawing.image())?, phase)?);
-            Ok(())
-        })
-    })
-}
-
-/// Adds the strokes for phase, a LUXFER_PHASE_ value, from a text in UTF-8. Each line has a class, a radius, and x and
-/// y of the points in pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light;
-/// # starts a comment. Any thread.
-/// LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_add_strokes_text(
-    segment: *mut luxfer_segment,
-    description: *const c_char,
-    phase: luxfer_phase,
-) -> luxfer_status {
-    enter(segment, |stage| {
-        let description = text(description, "description")?;
-        stage.change(|inputs| {
-            let (width, height) = inputs.size()?;
-            inputs.strokes.extend(of_phase(strokes::parse(description, width, height)?, phase)?);
-            Ok(())
-        })
-    })
-}
-
-/// Removes all strokes. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_clear_strokes(segment: *mut luxfer_segment) -> luxfer_status {
-    enter(segment, |stage| {
-        stage.change(|inputs| {
-            inputs.strokes.clear();
+            strokes.check_size(inputs.features.as_ref().map(|features| features.size()), "the image of features")?;
+            inputs.strokes = strokes;
             Ok(())
         })
     })
@@ -353,7 +235,7 @@ pub unsafe extern "C" fn luxfer_segment_start(
         stage.start(job, move |inputs, _, job| {
             let input = segment::Input {
                 features: need(&inputs.features, "luxfer_segment_set_features")?.image(),
-                strokes: &inputs.strokes,
+                strokes: &inputs.strokes.taken,
                 within: inputs.region.as_ref().map(|w| w.image()),
             };
             segment::run(&input, &params, job)
@@ -382,15 +264,16 @@ pub unsafe extern "C" fn luxfer_segment_get_image(
     })
 }
 
-/// Gets the quality of the segmentation. Any thread.
+/// Gets the quality of the segmentation. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_get_report(
     segment: *mut luxfer_segment,
     report: *mut luxfer_segment_report,
+    size: usize,
 ) -> luxfer_status {
     enter(segment, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         out.set(luxfer_segment_report {
             channels: output.channels,
@@ -402,16 +285,4 @@ pub unsafe extern "C" fn luxfer_segment_get_report(
         });
         Ok(())
     })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_retain(segment: *mut luxfer_segment) -> luxfer_status {
-    handle::retain(segment)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_release(segment: *mut luxfer_segment) -> luxfer_status {
-    handle::release(segment)
 }

@@ -6,7 +6,7 @@
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
-use super::params::{self, Report, Versioned};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::status::luxfer_status;
 use crate::error::{Error, check_range};
@@ -36,23 +36,18 @@ pub struct luxfer_sheet_params {
     pub contrast: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_sheet_params {
-    const NAME: &'static str = "luxfer_sheet_params";
-    const SIZES: &'static [usize] = &[48];
-    fn defaults() -> Self {
-        let d = sheet::Params::default();
-        Self {
-            struct_size: 48,
-            even_light: u32::from(d.even_light),
-            paper_width: d.paper.x,
-            paper_height: d.paper.y,
-            dpi: d.dpi,
-            margin: d.margin,
-            contrast: f64::from(d.contrast),
-        }
+versioned!(luxfer_sheet_params, [48], {
+    let d = sheet::Params::default();
+    Self {
+        struct_size: 48,
+        even_light: u32::from(d.even_light),
+        paper_width: d.paper.x,
+        paper_height: d.paper.y,
+        dpi: d.dpi,
+        margin: d.margin,
+        contrast: f64::from(d.contrast),
     }
-}
+});
 
 impl luxfer_sheet_params {
     fn params(&self) -> crate::error::Result<sheet::Params> {
@@ -69,11 +64,11 @@ impl luxfer_sheet_params {
     }
 }
 
-/// Quality of the alignment of a photo. Set struct_size before the call.
+/// Quality of the alignment of a photo.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_sheet_report {
-    /// sizeof(luxfer_sheet_report), set by the caller.
+    /// sizeof(luxfer_sheet_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of marks found, of 10; at least 6 are needed.
     pub marks: u32,
@@ -86,14 +81,9 @@ pub struct luxfer_sheet_report {
     pub to_photo: [f64; 9],
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_sheet_report {
-    const NAME: &'static str = "luxfer_sheet_report";
-    const SIZES: &'static [usize] = &[96];
-    fn defaults() -> Self {
-        Self { struct_size: 96, marks: 0, residual: 0.0, error: 0.0, to_photo: [0.0; 9] }
-    }
-}
+versioned!(luxfer_sheet_report, [96], {
+    Self { struct_size: 96, marks: 0, residual: 0.0, error: 0.0, to_photo: [0.0; 9] }
+});
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
@@ -125,10 +115,10 @@ pub unsafe extern "C" fn luxfer_sheet_print(
     })
 }
 
-/// Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of width
-/// x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
-/// perspective. params may be NULL for the defaults, report may be NULL. Takes up to a few seconds. The caller releases
-/// *artwork. Any thread.
+/// Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of
+/// width x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
+/// perspective. params may be NULL for the defaults. size is sizeof *report; report may be NULL, then size does not
+/// matter. Takes up to a few seconds. The caller releases *artwork. Any thread.
 /// LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_sheet_align(
@@ -138,10 +128,11 @@ pub unsafe extern "C" fn luxfer_sheet_align(
     params: *const luxfer_sheet_params,
     artwork: *mut *mut luxfer_image,
     report: *mut luxfer_sheet_report,
+    size: usize,
 ) -> luxfer_status {
     enter(photo, |object| {
         let out = Out::new(artwork, "artwork")?;
-        let report = if report.is_null() { None } else { Some(Report::new(report)?) };
+        let report = if report.is_null() { None } else { Some(Report::new(report, size)?) };
         let params = params::read(params)?.params()?;
         let (width, height) = (width as usize, height as usize);
         check_range("width", width, 1, MAX_SIDE)?;

@@ -1,7 +1,7 @@
 //! Status
 //!
 //! Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added. A
-//! function writes its outputs only when it returns LUXFER_OK. luxfer_context_last_error describes the failure in
+//! function writes its outputs only when it returns LUXFER_OK. luxfer_context_get_last_error describes the failure in
 //! words.
 
 use std::ffi::c_char;
@@ -42,7 +42,7 @@ pub const LUXFER_UNREACHABLE: luxfer_status = 13;
 /// The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The string is
 /// static: never free it. Any thread.
 #[unsafe(no_mangle)]
-pub extern "C" fn luxfer_status_name(status: luxfer_status) -> *const c_char {
+pub extern "C" fn luxfer_status_get_name(status: luxfer_status) -> *const c_char {
     let name = match status {
         LUXFER_OK => c"LUXFER_OK",
         LUXFER_INVALID_ARGUMENT => c"LUXFER_INVALID_ARGUMENT",
@@ -87,7 +87,7 @@ mod tests {
         ] {
             assert_eq!(status, kind as i32);
             // SAFETY: a static string.
-            let name = unsafe { CStr::from_ptr(luxfer_status_name(status)) }.to_str().unwrap();
+            let name = unsafe { CStr::from_ptr(luxfer_status_get_name(status)) }.to_str().unwrap();
             let kind = format!("LUXFER_{kind:?}").replace('_', "").to_uppercase();
             assert_eq!(name.replace('_', ""), kind);
         }

@@ -391,15 +391,3 @@ pub unsafe extern "C" fn luxfer_stylize_set_painted(
         })
     })
 }
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_retain(stylize: *mut luxfer_stylize) -> luxfer_status {
-    handle::retain(stylize)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_release(stylize: *mut luxfer_stylize) -> luxfer_status {
-    handle::release(stylize)
-}

@@ -20,11 +20,6 @@ pub unsafe extern "C" fn luxfer_stylize_create(context: *mut luxfer_context, _: 
     enter(context, |_| left_out())
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_release(stylize: *mut c_void) -> luxfer_status {
-    guard(|| if stylize.is_null() { Ok(()) } else { left_out() })
-}
-
 /// Functions whose arguments do not matter: with the C calling convention the caller removes them.
 macro_rules! absent {
     ($($name:ident)*) => {$(
@@ -37,9 +32,10 @@ macro_rules! absent {
 
 absent! {
     luxfer_stylize_params_init luxfer_stylize_params_preset luxfer_stylize_set_artwork luxfer_stylize_add_guide
-    luxfer_stylize_add_guides luxfer_stylize_clear_guides luxfer_stylize_set_source_mask luxfer_stylize_set_target_mask luxfer_stylize_set_painted
+    luxfer_stylize_add_guides luxfer_stylize_clear_guides luxfer_stylize_set_source_mask
+    luxfer_stylize_set_target_mask luxfer_stylize_set_painted
     luxfer_stylize_set_motion
     luxfer_stylize_start luxfer_stylize_update luxfer_stylize_get_image luxfer_stylize_get_report luxfer_stylize_get_level
-    luxfer_stylize_get_round luxfer_stylize_get_pass luxfer_stylize_retain
+    luxfer_stylize_get_round luxfer_stylize_get_pass
     luxfer_plan_start_stylize luxfer_plan_get_stylize_params
 }

@@ -3,7 +3,7 @@
 //! Presets and settings. The defaults were chosen on the curves of quality against time that benches/stylit.rs draws.
 
 use super::guard::guard;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::patch::Vote;
@@ -126,14 +126,7 @@ pub struct luxfer_stylize_params {
     pub reserved: u32,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_stylize_params {
-    const NAME: &'static str = "luxfer_stylize_params";
-    const SIZES: &'static [usize] = &[104];
-    fn defaults() -> Self {
-        Self::of(&stylize::Params::default())
-    }
-}
+versioned!(luxfer_stylize_params, [104], { Self::of(&stylize::Params::default()) });
 
 const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
@@ -215,15 +208,16 @@ pub unsafe extern "C" fn luxfer_stylize_params_init(params: *mut luxfer_stylize_
     guard(|| params::init(params, size))
 }
 
-/// Sets *params, filled before by luxfer_stylize_params_init, to a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER.
+/// Fills *params with a preset instead: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
 /// LUXFER_INVALID_ARGUMENT for another value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_params_preset(
     params: *mut luxfer_stylize_params,
     preset: luxfer_stylize_preset,
+    size: usize,
 ) -> luxfer_status {
     guard(|| {
-        let place = params::Report::new(params)?;
+        let place = params::Report::new(params, size)?;
         let preset = match preset {
             LUXFER_STYLIZE_FULL => stylize::Params::default(),
             LUXFER_STYLIZE_FAST => stylize::Params::fast(),

@@ -6,7 +6,7 @@
 use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::Out;
 use super::scene::missing;
 use super::status::luxfer_status;
@@ -28,14 +28,14 @@ pub const LUXFER_STYLIZE_IMAGE_GUIDE_ERROR: luxfer_stylize_image = 1;
 /// channels.
 pub const LUXFER_STYLIZE_IMAGE_SOURCES: luxfer_stylize_image = 2;
 
-/// Quality of a stylisation. Set struct_size before the call.
+/// Quality of a stylisation.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_report {
-    /// sizeof(luxfer_stylize_report), set by the caller.
+    /// sizeof(luxfer_stylize_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0.
-    pub finished: u32,
+    pub is_complete: u32,
     /// Number of finished levels; see luxfer_stylize_get_level.
     pub levels: u32,
     /// Number of times that the sides of the target were halved to get the size of the picture.
@@ -59,33 +59,28 @@ pub struct luxfer_stylize_report {
     pub broken_target: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_stylize_report {
-    const NAME: &'static str = "luxfer_stylize_report";
-    const SIZES: &'static [usize] = &[72];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 72,
-            finished: 0,
-            levels: 0,
-            halvings: 0,
-            patch: 0,
-            max_uses: 0,
-            energy: 0.0,
-            used: 0.0,
-            entropy: 0.0,
-            guide_error: 0.0,
-            broken_source: 0,
-            broken_target: 0,
-        }
+versioned!(luxfer_stylize_report, [72], {
+    Self {
+        struct_size: 72,
+        is_complete: 0,
+        levels: 0,
+        halvings: 0,
+        patch: 0,
+        max_uses: 0,
+        energy: 0.0,
+        used: 0.0,
+        entropy: 0.0,
+        guide_error: 0.0,
+        broken_source: 0,
+        broken_target: 0,
     }
-}
+});
 
 impl luxfer_stylize_report {
     /// The numbers of a finished run.
     fn of(finished: &Finished) -> Self {
         Self {
-            finished: 1,
+            is_complete: 1,
             patch: finished.patch as u32,
             max_uses: finished.usage.max_uses,
             used: finished.usage.used,
@@ -98,11 +93,11 @@ impl luxfer_stylize_report {
     }
 }
 
-/// One round of matching and painting. Set struct_size before the call.
+/// One round of matching and painting.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_round {
-    /// sizeof(luxfer_stylize_round), set by the caller.
+    /// sizeof(luxfer_stylize_round), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of matching passes under the error budget; see luxfer_stylize_get_pass.
     pub passes: u32,
@@ -110,20 +105,13 @@ pub struct luxfer_stylize_round {
     pub energy: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_stylize_round {
-    const NAME: &'static str = "luxfer_stylize_round";
-    const SIZES: &'static [usize] = &[16];
-    fn defaults() -> Self {
-        Self { struct_size: 16, passes: 0, energy: 0.0 }
-    }
-}
+versioned!(luxfer_stylize_round, [16], { Self { struct_size: 16, passes: 0, energy: 0.0 } });
 
-/// One matching pass under the error budget. Set struct_size before the call.
+/// One matching pass under the error budget.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_pass {
-    /// sizeof(luxfer_stylize_pass), set by the caller.
+    /// sizeof(luxfer_stylize_pass), set by the function that fills the struct.
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
@@ -133,17 +121,12 @@ pub struct luxfer_stylize_pass {
     /// Share of the target with a match after this pass, in [0, 1].
     pub coverage: f64,
     /// Number of target patches that received a match in this pass.
-    pub gained: u64,
+    pub new_matches: u64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_stylize_pass {
-    const NAME: &'static str = "luxfer_stylize_pass";
-    const SIZES: &'static [usize] = &[32];
-    fn defaults() -> Self {
-        Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, gained: 0 }
-    }
-}
+versioned!(luxfer_stylize_pass, [32], {
+    Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, new_matches: 0 }
+});
 
 /// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
 /// the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
@@ -169,15 +152,16 @@ pub unsafe extern "C" fn luxfer_stylize_get_image(
     })
 }
 
-/// Gets the current quality of the result. Any thread.
+/// Gets the current quality of the result. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_report(
     stylize: *mut luxfer_stylize,
     report: *mut luxfer_stylize_report,
+    size: usize,
 ) -> luxfer_status {
     enter(stylize, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         let output = stage.output()?;
         let finished = output.finished.as_ref().map_or_else(luxfer_stylize_report::defaults, luxfer_stylize_report::of);
         out.set(luxfer_stylize_report {
@@ -211,7 +195,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_level(
     })
 }
 
-/// Describes a round of a level. Any thread.
+/// Describes a round of a level. size is sizeof *round. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_round(
@@ -219,9 +203,10 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     level: u32,
     index: u32,
     round: *mut luxfer_stylize_round,
+    size: usize,
 ) -> luxfer_status {
     enter(stylize, |stage| {
-        let out = Report::new(round)?;
+        let out = Report::new(round, size)?;
         let output = stage.output()?;
         let level = output.level(level)?;
         let energy = level.energy.get(index as usize).ok_or_else(|| missing("round", index, level.energy.len()))?;
@@ -231,7 +216,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_round(
     })
 }
 
-/// Describes a pass of a round. Any thread.
+/// Describes a pass of a round. size is sizeof *pass. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
 /// pass.
 #[unsafe(no_mangle)]
@@ -241,9 +226,10 @@ pub unsafe extern "C" fn luxfer_stylize_get_pass(
     round: u32,
     index: u32,
     pass: *mut luxfer_stylize_pass,
+    size: usize,
 ) -> luxfer_status {
     enter(stylize, |stage| {
-        let out = Report::new(pass)?;
+        let out = Report::new(pass, size)?;
         let output = stage.output()?;
         let level = output.level(level)?;
         let passes = level.passes.get(round as usize).ok_or_else(|| missing("round", round, level.passes.len()))?;
@@ -251,7 +237,7 @@ pub unsafe extern "C" fn luxfer_stylize_get_pass(
         out.set(luxfer_stylize_pass {
             knee: found.knee,
             coverage: found.coverage,
-            gained: found.gained as u64,
+            new_matches: found.gained as u64,
             ..luxfer_stylize_pass::defaults()
         });
         Ok(())

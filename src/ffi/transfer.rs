@@ -12,7 +12,7 @@ use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Versioned};
+use super::params::{self, versioned};
 use super::pattern::luxfer_pattern_params;
 use super::pointer::{Out, bytes, text};
 use super::rectify::{luxfer_rectify, luxfer_rectify_params};
@@ -20,16 +20,15 @@ use super::relight::luxfer_relight_params;
 use super::render::luxfer_render_params;
 use super::scene::{SceneObject, luxfer_scene};
 use super::scene_parts::luxfer_camera_params;
-use super::segment::{
-    LUXFER_PHASE_LIGHTS, LUXFER_PHASE_PLANE, luxfer_phase, luxfer_segment, luxfer_segment_params, stroke,
-};
-use super::stage::{Stage as Runner, need};
+use super::segment::{luxfer_segment, luxfer_segment_params};
+use super::stage::Stage as Runner;
 use super::status::luxfer_status;
+use super::strokes::{LUXFER_PHASE_LIGHTS, LUXFER_PHASE_PLANE, Painted, luxfer_phase, luxfer_strokes, unknown_phase};
 use crate::error::{Error, Result};
 use crate::features::DepthKind;
 use crate::image::photo::PhotoMetadata;
 use crate::scene::Camera;
-use crate::segment::{self, Segmentation, StrokeSet, strokes};
+use crate::segment::{self, Segmentation, StrokeSet};
 use crate::transfer::{self, Results, STAGES, Stage, TargetColour, Transfer};
 use glam::DVec4;
 use std::ffi::c_char;
@@ -108,29 +107,24 @@ pub struct luxfer_transfer_params {
 
 const PARAMS_SIZE: usize = 24 + 8 * size_of::<usize>();
 
-// SAFETY: numbers, and pointers that are checked before use.
-unsafe impl Versioned for luxfer_transfer_params {
-    const NAME: &'static str = "luxfer_transfer_params";
-    const SIZES: &'static [usize] = &[PARAMS_SIZE];
-    fn defaults() -> Self {
-        let d = transfer::Params::default();
-        Self {
-            struct_size: PARAMS_SIZE as u32,
-            max_texels: d.max_texels as u32,
-            plane_distance: d.plane_distance,
-            white_luminance: d.white_luminance,
-            target: LUXFER_TARGET_SURFACE,
-            rectify: std::ptr::null(),
-            features: std::ptr::null(),
-            plane: std::ptr::null(),
-            lights: std::ptr::null(),
-            emission: std::ptr::null(),
-            relight: std::ptr::null(),
-            render: std::ptr::null(),
-            pattern: std::ptr::null(),
-        }
+versioned!(luxfer_transfer_params, [PARAMS_SIZE], {
+    let d = transfer::Params::default();
+    Self {
+        struct_size: PARAMS_SIZE as u32,
+        max_texels: d.max_texels as u32,
+        plane_distance: d.plane_distance,
+        white_luminance: d.white_luminance,
+        target: LUXFER_TARGET_SURFACE,
+        rectify: std::ptr::null(),
+        features: std::ptr::null(),
+        plane: std::ptr::null(),
+        lights: std::ptr::null(),
+        emission: std::ptr::null(),
+        relight: std::ptr::null(),
+        render: std::ptr::null(),
+        pattern: std::ptr::null(),
     }
-}
+});
 
 impl luxfer_transfer_params {
     fn params(&self) -> Result<transfer::Params> {
@@ -166,7 +160,7 @@ impl luxfer_transfer_params {
 pub(super) struct Inputs {
     photo: Option<Arc<Pixels>>,
     depth: Option<(Arc<Pixels>, DepthKind)>,
-    strokes: StrokeSet,
+    strokes: Painted<StrokeSet>,
     texture: Option<Arc<Pixels>>,
     scene: Option<Arc<SceneObject>>,
     surface: String,
@@ -181,13 +175,8 @@ impl Inputs {
         self.photo.as_ref().map(|photo| photo.metadata())
     }
 
-    fn photo_size(&self) -> Result<(usize, usize)> {
-        let photo = need(&self.photo, "luxfer_transfer_set_photo")?.image();
-        Ok((photo.width, photo.height))
-    }
-
     pub(super) fn strokes(&self) -> &StrokeSet {
-        &self.strokes
+        &self.strokes.taken
     }
 
     /// The inputs as the transfer takes them.
@@ -200,7 +189,7 @@ impl Inputs {
             photo: self.photo.as_ref().map(|photo| photo.shared()).transpose()?,
             photo_focal: self.photo.as_ref().and_then(|photo| photo.metadata().expected_focal()),
             depth,
-            strokes: self.strokes.clone(),
+            strokes: self.strokes.taken.clone(),
             texture: self.texture.as_ref().map(|texture| texture.shared()).transpose()?,
             scene: self.scene.as_ref().map(|scene| scene.snapshot()),
             surface: self.surface.clone(),
@@ -220,10 +209,6 @@ impl Handle for luxfer_transfer {
 fn stage_of(name: &str, value: luxfer_stage) -> Result<Stage> {
     let found = usize::try_from(value).ok().and_then(|i| STAGES.get(i)).copied();
     found.ok_or_else(|| Error::argument(format!("{name} is {value}; it must be a LUXFER_STAGE_ value")))
-}
-
-fn unknown_phase(phase: luxfer_phase) -> Error {
-    Error::argument(format!("phase is {phase}; it must be a LUXFER_PHASE_ value"))
 }
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -256,10 +241,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_photo(
     enter(transfer, |stage| {
         let photo = handle::borrow_in(stage.context(), photo, "photo")?;
         stage.change(|inputs| {
-            let size = (photo.image().width, photo.image().height);
-            if inputs.photo_size().is_ok_and(|before| before != size) {
-                inputs.strokes = StrokeSet::default();
-            }
+            inputs.strokes.keep_for(photo.size());
             inputs.photo = Some(photo);
             Ok(())
         })
@@ -360,69 +342,22 @@ pub unsafe extern "C" fn luxfer_transfer_set_camera(
     })
 }
 
-/// Adds a stroke on the photo for phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
-/// lights count as strokes on the plane too. Any thread.
-/// LUXFER_INVALID_OPERATION before the photo is set.
+/// Sets the strokes on the photo. Strokes on lights count as strokes on the plane too. The transfer copies the strokes;
+/// they replace earlier strokes; strokes may be NULL: no strokes. Any thread.
+/// LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_add_stroke(
+pub unsafe extern "C" fn luxfer_transfer_set_strokes(
     transfer: *mut luxfer_transfer,
-    phase: luxfer_phase,
-    points: *const f32,
-    point_count: usize,
-    radius: f32,
-    positive: i32,
+    strokes: *mut luxfer_strokes,
 ) -> luxfer_status {
     enter(transfer, |stage| {
+        let strokes = Painted::copy(stage.context(), strokes, |set| Ok(set.clone()))?;
         stage.change(|inputs| {
-            let stroke = stroke(points.cast(), point_count, radius, positive, inputs.photo_size()?)?;
-            match phase {
-                LUXFER_PHASE_PLANE => inputs.strokes.plane.push(stroke),
-                LUXFER_PHASE_LIGHTS => inputs.strokes.lights.push(stroke),
-                _ => return Err(unknown_phase(phase)),
-            }
+            strokes.check_size(inputs.photo.as_ref().map(|photo| photo.size()), "the photo")?;
+            inputs.strokes = strokes;
             Ok(())
         })
     })
-}
-
-/// Adds the strokes of both phases from a drawing of the photo's size, as luxfer_segment_add_strokes_image. Any thread.
-/// LUXFER_INVALID_OPERATION before the photo is set.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_add_strokes_image(
-    transfer: *mut luxfer_transfer,
-    drawing: *mut luxfer_image,
-) -> luxfer_status {
-    enter(transfer, |stage| {
-        let drawing = handle::borrow_in(stage.context(), drawing, "drawing")?;
-        stage.change(|inputs| {
-            let photo = need(&inputs.photo, "luxfer_transfer_set_photo")?.image();
-            photo.check_same_size("the photo", drawing.image(), "the drawing")?;
-            add(&mut inputs.strokes, strokes::from_image(drawing.image())?);
-            Ok(())
-        })
-    })
-}
-
-/// Adds the strokes of both phases from a text, as luxfer_segment_add_strokes_text. Any thread.
-/// LUXFER_INVALID_OPERATION before the photo is set.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_add_strokes_text(
-    transfer: *mut luxfer_transfer,
-    description: *const c_char,
-) -> luxfer_status {
-    enter(transfer, |stage| {
-        let description = text(description, "description")?;
-        stage.change(|inputs| {
-            let (width, height) = inputs.photo_size()?;
-            add(&mut inputs.strokes, strokes::parse(description, width, height)?);
-            Ok(())
-        })
-    })
-}
-
-fn add(strokes: &mut StrokeSet, more: StrokeSet) {
-    strokes.plane.extend(more.plane);
-    strokes.lights.extend(more.lights);
 }
 
 /// Sets rectangles of the surface without lamps, for example behind ducts and sprinklers: u0, v0, u1 and v1 of each in
@@ -440,17 +375,6 @@ pub unsafe extern "C" fn luxfer_transfer_set_zones(
         transfer::check_zones(&zones)?;
         stage.change(|inputs| {
             inputs.zones = zones;
-            Ok(())
-        })
-    })
-}
-
-/// Removes all strokes. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_clear_strokes(transfer: *mut luxfer_transfer) -> luxfer_status {
-    enter(transfer, |stage| {
-        stage.change(|inputs| {
-            inputs.strokes = StrokeSet::default();
             Ok(())
         })
     })
@@ -558,16 +482,4 @@ pub unsafe extern "C" fn luxfer_transfer_start(
 pub(super) fn snapshot(stage: &Runner<Inputs, Results>, params: luxfer_transfer_params) -> Result<Transfer> {
     let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
     Ok(Transfer { input: stage.inputs().input()?, params: params.params()?, results })
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_retain(transfer: *mut luxfer_transfer) -> luxfer_status {
-    handle::retain(transfer)
-}
-
-/// Removes a reference; a running job continues. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_release(transfer: *mut luxfer_transfer) -> luxfer_status {
-    handle::release(transfer)
 }

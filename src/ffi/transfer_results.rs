@@ -6,7 +6,7 @@
 use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
-use super::params::{Report, Versioned};
+use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, text};
 use super::rectify::luxfer_rectify_report;
 use super::relight::luxfer_relight_report;
@@ -59,11 +59,11 @@ pub const LUXFER_SCENE_LIT: luxfer_transfer_scene = 1;
 /// As LUXFER_SCENE_LIT, with white light of equal luminance.
 pub const LUXFER_SCENE_WHITE: luxfer_transfer_scene = 2;
 
-/// Time and error of each stage. Set struct_size before the call. The error of a stage without a result is NaN.
+/// Time and error of each stage. The error of a stage without a result is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_transfer_report {
-    /// sizeof(luxfer_transfer_report), set by the caller.
+    /// sizeof(luxfer_transfer_report), set by the function that fills the struct.
     pub struct_size: u32,
     /// Number of fixtures (lamps of the lit scene); see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has
     /// ended.
@@ -99,8 +99,8 @@ pub struct luxfer_transfer_report {
     /// Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.25
     /// for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
     pub plane_distance_error: f64,
-    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file states,
-    /// as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
+    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file
+    /// states, as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
     pub proposed_white: f64,
     /// Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor.
     pub proposed_white_low: f64,
@@ -113,34 +113,29 @@ const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16 + 24;
 /// Illuminances in lux of rooms: of corridors, of offices, and of work on fine things. [convention]: EN 12464-1
 const USUAL_ILLUMINANCE: [f64; 3] = [100.0, 500.0, 1000.0];
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_transfer_report {
-    const NAME: &'static str = "luxfer_transfer_report";
-    const SIZES: &'static [usize] = &[REPORT_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: REPORT_SIZE as u32,
-            fixtures: 0,
-            seconds: [0.0; 8],
-            view_error: f64::NAN,
-            depth_confidence: f64::NAN,
-            plane_error: f64::NAN,
-            lights_error: f64::NAN,
-            unwarp_error: f64::NAN,
-            emission_error: f64::NAN,
-            relight_error: f64::NAN,
-            render_error: f64::NAN,
-            texel_size: f64::NAN,
-            target: [f32::NAN; 3],
-            reserved: 0,
-            plane_distance: f64::NAN,
-            plane_distance_error: f64::NAN,
-            proposed_white: f64::NAN,
-            proposed_white_low: f64::NAN,
-            proposed_white_high: f64::NAN,
-        }
+versioned!(luxfer_transfer_report, [REPORT_SIZE], {
+    Self {
+        struct_size: REPORT_SIZE as u32,
+        fixtures: 0,
+        seconds: [0.0; 8],
+        view_error: f64::NAN,
+        depth_confidence: f64::NAN,
+        plane_error: f64::NAN,
+        lights_error: f64::NAN,
+        unwarp_error: f64::NAN,
+        emission_error: f64::NAN,
+        relight_error: f64::NAN,
+        render_error: f64::NAN,
+        texel_size: f64::NAN,
+        target: [f32::NAN; 3],
+        reserved: 0,
+        plane_distance: f64::NAN,
+        plane_distance_error: f64::NAN,
+        proposed_white: f64::NAN,
+        proposed_white_low: f64::NAN,
+        proposed_white_high: f64::NAN,
     }
-}
+});
 
 impl luxfer_transfer_report {
     fn new(results: &Results, photo: Option<&PhotoMetadata>) -> Self {
@@ -179,11 +174,11 @@ impl luxfer_transfer_report {
     }
 }
 
-/// One lamp of the lit scene. Set struct_size before the call.
+/// One lamp of the lit scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_fixture {
-    /// sizeof(luxfer_fixture), set by the caller.
+    /// sizeof(luxfer_fixture), set by the function that fills the struct.
     pub struct_size: u32,
     /// Centre in metres.
     pub position: [f32; 3],
@@ -207,26 +202,21 @@ pub struct luxfer_fixture {
     pub duv: f64,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_fixture {
-    const NAME: &'static str = "luxfer_fixture";
-    const SIZES: &'static [usize] = &[104];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 104,
-            position: [0.0; 3],
-            normal: [0.0; 3],
-            axis: [0.0; 3],
-            radiance: [0.0; 3],
-            kind: 0,
-            size: [0.0; 2],
-            area: 0.0,
-            flux: 0.0,
-            cct: 0.0,
-            duv: 0.0,
-        }
+versioned!(luxfer_fixture, [104], {
+    Self {
+        struct_size: 104,
+        position: [0.0; 3],
+        normal: [0.0; 3],
+        axis: [0.0; 3],
+        radiance: [0.0; 3],
+        kind: 0,
+        size: [0.0; 2],
+        area: 0.0,
+        flux: 0.0,
+        cct: 0.0,
+        duv: 0.0,
     }
-}
+});
 
 /// A result of a stage, or an error that names the stage.
 fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
@@ -298,44 +288,48 @@ pub unsafe extern "C" fn luxfer_transfer_get_scene(
     })
 }
 
-/// Gets time and error of each stage. Any thread.
+/// Gets time and error of each stage. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before the first stage has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_report(
     transfer: *mut luxfer_transfer,
     report: *mut luxfer_transfer_report,
+    size: usize,
 ) -> luxfer_status {
     enter(transfer, |stage| {
-        let out = Report::new(report)?;
+        let out = Report::new(report, size)?;
         out.set(luxfer_transfer_report::new(&*stage.output()?, stage.inputs().photo_metadata()));
         Ok(())
     })
 }
 
-/// Gets the camera that was found from the lines of the photo, and the unwarping of the plane. Any thread.
+/// Gets the camera that was found from the lines of the photo, and the unwarping of the plane. size is sizeof *view.
+/// Any thread.
 /// LUXFER_NOT_READY before the stage VIEW has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_view(
     transfer: *mut luxfer_transfer,
     view: *mut luxfer_rectify_report,
+    size: usize,
 ) -> luxfer_status {
     enter(transfer, |stage| {
-        let out = Report::new(view)?;
+        let out = Report::new(view, size)?;
         let results = stage.output()?;
         out.set(luxfer_rectify_report::new(made(&results.view, "VIEW")?, results.unwarped.as_deref()));
         Ok(())
     })
 }
 
-/// Gets the solved colour and intensity and their confidence. Any thread.
+/// Gets the solved colour and intensity and their confidence. size is sizeof *solution. Any thread.
 /// LUXFER_NOT_READY before the stage RELIGHT has ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_solution(
     transfer: *mut luxfer_transfer,
     solution: *mut luxfer_relight_report,
+    size: usize,
 ) -> luxfer_status {
     enter(transfer, |stage| {
-        let out = Report::new(solution)?;
+        let out = Report::new(solution, size)?;
         let results = stage.output()?;
         let solved = results.solution.as_ref().ok_or_else(|| {
             Error::new(ErrorKind::NotReady, "there is no solution yet; LUXFER_STAGE_RELIGHT makes it")
@@ -345,16 +339,17 @@ pub unsafe extern "C" fn luxfer_transfer_get_solution(
     })
 }
 
-/// Describes a lamp of the lit scene. Any thread.
+/// Describes a lamp of the lit scene. size is sizeof *fixture. Any thread.
 /// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_NOT_FOUND if there is no such fixture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_fixture(
     transfer: *mut luxfer_transfer,
     index: u32,
     fixture: *mut luxfer_fixture,
+    size: usize,
 ) -> luxfer_status {
     enter(transfer, |stage| {
-        let out = Report::new(fixture)?;
+        let out = Report::new(fixture, size)?;
         let fixtures = stage.output()?.fixtures()?;
         let lamp = fixtures.get(index as usize).ok_or_else(|| missing("fixture", index, fixtures.len()))?;
         out.set(luxfer_fixture {

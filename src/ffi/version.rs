@@ -1,18 +1,18 @@
 //! Version
 //!
 //! The macros give the version of this header, the functions give the version of the loaded library. Before 1.0,
-//! libraries with the same minor version are compatible (libluxfer.so.0.1); from 1.0 on, libraries with the same major
+//! libraries with the same minor version are compatible (libluxfer.so.0.2); from 1.0 on, libraries with the same major
 //! version.
 //!
 //! A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
-//! luxfer_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that the
-//! library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
+//! luxfer_get_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that
+//! the library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
 
 use std::ffi::c_char;
 
 /// The version of the loaded library, comparable with LUXFER_VERSION. Any thread.
 #[unsafe(no_mangle)]
-pub extern "C" fn luxfer_version() -> u32 {
+pub extern "C" fn luxfer_get_version() -> u32 {
     const fn number(text: &str) -> u32 {
         let (mut value, mut i) = (0, 0);
         while i < text.len() {
@@ -27,8 +27,8 @@ pub extern "C" fn luxfer_version() -> u32 {
     VERSION
 }
 
-/// The version of the loaded library as text, such as "0.1.0". The string is static: never free it. Any thread.
+/// The version of the loaded library as text, such as "0.2.0". The string is static: never free it. Any thread.
 #[unsafe(no_mangle)]
-pub extern "C" fn luxfer_version_string() -> *const c_char {
+pub extern "C" fn luxfer_get_version_string() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
 }

@@ -8,24 +8,24 @@
 use super::context::Context;
 use super::emission::luxfer_emission;
 use super::features::luxfer_features;
-use super::guard::enter;
+use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
-use super::params::{Report, Versioned};
-use super::pointer::{Out, copy_text};
+use super::params::{Report, Versioned, versioned};
+use super::pointer::{Out, c_string};
 use super::rectify::luxfer_rectify;
 use super::relight::luxfer_relight;
 use super::scene::{luxfer_scene, missing};
 use super::segment::luxfer_segment;
-use super::status::luxfer_status;
+use super::status::{LUXFER_INVALID_ARGUMENT, LUXFER_OK, luxfer_status};
 use super::transfer::{LUXFER_STAGE_SCENE, luxfer_stage, luxfer_transfer};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::segment;
 use crate::transfer::Stage;
 use crate::warning::Warning;
-use std::ffi::c_char;
+use std::ffi::{CString, c_char, c_void};
 use std::sync::Arc;
 
-/// A list of warnings. See luxfer_transfer_get_warnings.
+/// A list of warnings. See luxfer_get_warnings.
 pub struct luxfer_warnings {
     _opaque: [u8; 0],
 }
@@ -91,11 +91,11 @@ pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// the severity is the share of the mask that is expected to be wrong.
 pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 
-/// A reason to doubt a result. Set struct_size before the call.
+/// A reason to doubt a result.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_warning {
-    /// sizeof(luxfer_warning), set by the caller.
+    /// sizeof(luxfer_warning), set by the function that fills the struct.
     pub struct_size: u32,
     /// LUXFER_WARNING_ value.
     pub code: luxfer_warning_code,
@@ -110,21 +110,46 @@ pub struct luxfer_warning {
     pub limit: f64,
     /// The place in the photo, x and y in pixels; 0 without one.
     pub place: [f64; 2],
+    /// The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
+    /// luxfer_warnings.
+    pub message: *const c_char,
+    /// The remedy.
+    pub advice: *const c_char,
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_warning {
-    const NAME: &'static str = "luxfer_warning";
-    const SIZES: &'static [usize] = &[48];
-    fn defaults() -> Self {
-        Self { struct_size: 48, code: 0, stage: 0, has_place: 0, severity: 0.0, limit: 0.0, place: [0.0; 2] }
+versioned!(luxfer_warning, [64], {
+    Self {
+        struct_size: 64,
+        code: 0,
+        stage: 0,
+        has_place: 0,
+        severity: 0.0,
+        limit: 0.0,
+        place: [0.0; 2],
+        message: std::ptr::null(),
+        advice: std::ptr::null(),
     }
-}
+});
 
 /// The warnings behind a handle, each with its stage.
 pub(super) struct Warnings {
     context: Arc<Context>,
-    list: Vec<(luxfer_stage, Warning)>,
+    list: Vec<Entry>,
+}
+
+/// A warning with its stage, and its texts as C strings.
+struct Entry {
+    stage: luxfer_stage,
+    warning: Warning,
+    message: CString,
+    advice: CString,
+}
+
+impl Entry {
+    fn new(stage: luxfer_stage, warning: Warning) -> Self {
+        let (message, advice) = (c_string(&warning.message), c_string(&warning.advice));
+        Self { stage, warning, message, advice }
+    }
 }
 
 impl Owned for Warnings {
@@ -140,211 +165,175 @@ impl Handle for luxfer_warnings {
 }
 
 impl Warnings {
-    fn get(&self, index: u32) -> Result<&(luxfer_stage, Warning)> {
+    fn get(&self, index: u32) -> Result<&Entry> {
         self.list.get(index as usize).ok_or_else(|| missing("warning", index, self.list.len()))
     }
 }
 
-/// A new list for the host.
-fn give(context: &Arc<Context>, list: impl Iterator<Item = (Stage, Warning)>) -> *mut luxfer_warnings {
-    let list = list.map(|(stage, warning)| (stage as luxfer_stage, warning)).collect();
-    handle::give(Arc::new(Warnings { context: context.clone(), list }))
-}
-
 /// Lists the warnings of a stage.
-fn of(stage: Stage, list: Vec<Warning>) -> impl Iterator<Item = (Stage, Warning)> {
-    list.into_iter().map(move |warning| (stage, warning))
+fn of(stage: Stage, list: Vec<Warning>) -> impl Iterator<Item = (luxfer_stage, Warning)> {
+    list.into_iter().map(move |warning| (stage as luxfer_stage, warning))
 }
 
-/// Gets the warnings of all stages that have a result, in their order. The caller releases *warnings. Any thread.
-/// LUXFER_NOT_READY before the first stage has ended.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_get_warnings(
-    transfer: *mut luxfer_transfer,
-    warnings: *mut *mut luxfer_warnings,
-) -> luxfer_status {
-    enter(transfer, |stage| {
-        let out = Out::new(warnings, "warnings")?;
+/// An object whose result may be in doubt.
+trait Doubtful: Handle {
+    fn list(object: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>>;
+}
+
+/// How to list the warnings of one kind of object.
+struct Lister {
+    tag: u64,
+    list: fn(*mut c_void, *mut *mut luxfer_warnings) -> luxfer_status,
+}
+
+impl Lister {
+    const fn of<H: Doubtful>() -> Self {
+        let list = |handle: *mut c_void, warnings: *mut *mut luxfer_warnings| {
+            enter(handle.cast::<H>(), |object| {
+                let out = Out::new(warnings, "warnings")?;
+                let list = H::list(object)?.into_iter().map(|(stage, warning)| Entry::new(stage, warning)).collect();
+                out.set(handle::give(Arc::new(Warnings { context: object.context().clone(), list })));
+                Ok(())
+            })
+        };
+        Self { tag: H::TAG, list }
+    }
+}
+
+/// The kinds of objects that have warnings.
+const LISTERS: &[Lister] = &[
+    Lister::of::<luxfer_emission>(),
+    Lister::of::<luxfer_features>(),
+    Lister::of::<luxfer_rectify>(),
+    Lister::of::<luxfer_relight>(),
+    Lister::of::<luxfer_scene>(),
+    Lister::of::<luxfer_segment>(),
+    Lister::of::<luxfer_transfer>(),
+];
+
+impl Doubtful for luxfer_transfer {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let list = stage.output()?.warnings(stage.inputs().strokes());
-        out.set(give(stage.context(), list.into_iter()));
-        Ok(())
-    })
+        Ok(list.into_iter().map(|(stage, warning)| (stage as luxfer_stage, warning)).collect())
+    }
 }
 
-/// Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any
-/// thread.
-/// LUXFER_NOT_READY before a job has succeeded.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_get_warnings(
-    rectify: *mut luxfer_rectify,
-    warnings: *mut *mut luxfer_warnings,
-) -> luxfer_status {
-    enter(rectify, |stage| {
-        let out = Out::new(warnings, "warnings")?;
+impl Doubtful for luxfer_rectify {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let output = stage.output()?;
         let unwarped = output.unwarped.as_ref().map_or(Vec::new(), |unwarped| unwarped.warnings());
-        let list = of(Stage::View, output.view.warnings()).chain(of(Stage::Unwarp, unwarped));
-        out.set(give(stage.context(), list));
-        Ok(())
-    })
+        Ok(of(Stage::View, output.view.warnings()).chain(of(Stage::Unwarp, unwarped)).collect())
+    }
 }
 
-/// Gets the warnings about the features. The caller releases *warnings. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_get_warnings(
-    features: *mut luxfer_features,
-    warnings: *mut *mut luxfer_warnings,
-) -> luxfer_status {
-    enter(features, |stage| {
-        let out = Out::new(warnings, "warnings")?;
-        out.set(give(stage.context(), of(Stage::Features, stage.output()?.features.warnings())));
-        Ok(())
-    })
+impl Doubtful for luxfer_features {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
+        Ok(of(Stage::Features, stage.output()?.features.warnings()).collect())
+    }
 }
 
-/// Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are
-/// now. The caller releases *warnings. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_get_warnings(
-    segment: *mut luxfer_segment,
-    warnings: *mut *mut luxfer_warnings,
-) -> luxfer_status {
-    enter(segment, |stage| {
-        let out = Out::new(warnings, "warnings")?;
+impl Doubtful for luxfer_segment {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let (made, inputs) = (stage.output()?, stage.inputs());
         let lit = inputs.region.as_ref().and_then(|region| segment::almost_all_lit(&made.mask, region.image()));
         let dim = inputs.features.as_ref().filter(|_| inputs.region.is_some());
-        let dim = dim.and_then(|features| segment::dim_lamps(features.image(), &[], &inputs.strokes));
-        let missed = made.missed(inputs.strokes.iter());
+        let dim = dim.and_then(|features| segment::dim_lamps(features.image(), &[], &inputs.strokes.taken));
+        let missed = made.missed(inputs.strokes.taken.iter());
         let list = made.warnings().into_iter().chain(missed).chain(lit).chain(dim).collect();
         let phase = if inputs.region.is_some() { Stage::Lights } else { Stage::Plane };
-        out.set(give(stage.context(), of(phase, list)));
-        Ok(())
-    })
+        Ok(of(phase, list).collect())
+    }
 }
 
-/// Gets the warnings about the texture; a plan has none. The caller releases *warnings. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_get_warnings(
-    emission: *mut luxfer_emission,
-    warnings: *mut *mut luxfer_warnings,
-) -> luxfer_status {
-    enter(emission, |stage| {
-        let out = Out::new(warnings, "warnings")?;
+impl Doubtful for luxfer_emission {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let list = stage.output()?.texture.as_ref().map_or(Vec::new(), |texture| texture.warnings());
-        out.set(give(stage.context(), of(Stage::Emission, list)));
-        Ok(())
-    })
+        Ok(of(Stage::Emission, list).collect())
+    }
 }
 
-/// Gets the warnings about the solution. The caller releases *warnings. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_get_warnings(
-    relight: *mut luxfer_relight,
-    warnings: *mut *mut luxfer_warnings,
-) -> luxfer_status {
-    enter(relight, |stage| {
-        let out = Out::new(warnings, "warnings")?;
-        out.set(give(stage.context(), of(Stage::Relight, stage.output()?.warnings())));
-        Ok(())
-    })
+impl Doubtful for luxfer_relight {
+    fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
+        Ok(of(Stage::Relight, stage.output()?.warnings()).collect())
+    }
 }
 
-/// Gets the warnings about a scene: an implausible size, and features of its file that are not rendered. The caller
-/// releases *warnings. Any thread.
+impl Doubtful for luxfer_scene {
+    fn list(scene: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
+        let list = scene.snapshot().warnings();
+        Ok(list.into_iter().map(|warning| (LUXFER_STAGE_SCENE, warning)).collect())
+    }
+}
+
+/// Gets the warnings about the result of an object. handle is one of:
+/// - a luxfer_transfer: the warnings of all stages that have a result, in their order;
+/// - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
+/// - a luxfer_features;
+/// - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
+/// - a luxfer_emission: about the texture; a plan has no warnings;
+/// - a luxfer_relight;
+/// - a luxfer_scene: an implausible size, and features of its file that are not rendered.
+///
+/// The caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);
+/// LUXFER_INVALID_ARGUMENT if handle is of another kind.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_get_warnings(
-    scene: *mut luxfer_scene,
+pub unsafe extern "C" fn luxfer_get_warnings(
+    handle: *mut c_void,
     warnings: *mut *mut luxfer_warnings,
 ) -> luxfer_status {
-    enter(scene, |object| {
-        let out = Out::new(warnings, "warnings")?;
-        let list = object.snapshot().warnings().into_iter().map(|warning| (LUXFER_STAGE_SCENE, warning)).collect();
-        out.set(handle::give(Arc::new(Warnings { context: object.context().clone(), list })));
+    let mut list = LUXFER_INVALID_ARGUMENT;
+    let status = guard(|| {
+        let tag = handle::read_tag(handle);
+        let lister = LISTERS.iter().find(|lister| tag == Some(lister.tag));
+        let lister = lister.ok_or_else(|| Error::argument("the handle is not a live object that has warnings"))?;
+        list = (lister.list)(handle, warnings);
         Ok(())
-    })
+    });
+    if status == LUXFER_OK { list } else { status }
 }
 
 /// Counts the warnings of a list. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_warnings_get_count(warnings: *mut luxfer_warnings, count: *mut u32) -> luxfer_status {
     enter(warnings, |object| {
         Out::new(count, "count")?.set(object.list.len() as u32);
         Ok(())
     })
 }
 
-/// Gets the code, the stage, the figures and the place of a warning. Any thread.
+/// Gets a warning of a list. size is sizeof *warning. Any thread.
 /// LUXFER_NOT_FOUND if there is no such warning.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_warnings_get(
     warnings: *mut luxfer_warnings,
     index: u32,
     warning: *mut luxfer_warning,
+    size: usize,
 ) -> luxfer_status {
     enter(warnings, |object| {
-        let out = Report::new(warning)?;
-        let (stage, found) = object.get(index)?;
+        let out = Report::new(warning, size)?;
+        let entry = object.get(index)?;
+        let found = &entry.warning;
         out.set(luxfer_warning {
             code: found.code as luxfer_warning_code,
-            stage: *stage,
+            stage: entry.stage,
             has_place: u32::from(found.place.is_some()),
             severity: found.severity,
             limit: found.limit,
             place: found.place.unwrap_or_default().to_array(),
+            message: entry.message.as_ptr(),
+            advice: entry.advice.as_ptr(),
             ..luxfer_warning::defaults()
         });
         Ok(())
     })
 }
 
-/// Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be;
-/// *needed receives the capacity for all of it, unless NULL. Any thread.
-/// LUXFER_NOT_FOUND if there is no such warning.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_get_message(
-    warnings: *mut luxfer_warnings,
-    index: u32,
-    buffer: *mut c_char,
-    capacity: usize,
-    needed: *mut usize,
-) -> luxfer_status {
-    enter(warnings, |object| copy_text(&object.get(index)?.1.message, buffer, capacity, needed))
-}
-
-/// Copies the remedy, as luxfer_warnings_get_message does the defect. Any thread.
-/// LUXFER_NOT_FOUND if there is no such warning.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_get_advice(
-    warnings: *mut luxfer_warnings,
-    index: u32,
-    buffer: *mut c_char,
-    capacity: usize,
-    needed: *mut usize,
-) -> luxfer_status {
-    enter(warnings, |object| copy_text(&object.get(index)?.1.advice, buffer, capacity, needed))
-}
-
-/// Adds a reference. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_retain(warnings: *mut luxfer_warnings) -> luxfer_status {
-    handle::retain(warnings)
-}
-
-/// Gives a reference back. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_warnings_release(warnings: *mut luxfer_warnings) -> luxfer_status {
-    handle::release(warnings)
-}
-
 /// The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The
 /// string is static: never free it. Any thread.
 #[unsafe(no_mangle)]
-pub extern "C" fn luxfer_warning_name(code: luxfer_warning_code) -> *const c_char {
+pub extern "C" fn luxfer_warning_get_name(code: luxfer_warning_code) -> *const c_char {
     let name = match code {
         LUXFER_WARNING_FOCAL_ASSUMED => c"LUXFER_WARNING_FOCAL_ASSUMED",
         LUXFER_WARNING_VIEW_UNCERTAIN => c"LUXFER_WARNING_VIEW_UNCERTAIN",
@@ -382,10 +371,10 @@ mod tests {
     fn every_code_has_its_constant_and_name() {
         for code in Code::ALL {
             // SAFETY: a static string.
-            let name = unsafe { CStr::from_ptr(luxfer_warning_name(code as i32)) }.to_str().unwrap();
+            let name = unsafe { CStr::from_ptr(luxfer_warning_get_name(code as i32)) }.to_str().unwrap();
             let expected = format!("LUXFER_WARNING_{code:?}").replace('_', "").to_uppercase();
             assert_eq!(name.replace('_', ""), expected);
         }
-        assert_eq!(luxfer_warning_name(0), luxfer_warning_name(Code::ALL.len() as i32 + 1));
+        assert_eq!(luxfer_warning_get_name(0), luxfer_warning_get_name(Code::ALL.len() as i32 + 1));
     }
 }

@@ -29,20 +29,14 @@ pub fn flux(radiance: Vec3, area: f64) -> f64 {
     PI * f64::from(colour::luminance(radiance)) * area
 }
 
-/// Electric power density in W/m² needed for a flux: lumens, lumens per watt, floor area in m².
-pub fn power_density(flux: f64, efficacy: f64, floor_area: f64) -> f64 {
-    flux / efficacy / floor_area
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn flux_and_power_of_a_panel() {
-        // 0.36 m² at 3000 cd/m² emit 3393 lm; with 120 lm/W in a room of 10 m² that is 2.83 W/m².
+        // 0.36 m² at 3000 cd/m² emit 3393 lm.
         let flux = flux(Vec3::splat(3000.0), 0.36);
         assert!((flux - 3392.92).abs() < 0.05, "{flux}");
-        assert!((power_density(flux, 120.0, 10.0) - 2.8274).abs() < 1e-3);
     }
 }

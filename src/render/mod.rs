@@ -15,7 +15,7 @@
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 //! [`Requirements::left_out`] names the solids of glass and the frosted glass of a scene, as does
-//! `luxfer_scene_requirements_text` in C.
+//! `luxfer_scene_get_requirements_text` in C.
 
 mod aov;
 mod ballot;

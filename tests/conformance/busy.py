@@ -57,10 +57,10 @@ class Busy(Player):
             if context in self.endless:
                 continue
             scene, render, job = (ctypes.c_void_p() for _ in range(3))
-            check(library.luxfer_demo_scene(context, abi.LUXFER_DEMO_TARGET_ROOM, ctypes.addressof(scene)))
+            check(library.luxfer_demo_create_scene(context, abi.LUXFER_DEMO_TARGET_ROOM, ctypes.addressof(scene)))
             check(library.luxfer_render_create(context, ctypes.addressof(render)))
             check(library.luxfer_render_set_scene(render, scene))
-            check(library.luxfer_scene_release(scene))
+            check(library.luxfer_release(scene))
             params = abi.luxfer_render_params()
             check(library.luxfer_render_params_init(ctypes.addressof(params), ctypes.sizeof(params)))
             params.width, params.height, params.samples = 64, 64, 1 << 20
@@ -69,15 +69,15 @@ class Busy(Player):
             fraction, patience = ctypes.c_double(), time.monotonic() + 5
             # Another job of the program may run before it.
             while fraction.value == 0 and time.monotonic() < patience:
-                check(library.luxfer_job_poll(job, ctypes.addressof(fraction), None))
+                check(library.luxfer_job_get_progress(job, ctypes.addressof(fraction), None))
                 time.sleep(0.001)
 
     def end(self) -> None:
         for render, job in self.endless.values():
             check(library.luxfer_job_cancel(job))
             library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None)
-            check(library.luxfer_job_release(job))
-            check(library.luxfer_render_release(render))
+            check(library.luxfer_release(job))
+            check(library.luxfer_release(render))
         self.endless.clear()
 
     def release(self) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import copy
 import random
 
-from script import CALLBACKS, FUNCTIONS, STRUCTS, Argument, Call, array, is_handle, is_release, makes, plain
+from script import CALLBACKS, FUNCTIONS, STRUCTS, Argument, Call, array, is_handle, is_of_any_kind, is_release, makes, plain
 
 NAN, INFINITY = float("nan"), float("inf")
 REALS = [0.0, -0.0, 1.0, -1.0, 0.5, 1e-45, 1e-30, 1e30, 3.4e38, NAN, INFINITY, -INFINITY]
@@ -101,7 +101,7 @@ def every_fault(calls: list[Call]) -> list[Call]:
         fields = FUNCTIONS[function]
         strangers = [things[0] for kind, things in live.items() if things and (not fields or kind != fields[0].type)]
         for i, field in enumerate(fields):
-            others = strangers[:2] if is_handle(field) else []
+            others = strangers[:2] if is_handle(field) and not is_of_any_kind(field) else []
             for wrong in broken(field, arguments[i], others):
                 if wrong == arguments[i] or endless(field, wrong):
                     continue
@@ -112,12 +112,10 @@ def every_fault(calls: list[Call]) -> list[Call]:
                     if makes(f) and a[0] == "new":
                         number += 1
                         variant[k] = ["new", number]
-                        made.append((f.type, number))
+                        made.append(number)
                 out.append([function, *variant])
                 # Jobs are busy and contexts have threads; whatever was made after all goes.
-                out += [[f"{kind}_release", ["object", n]] for kind, n in made]
-                if is_release(function) and wrong[0] == "object":
-                    out.pop()
+                out += [["luxfer_release", ["object", n]] for n in made]
         out.append(call)
         for field, argument in zip(fields, arguments):
             if makes(field) and argument[0] == "new":

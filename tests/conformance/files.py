@@ -155,7 +155,7 @@ class Loader:
             part = self.merge.split(1, 1, 2, index, **self.size)
             self.merge.start_part(path, part, **self.size).wait()
         self.part = Path(self.other).read_bytes()
-        self.stages = [luxfer.Render(self.context, empty), luxfer.Transfer(self.context, photo, empty, "Ceiling")]
+        self.stages = [luxfer.Render(self.context, empty), luxfer.Strokes(self.context, *photo.size[:2])]
 
     def load(self, seed: int) -> None:
         rng = random.Random(seed)
@@ -173,7 +173,7 @@ class Loader:
         out = ctypes.POINTER(abi.luxfer_scene if is_scene else abi.luxfer_image)()
         start = time.monotonic()
         if is_scene:
-            status = self.library.luxfer_scene_load_memory(self.context.handle, data, len(data), None, ctypes.byref(out))
+            status = self.library.luxfer_scene_load_memory(self.context.handle, data, len(data), None, None, ctypes.byref(out))
         else:
             status = self.library.luxfer_image_load_memory(self.context.handle, data, len(data), 1, ctypes.byref(out))
         check(seed, status, start)
@@ -193,7 +193,7 @@ class Loader:
         status = self.library.luxfer_distribution_load_memory(self.context.handle, data, len(data), kind, ctypes.byref(out))
         check(seed, status, start)
         if status == abi.LUXFER_OK:
-            self.library.luxfer_distribution_release(out)
+            self.library.luxfer_release(out)
 
     def add_up(self, seed: int, rng: random.Random) -> None:
         """A half of a rendering with bytes changed, beside the other half."""
@@ -211,7 +211,7 @@ class Loader:
             check(seed, status, start)
             if status == abi.LUXFER_OK:
                 check(seed, self.library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None), start)
-                self.library.luxfer_job_release(job)
+                self.library.luxfer_release(job)
         self.library.luxfer_render_clear_parts(handle)
 
     def say(self, seed: int, rng: random.Random) -> None:
@@ -222,13 +222,13 @@ class Loader:
             self.library.luxfer_render_clear_expressions(handle)
             check(seed, self.library.luxfer_render_add_expression(handle, b"text", text.encode()), start)
         else:
-            check(seed, self.library.luxfer_transfer_add_strokes_text(handle, text.encode()), start)
+            check(seed, self.library.luxfer_strokes_add_text(handle, text.encode()), start)
 
     def use(self, thing, is_scene: bool, seed: int) -> None:
         """What loads must work, too."""
         library = self.library
         if not is_scene:
-            library.luxfer_image_release(thing)
+            library.luxfer_release(thing)
             return
         rays = (abi.luxfer_ray * 2)()
         for ray, axis in zip(rays, (1, 2)):
@@ -236,13 +236,12 @@ class Loader:
             ray.direction[axis] = -1
             ray.t_max = 1e9
         needs = abi.luxfer_requirements()
-        needs.struct_size = ctypes.sizeof(needs)
         # A scene may be valid as a file and still not be one that can be traced.
         start = time.monotonic()
         check(seed, library.luxfer_scene_intersect(thing, rays, 2, (abi.luxfer_hit * 2)()), start)
-        check(seed, library.luxfer_scene_requirements(thing, 0.01, ctypes.byref(needs)), start)
+        check(seed, library.luxfer_scene_get_requirements(thing, 0.01, ctypes.byref(needs), ctypes.sizeof(needs)), start)
         check(seed, library.luxfer_scene_export_memory(thing, abi.luxfer_write_fn(lambda user, data, size: 0), None), start)
-        library.luxfer_scene_release(thing)
+        library.luxfer_release(thing)
 
 
 def load(first: int, count: int, journal: str) -> None:

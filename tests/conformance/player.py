@@ -21,7 +21,7 @@ import sys
 import threading
 import time
 
-from script import FUNCTIONS, ROOM, STRUCTS, is_handle, is_release, makes
+from script import FUNCTIONS, ROOM, STRUCTS, is_handle, is_release, is_retain, makes
 
 from luxfer import _abi as abi
 from luxfer._library import library as typed
@@ -94,9 +94,9 @@ class Player:
         self.ticks += 1
         for kind, handle, _ in list(self.handles.values()):
             if kind == "luxfer_job":
-                library.luxfer_job_poll(handle, None, None)
+                library.luxfer_job_get_progress(handle, None, None)
             elif kind == "luxfer_image":
-                library.luxfer_image_size(handle, None, None, None)
+                library.luxfer_image_get_size(handle, None, None, None)
         return int(self.ticks > 50)
 
     # -------------------------------------------------------------------------------------------------- arguments
@@ -107,13 +107,11 @@ class Player:
 
     def struct(self, name: str, fields: dict, base: str) -> int:
         kind = getattr(abi, name)
-        # More than the struct, as struct_size may say so.
+        # More than the struct, as its size may say so.
         room = ctypes.create_string_buffer(ROOM)
         value = kind.from_buffer(room)
         if base == "init":
             getattr(library, f"{name}_init")(address(value), ctypes.sizeof(kind))
-        elif base == "size":
-            value.struct_size = ctypes.sizeof(kind)
         self.kept.append((room, value))
         members = {f.name: f for f in STRUCTS[name]}
         for field, argument in fields.items():
@@ -162,7 +160,7 @@ class Player:
 
     def message(self, context: int) -> bytes:
         buffer = ctypes.create_string_buffer(4096)
-        library.luxfer_context_last_error(context, address(buffer), 4096, None)
+        library.luxfer_context_get_last_error(context, address(buffer), 4096, None)
         return buffer.value
 
     def call(self, call, may_release: bool = True) -> None:
@@ -182,7 +180,7 @@ class Player:
         start = time.monotonic()
         status = getattr(library, function)(*handed)
         taken = time.monotonic() - start
-        if not isinstance(status, int) or function == "luxfer_version":
+        if not isinstance(status, int) or function == "luxfer_get_version":
             return
         if not 0 <= status <= 13 or status in (abi.LUXFER_INTERNAL, abi.LUXFER_UNKNOWN):
             raise Broken(f"{function} returned {status}: {[self.message(c) for c in self.contexts]}")
@@ -194,7 +192,7 @@ class Player:
             for v, before in results:
                 if ctypes.string_at(v, len(before)) != before and function != "luxfer_job_wait":
                     raise Broken(f"{function} returned {status} and wrote a result")
-            asks = function in ("luxfer_job_status", "luxfer_job_poll", "luxfer_context_last_error")
+            asks = function == "luxfer_context_get_last_error"
             if owner and owner[0] == first.type and not asks and not any(self.message(c) for c in self.contexts):
                 raise Broken(f"{function} returned {status} without a message")
             return
@@ -208,7 +206,7 @@ class Player:
                     self.contexts.append(handle)
         if first and is_handle(first) and arguments[0][0] == "object" and arguments[0][1] in self.handles:
             kind, handle, count = self.handles[arguments[0][1]]
-            count += function.endswith("_retain") - releases
+            count += is_retain(function) - releases
             self.handles[arguments[0][1]] = (kind, handle, count)
             if not count:
                 del self.handles[arguments[0][1]]
@@ -242,8 +240,8 @@ class Player:
     def release(self) -> None:
         for kind, handle, count in sorted(self.handles.values(), key=lambda h: h[0] != "luxfer_job"):
             for _ in range(count):
-                if getattr(library, f"{kind}_release")(handle):
-                    raise Broken(f"{kind}_release failed at the end")
+                if library.luxfer_release(handle):
+                    raise Broken(f"luxfer_release of a {kind} failed at the end")
         self.handles.clear()
         self.contexts.clear()
         self.kept.clear()

@@ -9,13 +9,12 @@ A program is a list of calls, a call [function, argument...]. Arguments:
     ["bytes", hex]             text or a file: these bytes, and a zero behind them
     ["array", type, [n...]]    numbers of a ctypes type
     ["room", byte]             memory for results, filled with that byte
-    ["struct", name, {field: argument}, base]   base is "init" (the defaults), "size" (only struct_size) or "raw" (zeros)
+    ["struct", name, {field: argument}, base]   base is "init" (the defaults) or "raw" (zeros)
     ["junk", offset]           memory that holds no handle
 """
 
 from __future__ import annotations
 
-import re
 import sys
 from pathlib import Path
 
@@ -24,7 +23,7 @@ sys.path.insert(0, str(ROOT / "bindings" / "python"))
 
 import generate  # noqa: E402
 
-HEADER = generate.read(generate.HEADER.read_text())
+HEADER = generate.read(generate.header_text())
 KINDS = set(HEADER.opaque)
 STRUCTS = HEADER.structs
 FUNCTIONS = {name: arguments for name, (_, arguments) in HEADER.functions.items()}
@@ -52,6 +51,11 @@ def plain(value) -> Argument:
 
 def struct(kind: str, base: str = "init", /, **fields) -> Argument:
     return ["struct", f"luxfer_{kind}", {k: plain(v) for k, v in fields.items()}, base]
+
+
+def report(kind: str) -> tuple[Argument, int]:
+    """A struct for results, and its size: more than any version has, as a newer host may pass."""
+    return struct(kind, "raw"), 1024
 
 
 def array(kind: str, *numbers) -> Argument:
@@ -88,14 +92,18 @@ class Script:
     def finish(self, job: Argument) -> None:
         """Waits for a job, and lets go of it."""
         self.call("job_wait", job, 60_000, None, None)
-        self.call("job_release", job)
+        self.call("release", job)
 
     def run(self, verb: str, *arguments) -> None:
         self.finish(self.make(verb, *arguments))
 
 
+def is_of_any_kind(field) -> bool:
+    return field.type == "void" and field.name == "handle"
+
+
 def is_handle(field) -> bool:
-    return field.type in KINDS and field.stars == 1
+    return field.type in KINDS and field.stars == 1 or is_of_any_kind(field)
 
 
 def makes(field) -> bool:
@@ -103,4 +111,8 @@ def makes(field) -> bool:
 
 
 def is_release(function: str) -> bool:
-    return re.fullmatch(r"luxfer_\w+_release", function) is not None
+    return function == "luxfer_release"
+
+
+def is_retain(function: str) -> bool:
+    return function == "luxfer_retain"

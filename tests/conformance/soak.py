@@ -76,7 +76,7 @@ class Soak:
 
     def transfer(self, cycle: int) -> None:
         stage = luxfer.Transfer(self.context, self.photo, self.target, "Ceiling")
-        stage.add_strokes_image(self.strokes)
+        stage.set_strokes(self.strokes)
         try:
             stage.run(max_texels=64, target="whole-image", relight={"paths": 1024, "seed": cycle}, render={"width": 24, "height": 16, "samples": 2})
         except errors.Error as error:

@@ -69,7 +69,7 @@ luxfer_render *new_render(luxfer_context *context) {
     luxfer_render *render = nullptr;
     CHECK_OK(luxfer_render_create(context, &render));
     CHECK_OK(luxfer_render_set_scene(render, scene));
-    CHECK_OK(luxfer_scene_release(scene));
+    CHECK_OK(luxfer_release(scene));
     return render;
 }
 
@@ -86,25 +86,25 @@ luxfer_job *start(luxfer_render *render, std::uint32_t side, std::uint32_t sampl
 constexpr std::uint32_t endless = 1u << 20;
 
 void versions_agree() {
-    CHECK(luxfer_version() == LUXFER_VERSION);
+    CHECK(luxfer_get_version() == LUXFER_VERSION);
     const std::string text = std::to_string(LUXFER_VERSION_MAJOR) + "." + std::to_string(LUXFER_VERSION_MINOR) + "." +
                              std::to_string(LUXFER_VERSION_PATCH);
-    CHECK(text == luxfer_version_string());
-    CHECK(std::strcmp(luxfer_status_name(LUXFER_FORMAT), "LUXFER_FORMAT") == 0);
-    CHECK(std::strcmp(luxfer_status_name(-5), "LUXFER_UNKNOWN") == 0);
+    CHECK(text == luxfer_get_version_string());
+    CHECK(std::strcmp(luxfer_status_get_name(LUXFER_FORMAT), "LUXFER_FORMAT") == 0);
+    CHECK(std::strcmp(luxfer_status_get_name(-5), "LUXFER_UNKNOWN") == 0);
 }
 
 void wrong_handles_are_errors() {
     luxfer_context *context = new_context(1);
     luxfer_image *image = new_image(context, 4, 4);
-    CHECK_STATUS(luxfer_image_size(reinterpret_cast<luxfer_image *>(context), nullptr, nullptr, nullptr),
+    CHECK_STATUS(luxfer_image_get_size(reinterpret_cast<luxfer_image *>(context), nullptr, nullptr, nullptr),
                  LUXFER_INVALID_ARGUMENT);
     std::uint64_t garbage[4] = {1, 2, 3, 4};
-    CHECK_STATUS(luxfer_image_release(reinterpret_cast<luxfer_image *>(garbage)), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_context_retain(nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_OK(luxfer_image_release(nullptr));
-    CHECK_OK(luxfer_context_release(context));
-    CHECK_OK(luxfer_image_release(image));
+    CHECK_STATUS(luxfer_release(reinterpret_cast<luxfer_image *>(garbage)), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_retain(nullptr), LUXFER_INVALID_ARGUMENT);
+    CHECK_OK(luxfer_release(nullptr));
+    CHECK_OK(luxfer_release(context));
+    CHECK_OK(luxfer_release(image));
 }
 
 // Errors of one host thread are not those of another.
@@ -126,7 +126,7 @@ void messages_belong_to_threads() {
         host.join();
     CHECK(wrong == 0);
     CHECK(check::message(context).empty());
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(context));
 }
 
 // A callback may call any function, even release the very job it is told about.
@@ -141,15 +141,15 @@ std::int32_t reenter(void *user, double) {
     Reentrant &seen = *static_cast<Reentrant *>(user);
     ++seen.calls;
     double fraction = -1.0;
-    std::int32_t finished = -1;
+    luxfer_status outcome = -1;
     luxfer_image *image = nullptr;
     if (seen.calls == 1) {
-        CHECK_OK(luxfer_job_poll(seen.job, &fraction, &finished));
-        CHECK(fraction >= 0.0 && fraction <= 1.0 && (finished == 0 || finished == 1));
+        CHECK_OK(luxfer_job_get_progress(seen.job, &fraction, &outcome));
+        CHECK(fraction >= 0.0 && fraction <= 1.0 && outcome >= LUXFER_OK);
         CHECK_STATUS(luxfer_image_load(seen.context, "/nonexistent", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);
-        CHECK_OK(luxfer_render_release(seen.render));
-        CHECK_OK(luxfer_context_release(seen.context));
-        CHECK_OK(luxfer_job_release(seen.job));
+        CHECK_OK(luxfer_release(seen.render));
+        CHECK_OK(luxfer_release(seen.context));
+        CHECK_OK(luxfer_release(seen.job));
         return 1;
     }
     CHECK(false); // Not called again after it has asked to cancel.
@@ -171,17 +171,17 @@ void references_of_two_threads() {
     for (int i = 0; i < 20; ++i) {
         luxfer_render *render = new_render(context);
         luxfer_job *job = start(render, 16, endless);
-        CHECK_OK(luxfer_job_retain(job));
+        CHECK_OK(luxfer_retain(job));
         std::thread other([job] {
             CHECK_OK(luxfer_job_cancel(job));
-            CHECK_OK(luxfer_job_release(job));
+            CHECK_OK(luxfer_release(job));
         });
         CHECK_STATUS(luxfer_job_wait(job, -1, nullptr, nullptr), LUXFER_CANCELLED);
-        CHECK_OK(luxfer_job_release(job));
-        CHECK_OK(luxfer_render_release(render));
+        CHECK_OK(luxfer_release(job));
+        CHECK_OK(luxfer_release(render));
         other.join();
     }
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(context));
 }
 
 // Layers are asked for by expression and found by name; a slip is told with its column.
@@ -190,23 +190,23 @@ void layers_are_found_by_name() {
     luxfer_render *render = new_render(context);
     CHECK_STATUS(luxfer_render_add_expression(render, "slip", "LDXE"), LUXFER_INVALID_ARGUMENT);
     char message[256];
-    CHECK_OK(luxfer_context_last_error(context, message, sizeof message, nullptr));
+    CHECK_OK(luxfer_context_get_last_error(context, message, sizeof message, nullptr));
     CHECK(std::strstr(message, "column 3") != nullptr);
     CHECK_OK(luxfer_render_add_expression(render, "direct", "C<RD>L"));
     CHECK_OK(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH));
     luxfer_job *job = start(render, 8, 4);
     CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr));
-    CHECK_OK(luxfer_job_release(job));
+    CHECK_OK(luxfer_release(job));
     std::uint32_t index = 9, channels = 0;
     luxfer_image *image = nullptr;
     CHECK_OK(luxfer_render_find_layer(render, "Depth", &index));
     CHECK(index == 1);
     CHECK_OK(luxfer_render_get_layer(render, index, &image));
-    CHECK_OK(luxfer_image_size(image, nullptr, nullptr, &channels));
+    CHECK_OK(luxfer_image_get_size(image, nullptr, nullptr, &channels));
     CHECK(channels == 1);
-    CHECK_OK(luxfer_image_release(image));
-    CHECK_OK(luxfer_render_release(render));
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(image));
+    CHECK_OK(luxfer_release(render));
+    CHECK_OK(luxfer_release(context));
 }
 
 // The same bits on one thread and on three.
@@ -220,9 +220,9 @@ void threads_do_not_change_results() {
         luxfer_image *image = nullptr;
         CHECK_OK(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image));
         // Everything but the image goes; its pixels stay.
-        CHECK_OK(luxfer_job_release(job));
-        CHECK_OK(luxfer_render_release(render));
-        CHECK_OK(luxfer_context_release(context));
+        CHECK_OK(luxfer_release(job));
+        CHECK_OK(luxfer_release(render));
+        CHECK_OK(luxfer_release(context));
 
         std::vector<float> pixels(32 * 32 * 3);
         luxfer_image_view view;
@@ -231,7 +231,7 @@ void threads_do_not_change_results() {
         view.data = pixels.data();
         view.byte_size = pixels.size() * sizeof(float);
         CHECK_OK(luxfer_image_read(image, 0, &view));
-        CHECK_OK(luxfer_image_release(image));
+        CHECK_OK(luxfer_release(image));
         if (first.empty())
             first = pixels;
         CHECK(std::memcmp(first.data(), pixels.data(), view.byte_size) == 0);

@@ -44,7 +44,7 @@ luxfer_status run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage la
     const luxfer_status started = luxfer_transfer_start(transfer, first, last, nullptr, &job);
     if (started != LUXFER_OK) return started;
     const luxfer_status ended = luxfer_job_wait(job, -1, nullptr, nullptr);
-    CHECK_OK(luxfer_job_release(job));
+    CHECK_OK(luxfer_release(job));
     return ended;
 }
 
@@ -70,17 +70,17 @@ void files() {
     // A good GLB, cut at many places, and with a length that lies.
     luxfer_scene *room = nullptr, *scene = nullptr;
     std::vector<unsigned char> glb;
-    CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
+    CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
     CHECK_OK(luxfer_scene_export_memory(room, append, &glb));
     for (size_t cut : {size_t{0}, size_t{1}, size_t{12}, size_t{19}, glb.size() / 4, glb.size() / 2, glb.size() - 1})
-        CHECK_STATUS(luxfer_scene_load_memory(context, glb.data(), cut, nullptr, &scene), LUXFER_FORMAT);
+        CHECK_STATUS(luxfer_scene_load_memory(context, glb.data(), cut, nullptr, nullptr, &scene), LUXFER_FORMAT);
     std::vector<unsigned char> lying = glb;
     std::memset(&lying[12], 0xff, 4);
-    CHECK_STATUS(luxfer_scene_load_memory(context, lying.data(), lying.size(), nullptr, &scene), LUXFER_FORMAT);
+    CHECK_STATUS(luxfer_scene_load_memory(context, lying.data(), lying.size(), nullptr, nullptr, &scene), LUXFER_FORMAT);
     CHECK(scene == nullptr);
-    CHECK_OK(luxfer_scene_load_memory(context, glb.data(), glb.size(), nullptr, &scene));
-    CHECK_OK(luxfer_scene_release(scene));
-    CHECK_OK(luxfer_scene_release(room));
+    CHECK_OK(luxfer_scene_load_memory(context, glb.data(), glb.size(), nullptr, nullptr, &scene));
+    CHECK_OK(luxfer_release(scene));
+    CHECK_OK(luxfer_release(room));
 }
 
 void vertices() {
@@ -105,7 +105,7 @@ void vertices() {
     CHECK_STATUS(luxfer_scene_add_mesh(scene, &mesh, nullptr), LUXFER_INVALID_ARGUMENT);
     indices[2] = 2;
     CHECK_OK(luxfer_scene_add_mesh(scene, &mesh, nullptr));
-    CHECK_OK(luxfer_scene_release(scene));
+    CHECK_OK(luxfer_release(scene));
 }
 
 void strokes_and_surfaces() {
@@ -132,17 +132,21 @@ void strokes_and_surfaces() {
     CHECK_STATUS(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE), LUXFER_DEGENERATE);
     CHECK(says({"stroke"}));
     const float right[] = {60, 10, 90, 50}, left[] = {10, 10, 40, 50};
-    CHECK_OK(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, right, 2, 3, 1));
+    luxfer_strokes *strokes = nullptr;
+    CHECK_OK(luxfer_strokes_create(context, 96, 64, &strokes));
+    CHECK_OK(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, right, 2, 3, 1));
+    CHECK_OK(luxfer_transfer_set_strokes(transfer, strokes));
     CHECK_STATUS(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE), LUXFER_DEGENERATE);
     CHECK(says({"stroke"}));
-    CHECK_OK(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, left, 2, 3, 0));
+    CHECK_OK(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, left, 2, 3, 0));
+    CHECK_OK(luxfer_transfer_set_strokes(transfer, strokes));
+    CHECK_OK(luxfer_release(strokes));
     CHECK_OK(run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE));
 
     // A surface of another name, and what is called too early.
-    CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
+    CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room));
     luxfer_surface surface;
-    surface.struct_size = sizeof surface;
-    CHECK_STATUS(luxfer_scene_find_surface(room, "Ceilling", &surface), LUXFER_NOT_FOUND);
+    CHECK_STATUS(luxfer_scene_find_surface(room, "Ceilling", &surface, sizeof surface), LUXFER_NOT_FOUND);
     CHECK(says({"Ceilling", "Ceiling"}));
     CHECK_OK(luxfer_transfer_set_scene(transfer, room, "Ceiling"));
     CHECK_STATUS(run(transfer, LUXFER_STAGE_RELIGHT, LUXFER_STAGE_RENDER), LUXFER_INVALID_OPERATION);
@@ -158,11 +162,11 @@ void strokes_and_surfaces() {
     CHECK(says({"luxfer_relight_set_scene"}));
     CHECK(job == nullptr && early == nullptr);
 
-    CHECK_OK(luxfer_relight_release(relight));
-    CHECK_OK(luxfer_scene_release(room));
-    CHECK_OK(luxfer_transfer_release(transfer));
-    CHECK_OK(luxfer_image_release(noisy));
-    CHECK_OK(luxfer_image_release(grey));
+    CHECK_OK(luxfer_release(relight));
+    CHECK_OK(luxfer_release(room));
+    CHECK_OK(luxfer_release(transfer));
+    CHECK_OK(luxfer_release(noisy));
+    CHECK_OK(luxfer_release(grey));
 }
 
 } // namespace
@@ -172,6 +176,6 @@ int main() {
     files();
     vertices();
     strokes_and_surfaces();
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(context));
     return check::summary("bad_input");
 }

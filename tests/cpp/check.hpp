@@ -19,15 +19,15 @@ inline void that(bool ok, const char *what, const char *file, int line) {
 
 inline void status(luxfer_status got, luxfer_status want, const char *what, const char *file, int line) {
     if (got != want) {
-        std::fprintf(stderr, "%s:%d: %s is %s, expected %s\n", file, line, what, luxfer_status_name(got),
-                     luxfer_status_name(want));
+        std::fprintf(stderr, "%s:%d: %s is %s, expected %s\n", file, line, what, luxfer_status_get_name(got),
+                     luxfer_status_get_name(want));
         ++failures;
     }
 }
 
 inline std::string message(luxfer_context *context) {
     char text[1024] = "";
-    luxfer_context_last_error(context, text, sizeof text, nullptr);
+    luxfer_context_get_last_error(context, text, sizeof text, nullptr);
     return text;
 }
 

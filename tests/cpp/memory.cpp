@@ -193,13 +193,11 @@ int main() {
     const auto emission = luxfer::Emission::create(context);
     starve("texture", 192, [&] {
         plane.set_features(features.image(LUXFER_FEATURES_CHANNELS));
-        plane.clear_strokes();
-        plane.add_strokes(strokes, LUXFER_PHASE_PLANE);
+        plane.set_strokes(luxfer::Strokes::from_image(strokes), LUXFER_PHASE_PLANE);
         plane.start().wait();
         lights.set_features(features.image(LUXFER_FEATURES_CHANNELS));
         lights.set_region(plane.image(LUXFER_SEGMENT_MASK));
-        lights.clear_strokes();
-        lights.add_strokes(strokes, LUXFER_PHASE_LIGHTS);
+        lights.set_strokes(luxfer::Strokes::from_image(strokes), LUXFER_PHASE_LIGHTS);
         luxfer::SegmentParams colour;
         colour.channels = 7;
         lights.start(colour).wait();

@@ -19,7 +19,7 @@ struct Size {
 
 Size size_of(luxfer_image *image) {
     Size size;
-    CHECK_OK(luxfer_image_size(image, &size.width, &size.height, &size.channels));
+    CHECK_OK(luxfer_image_get_size(image, &size.width, &size.height, &size.channels));
     return size;
 }
 
@@ -52,7 +52,7 @@ luxfer_image *flat(Size size, float value) {
 
 luxfer_status finish(luxfer_job *job) {
     const luxfer_status status = luxfer_job_wait(job, -1, nullptr, nullptr);
-    CHECK_OK(luxfer_job_release(job));
+    CHECK_OK(luxfer_release(job));
     return status;
 }
 
@@ -69,12 +69,12 @@ luxfer_guides *rendered(luxfer_demo which, const luxfer_guides_params &params) {
     luxfer_scene *scene = nullptr;
     luxfer_guides *guides = nullptr;
     luxfer_job *job = nullptr;
-    CHECK_OK(luxfer_demo_scene(context, which, &scene));
+    CHECK_OK(luxfer_demo_create_scene(context, which, &scene));
     CHECK_OK(luxfer_guides_create(context, &guides));
     CHECK_OK(luxfer_guides_set_scene(guides, scene));
     CHECK_OK(luxfer_guides_start(guides, &params, &job));
     CHECK_OK(finish(job));
-    CHECK_OK(luxfer_scene_release(scene));
+    CHECK_OK(luxfer_release(scene));
     return guides;
 }
 
@@ -98,10 +98,10 @@ void guides_refuse() {
     CHECK_STATUS(luxfer_guides_set_scene(guides, nullptr), LUXFER_INVALID_ARGUMENT);
     CHECK_STATUS(luxfer_guides_start(guides, &params, &job), LUXFER_INVALID_OPERATION);
     CHECK_STATUS(luxfer_guides_get_image(guides, LUXFER_GUIDES_FULL, &image), LUXFER_NOT_READY);
-    CHECK_STATUS(luxfer_guides_motion(guides, guides, &image), LUXFER_NOT_READY);
-    CHECK_STATUS(luxfer_demo_artwork(guides, LUXFER_ARTWORK_PEN, &image), LUXFER_NOT_READY);
+    CHECK_STATUS(luxfer_guides_get_motion(guides, guides, &image), LUXFER_NOT_READY);
+    CHECK_STATUS(luxfer_demo_create_artwork(guides, LUXFER_ARTWORK_PEN, &image), LUXFER_NOT_READY);
 
-    CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_SPHERE_ON_TABLE, &scene));
+    CHECK_OK(luxfer_demo_create_scene(context, LUXFER_DEMO_SPHERE_ON_TABLE, &scene));
     CHECK_OK(luxfer_guides_set_scene(guides, scene));
     params.camera = 7;
     CHECK_STATUS(luxfer_guides_start(guides, &params, &job), LUXFER_NOT_FOUND);
@@ -114,10 +114,10 @@ void guides_refuse() {
         const luxfer_status started = luxfer_guides_start(guides, &params, &job);
         CHECK_STATUS(started == LUXFER_OK ? finish(job) : started, LUXFER_INVALID_ARGUMENT);
     }
-    CHECK_STATUS(luxfer_demo_scene(context, 9, &scene), LUXFER_INVALID_ARGUMENT);
-    CHECK_OK(luxfer_scene_release(scene));
-    CHECK_OK(luxfer_guides_release(guides));
-    CHECK_OK(luxfer_guides_release(nullptr));
+    CHECK_STATUS(luxfer_demo_create_scene(context, 9, &scene), LUXFER_INVALID_ARGUMENT);
+    CHECK_OK(luxfer_release(scene));
+    CHECK_OK(luxfer_release(guides));
+    CHECK_OK(luxfer_release(nullptr));
 }
 
 void guides_tell_light_apart(luxfer_guides *guides) {
@@ -132,7 +132,7 @@ void guides_tell_light_apart(luxfer_guides *guides) {
             most = std::fmax(most, v);
         }
         CHECK(most > 0);
-        CHECK_OK(luxfer_image_release(image));
+        CHECK_OK(luxfer_release(image));
     }
     luxfer_image *image = nullptr;
     CHECK_STATUS(luxfer_guides_get_image(guides, LUXFER_GUIDES_CAUSTICS + 1, &image), LUXFER_INVALID_ARGUMENT);
@@ -142,7 +142,7 @@ void guides_tell_light_apart(luxfer_guides *guides) {
 
     // The camera stands still: nothing moves.
     luxfer_image *motion = nullptr;
-    CHECK_OK(luxfer_guides_motion(guides, guides, &motion));
+    CHECK_OK(luxfer_guides_get_motion(guides, guides, &motion));
     size_t seen = 0;
     const std::vector<float> still = pixels_of(motion);
     for (float v : still) {
@@ -152,14 +152,14 @@ void guides_tell_light_apart(luxfer_guides *guides) {
         }
     }
     CHECK(seen > still.size() * 9 / 10);
-    CHECK_OK(luxfer_image_release(motion));
+    CHECK_OK(luxfer_release(motion));
     luxfer_guides_params params = small_guides();
     params.width = 2 * WIDTH;
     params.samples = 1;
     luxfer_guides *wider = rendered(LUXFER_DEMO_SPHERE_ON_TABLE, params);
-    CHECK_STATUS(luxfer_guides_motion(guides, wider, &motion), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_guides_motion(guides, nullptr, &motion), LUXFER_INVALID_ARGUMENT);
-    CHECK_OK(luxfer_guides_release(wider));
+    CHECK_STATUS(luxfer_guides_get_motion(guides, wider, &motion), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_guides_get_motion(guides, nullptr, &motion), LUXFER_INVALID_ARGUMENT);
+    CHECK_OK(luxfer_release(wider));
 }
 
 // The artworks that stand in for an artist's: three, each different, of the guides' size, white paper where nothing is.
@@ -167,19 +167,19 @@ void artworks(luxfer_guides *guides) {
     std::vector<float> before;
     for (luxfer_artwork style = LUXFER_ARTWORK_PEN; style <= LUXFER_ARTWORK_PAINT; ++style) {
         luxfer_image *image = nullptr;
-        CHECK_OK(luxfer_demo_artwork(guides, style, &image));
+        CHECK_OK(luxfer_demo_create_artwork(guides, style, &image));
         const Size size = size_of(image);
         CHECK(size.width == WIDTH && size.height == HEIGHT && size.channels == 3);
         std::vector<float> paint = pixels_of(image);
         for (float v : paint) CHECK(v >= 0 && v <= 1);
         CHECK(paint != before);
         before = paint;
-        CHECK_OK(luxfer_image_release(image));
+        CHECK_OK(luxfer_release(image));
     }
     luxfer_image *image = nullptr;
-    CHECK_STATUS(luxfer_demo_artwork(guides, LUXFER_ARTWORK_PAINT + 1, &image), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_demo_artwork(nullptr, LUXFER_ARTWORK_PEN, &image), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_demo_artwork(guides, LUXFER_ARTWORK_PEN, nullptr), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_demo_create_artwork(guides, LUXFER_ARTWORK_PAINT + 1, &image), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_demo_create_artwork(nullptr, LUXFER_ARTWORK_PEN, &image), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_demo_create_artwork(guides, LUXFER_ARTWORK_PEN, nullptr), LUXFER_INVALID_ARGUMENT);
 }
 
 void sheets() {
@@ -198,30 +198,28 @@ void sheets() {
     const Size paper = size_of(sheet);
     CHECK(std::fabs(paper.width / (297 / 25.4 * 60) - 1) < 0.01 && std::fabs(paper.height / (210 / 25.4 * 60) - 1) < 0.01);
     luxfer_sheet_report report = {};
-    report.struct_size = sizeof report;
-    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report));
+    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report, sizeof report));
     CHECK(report.marks == 10 && report.residual < 0.5 && report.error < 0.5);
     const std::vector<float> aligned = pixels_of(artwork);
     CHECK(aligned.size() == pixels.size());
     auto at = [&](uint32_t x, uint32_t y) { return aligned[3 * (size_t{y} * WIDTH + x)]; };
     CHECK(at(10, 36) < at(48, 36) && at(48, 36) < at(86, 36));
-    CHECK_OK(luxfer_image_release(artwork));
-    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, nullptr));
-    CHECK_OK(luxfer_image_release(artwork));
+    CHECK_OK(luxfer_release(artwork));
+    CHECK_OK(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, nullptr, 0));
+    CHECK_OK(luxfer_release(artwork));
 
     // What cannot be.
     artwork = nullptr;
-    CHECK_STATUS(luxfer_sheet_align(sheet, 0, HEIGHT, &params, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, 1u << 31, &params, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_sheet_align(nullptr, WIDTH, HEIGHT, &params, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, nullptr, nullptr), LUXFER_INVALID_ARGUMENT);
-    report.struct_size = 5;
-    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, 0, HEIGHT, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, 1u << 31, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(nullptr, WIDTH, HEIGHT, &params, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, nullptr, nullptr, 0), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &params, &artwork, &report, 5), LUXFER_INVALID_ARGUMENT);
     for (float blank : {0.0f, 1.0f, NAN_F}) {
         luxfer_image *photo = flat({200, 150, 3}, blank);
-        CHECK_STATUS(luxfer_sheet_align(photo, WIDTH, HEIGHT, &params, &artwork, nullptr), LUXFER_DEGENERATE);
+        CHECK_STATUS(luxfer_sheet_align(photo, WIDTH, HEIGHT, &params, &artwork, nullptr, 0), LUXFER_DEGENERATE);
         CHECK(!check::message(context).empty());
-        CHECK_OK(luxfer_image_release(photo));
+        CHECK_OK(luxfer_release(photo));
     }
     for (double luxfer_sheet_params::*field :
          {&luxfer_sheet_params::dpi, &luxfer_sheet_params::margin, &luxfer_sheet_params::contrast,
@@ -230,7 +228,7 @@ void sheets() {
             luxfer_sheet_params bad = params;
             bad.*field = value;
             CHECK_STATUS(luxfer_sheet_print(picture, &bad, &artwork), LUXFER_INVALID_ARGUMENT);
-            CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &bad, &artwork, nullptr), LUXFER_INVALID_ARGUMENT);
+            CHECK_STATUS(luxfer_sheet_align(sheet, WIDTH, HEIGHT, &bad, &artwork, nullptr, 0), LUXFER_INVALID_ARGUMENT);
         }
     }
     luxfer_sheet_params bad = params;
@@ -239,8 +237,8 @@ void sheets() {
     CHECK_STATUS(luxfer_sheet_print(nullptr, &params, &artwork), LUXFER_INVALID_ARGUMENT);
     CHECK_STATUS(luxfer_sheet_print(picture, &params, nullptr), LUXFER_INVALID_ARGUMENT);
     CHECK(artwork == nullptr);
-    CHECK_OK(luxfer_image_release(sheet));
-    CHECK_OK(luxfer_image_release(picture));
+    CHECK_OK(luxfer_release(sheet));
+    CHECK_OK(luxfer_release(picture));
 }
 
 luxfer_status paint(luxfer_stylize *stylize, const luxfer_stylize_params *params) {
@@ -254,7 +252,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     luxfer_stylize *stylize = nullptr;
     luxfer_image *artwork = nullptr, *picture = nullptr, *motion = nullptr;
     CHECK_OK(luxfer_stylize_create(context, &stylize));
-    CHECK_OK(luxfer_demo_artwork(source, LUXFER_ARTWORK_PEN, &artwork));
+    CHECK_OK(luxfer_demo_create_artwork(source, LUXFER_ARTWORK_PEN, &artwork));
     CHECK_STATUS(paint(stylize, nullptr), LUXFER_INVALID_OPERATION);
     CHECK_STATUS(luxfer_stylize_set_artwork(stylize, nullptr), LUXFER_INVALID_ARGUMENT);
     CHECK_OK(luxfer_stylize_set_artwork(stylize, artwork));
@@ -276,10 +274,10 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     const std::vector<float> first = pixels_of(picture);
     CHECK(first.size() == size_t{WIDTH} * HEIGHT * 3);
     for (float v : first) CHECK(v >= 0 && v <= 1);
-    CHECK_OK(luxfer_image_release(picture));
+    CHECK_OK(luxfer_release(picture));
 
     // The next frame of a camera that stands still: all paint stays.
-    CHECK_OK(luxfer_guides_motion(target, target, &motion));
+    CHECK_OK(luxfer_guides_get_motion(target, target, &motion));
     CHECK_OK(luxfer_stylize_set_motion(stylize, motion));
     params.seed = 2;
     CHECK_OK(paint(stylize, &params));
@@ -288,7 +286,7 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     size_t same = 0;
     for (size_t i = 0; i < first.size(); ++i) same += first[i] == second[i];
     CHECK(same > first.size() * 8 / 10);
-    CHECK_OK(luxfer_image_release(picture));
+    CHECK_OK(luxfer_release(picture));
 
     // A motion of the wrong shape, or with nothing to go on from.
     luxfer_image *mask = flat({WIDTH, HEIGHT, 1}, 1);
@@ -329,9 +327,9 @@ void stylise(luxfer_guides *source, luxfer_guides *target) {
     const std::vector<float> completed = pixels_of(picture), original = pixels_of(artwork);
     for (size_t i = 0; i < completed.size(); ++i)
         if (half[i / 3] > 0) CHECK(completed[i] == original[i]);
-    for (luxfer_image *image : {picture, painted, full, nothing, mask, motion, artwork}) CHECK_OK(luxfer_image_release(image));
-    CHECK_OK(luxfer_stylize_release(fresh));
-    CHECK_OK(luxfer_stylize_release(stylize));
+    for (luxfer_image *image : {picture, painted, full, nothing, mask, motion, artwork}) CHECK_OK(luxfer_release(image));
+    CHECK_OK(luxfer_release(fresh));
+    CHECK_OK(luxfer_release(stylize));
 }
 
 } // namespace
@@ -346,11 +344,11 @@ int main() {
     sheets();
     luxfer_stylize *stylize = nullptr;
     if (luxfer_stylize_create(context, &stylize) != LUXFER_UNSUPPORTED) {
-        CHECK_OK(luxfer_stylize_release(stylize));
+        CHECK_OK(luxfer_release(stylize));
         stylise(source, target);
     }
-    CHECK_OK(luxfer_guides_release(source));
-    CHECK_OK(luxfer_guides_release(target));
-    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_release(source));
+    CHECK_OK(luxfer_release(target));
+    CHECK_OK(luxfer_release(context));
     return check::summary("stylisation");
 }

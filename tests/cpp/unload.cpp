@@ -43,9 +43,9 @@ bool use(void *library) {
            find<decltype(luxfer_demo_photo_create)>(library, "luxfer_demo_photo_create")(context, &photo) == LUXFER_OK &&
            find<decltype(luxfer_demo_photo_start)>(library, "luxfer_demo_photo_start")(photo, nullptr, &job) == LUXFER_OK &&
            find<decltype(luxfer_job_wait)>(library, "luxfer_job_wait")(job, 5, nullptr, nullptr) == LUXFER_NOT_READY &&
-           find<decltype(luxfer_job_release)>(library, "luxfer_job_release")(job) == LUXFER_OK &&
-           find<decltype(luxfer_demo_photo_release)>(library, "luxfer_demo_photo_release")(photo) == LUXFER_OK &&
-           find<decltype(luxfer_context_release)>(library, "luxfer_context_release")(context) == LUXFER_OK;
+           find<decltype(luxfer_release)>(library, "luxfer_release")(job) == LUXFER_OK &&
+           find<decltype(luxfer_release)>(library, "luxfer_release")(photo) == LUXFER_OK &&
+           find<decltype(luxfer_release)>(library, "luxfer_release")(context) == LUXFER_OK;
 }
 
 } // namespace

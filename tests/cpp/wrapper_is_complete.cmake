@@ -1,7 +1,12 @@
 # Every function of the C header is called by the C++ wrapper, and every struct of settings has its type there.
 #
 #   cmake -DSOURCE=<root of the source tree> -P wrapper_is_complete.cmake
-file(READ "${SOURCE}/include/luxfer.h" header)
+file(GLOB parts "${SOURCE}/include/luxfer/*.h")
+set(header "")
+foreach(part IN LISTS parts)
+  file(READ "${part}" text)
+  string(APPEND header "${text}")
+endforeach()
 file(GLOB_RECURSE files "${SOURCE}/bindings/cpp/*.hpp")
 set(wrapper "")
 foreach(file IN LISTS files)

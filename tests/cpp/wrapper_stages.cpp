@@ -58,11 +58,13 @@ void lighting_transfer(const Context &context) {
     const auto features = copied(luxfer::Features::create(context));
     features.set_photo(photo);
     features.set_view(rectify);
-    features.add_strokes("plane 2 1 1 20 20");
-    features.clear_strokes();
+    const auto painted = copied(luxfer::Strokes::create(context, 300, 200));
+    painted.add("plane 2 1 1 20 20");
+    painted.clear();
     const float ceiling[] = {150, 20, 250, 60};
-    features.add_stroke(ceiling, 2, true);
-    features.add_strokes(strokes);
+    painted.add(LUXFER_PHASE_PLANE, ceiling, 2, true);
+    painted.add(strokes);
+    features.set_strokes(painted);
     features.start().wait();
     CHECK(features.report().depth_source == LUXFER_DEPTH_FROM_LAYOUT);
     const Image channels = features.image(LUXFER_FEATURES_CHANNELS);
@@ -70,15 +72,14 @@ void lighting_transfer(const Context &context) {
 
     const auto plane = copied(luxfer::Segment::create(context));
     plane.set_features(channels);
-    plane.add_strokes("plane 2 1 1 20 20", LUXFER_PHASE_PLANE);
-    plane.clear_strokes();
-    plane.add_strokes(strokes, LUXFER_PHASE_PLANE);
+    const auto drawn = luxfer::Strokes::from_image(strokes);
+    plane.set_strokes(drawn, LUXFER_PHASE_PLANE);
     plane.start().wait();
     CHECK(plane.report().positive_samples > 0);
     const auto lights = luxfer::Segment::create(context);
     lights.set_features(channels);
     lights.set_region(plane.image(LUXFER_SEGMENT_MASK));
-    lights.add_strokes(strokes, LUXFER_PHASE_LIGHTS);
+    lights.set_strokes(drawn, LUXFER_PHASE_LIGHTS);
     luxfer::SegmentParams colour;
     colour.channels = 7;
     lights.start(colour).wait();
@@ -123,11 +124,10 @@ void lighting_transfer(const Context &context) {
     transfer.set_photo(photo);
     transfer.set_depth(filled(context, 300, 200, 3), LUXFER_DEPTH_ALONG_RAY);
     transfer.set_scene(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM), "Ceiling");
-    transfer.add_strokes(strokes);
-    transfer.clear_strokes();
-    transfer.add_strokes("light 2 1 1 20 20");
-    const float points[] = {10, 10, 30, 10};
-    transfer.add_stroke(LUXFER_PHASE_PLANE, points, 2, true);
+    transfer.set_strokes(drawn);
+    transfer.set_strokes(luxfer::Strokes());
+    drawn.add("light 2 1 1 20 20");
+    transfer.set_strokes(drawn);
     transfer.set_texture(whole);
     transfer.use(rectify);
     transfer.use(features);
@@ -164,7 +164,7 @@ void lighting_transfer(const Context &context) {
             const luxfer_warning warning = warnings.warning(i);
             CHECK(warning.stage >= LUXFER_STAGE_VIEW && warning.stage <= LUXFER_STAGE_RENDER);
             CHECK(std::strcmp(luxfer::Warnings::name(warning.code), "LUXFER_WARNING_UNKNOWN") != 0);
-            CHECK(!warnings.message(i).empty() && !warnings.advice(i).empty());
+            CHECK(std::strlen(warning.message) > 0 && std::strlen(warning.advice) > 0);
         }
         luxfer_status beyond = LUXFER_OK;
         try {
@@ -314,7 +314,7 @@ void stylisation(const Context &context) {
     stylize.start(params).wait();
     CHECK(has_size(stylize.image(), 48, 36, artwork.size().channels));
     const luxfer_stylize_report report = stylize.report();
-    CHECK(report.finished == 1 && report.levels > 0);
+    CHECK(report.is_complete == 1 && report.levels > 0);
     const luxfer::Stylize::Level finest = stylize.level(report.levels - 1);
     CHECK(finest.width == 48 && finest.height == 36 && finest.rounds > 0);
     CHECK(stylize.round(report.levels - 1, 0).passes > 0 && stylize.pass(report.levels - 1, 0, 0).coverage > 0);
@@ -352,7 +352,7 @@ void stylisation(const Context &context) {
 
 int main() {
     const Context context = Context::create();
-    CHECK(std::strcmp(luxfer_version_string(), "") != 0);
+    CHECK(std::strcmp(luxfer_get_version_string(), "") != 0);
     lighting_transfer(context);
     light(context);
     plans(context);

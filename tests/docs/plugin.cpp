@@ -96,7 +96,7 @@ public:
         const luxfer::JobState state = job_.poll();
         host.show_progress(state.fraction);
         show();
-        return state.is_finished;
+        return state.is_finished();
     }
 
     // Deleting the object cancels too, and waits until the job has ended, at most about a tenth of a second.
@@ -181,7 +181,7 @@ int main() {
     const auto transfer = luxfer::Transfer::create(context);
     transfer.set_photo(demo.image(LUXFER_DEMO_PHOTO_PICTURE));
     transfer.set_scene(room, "Ceiling");
-    transfer.add_strokes(demo.image(LUXFER_DEMO_PHOTO_STROKES));
+    transfer.set_strokes(luxfer::Strokes::from_image(demo.image(LUXFER_DEMO_PHOTO_STROKES)));
 
     luxfer::RenderParams picture;
     picture.width = 120;

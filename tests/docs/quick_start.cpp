@@ -28,7 +28,7 @@ int main() try {
     const auto transfer = luxfer::Transfer::create(context);
     transfer.set_photo(photo);
     transfer.set_scene(room, "Ceiling");
-    transfer.add_strokes(strokes);
+    transfer.set_strokes(luxfer::Strokes::from_image(strokes));
 
     luxfer::RenderParams picture;
     picture.width = 240;

@@ -22,7 +22,7 @@ pub fn context(num_threads: u32) -> *mut luxfer_context {
 pub fn message(context: *mut luxfer_context) -> String {
     let mut buffer = [0 as c_char; 1024];
     unsafe {
-        assert_eq!(luxfer_context_last_error(context, buffer.as_mut_ptr(), buffer.len(), null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_context_get_last_error(context, buffer.as_mut_ptr(), buffer.len(), null_mut()), LUXFER_OK);
         CStr::from_ptr(buffer.as_ptr()).to_str().unwrap().to_string()
     }
 }

@@ -30,7 +30,7 @@ check_tree() {
   done
   [ "$(readlink -f "$1/$lib/libluxfer.so")" = "$1/$lib/libluxfer.so.$version" ] || fail "libluxfer.so leads elsewhere"
   readelf -d "$1/$lib/libluxfer.so" | grep -q "SONAME.*\[libluxfer.so.$abi\]" || fail "wrong SONAME"
-  for file in include/luxfer.h include/luxfer.hpp include/luxfer/core.hpp "$lib/libluxfer.a" share/doc/luxfer/LICENSE-MIT \
+  for file in include/luxfer.h include/luxfer/core.h include/luxfer.hpp include/luxfer/core.hpp "$lib/libluxfer.a" share/doc/luxfer/LICENSE-MIT \
     share/doc/luxfer/THIRD-PARTY.txt; do
     [ -s "$1/$file" ] || fail "$file is not there, or empty"
   done

@@ -6,6 +6,6 @@ int plugin_start(void);
 int plugin_start(void) {
     luxfer_context *context = NULL;
     luxfer_status status = luxfer_context_create(NULL, &context);
-    luxfer_context_release(context);
+    luxfer_release(context);
     return (int)status;
 }

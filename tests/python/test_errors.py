@@ -23,10 +23,10 @@ class Errors(Case):
             '{"asset": {"version": "2.0"}, "buffers": [{"uri": "../room.bin", "byteLength": 1}],'
             ' "nodes": [{"name": "A", "extensions": {"VENDOR_x": {}}}]}'
         )
-        with self.assertRaisesRegex(errors.Unsupported, "outside"):
+        with self.assertRaisesRegex(errors.Unsupported, "allow_external_files"):
             luxfer.Scene.load(context(), file)
         with self.assertRaisesRegex(errors.FileError, "room.bin"):
-            luxfer.Scene.load(context(), file, outside=1)
+            luxfer.Scene.load(context(), file, allow_external_files=1)
         file.write_text(file.read_text().replace("../room.bin", "data:;base64,AA=="))
         scene = luxfer.Scene.load(context(), file)
         self.assertIn("VENDOR_x", scene.warnings[0].message)

@@ -48,7 +48,7 @@ def inherited() -> list[str]:
 def below_the_package() -> list[int]:
     """What the C library itself says in a forked child, without the package's own check."""
     pointer = PARENT["room"]._pointer
-    return [luxfer.library.luxfer_scene_retain(pointer), luxfer.library.luxfer_scene_release(pointer)]
+    return [luxfer.library.luxfer_retain(pointer), luxfer.library.luxfer_release(pointer)]
 
 
 #: Work of one interpreter through the C library alone: numpy refuses to be imported into a second interpreter.
@@ -61,7 +61,7 @@ def pointer(kind, *arguments):
     assert status == 0, (kind.__name__, status)
     return made
 context = pointer(lib.luxfer_context_create, None)
-scene = pointer(lib.luxfer_demo_scene, context, 0)
+scene = pointer(lib.luxfer_demo_create_scene, context, 0)
 render = pointer(lib.luxfer_render_create, context)
 assert lib.luxfer_render_set_scene(render, scene) == 0
 calls = []
@@ -70,9 +70,9 @@ for round in range({rounds}):
     job = pointer(lib.luxfer_render_start, render, None)
     progress = Progress(lambda user, fraction: calls.append(fraction) or len(calls) % 3 == 0)
     assert lib.luxfer_job_wait(job, ctypes.c_int32(-1), progress, None) in (0, 6)
-    assert lib.luxfer_job_cancel(job) == 0 and lib.luxfer_job_release(job) == 0
-for name, handle in (("render", render), ("scene", scene), ("context", context)):
-    assert getattr(lib, f"luxfer_{{name}}_release")(handle) == 0
+    assert lib.luxfer_job_cancel(job) == 0 and lib.luxfer_release(job) == 0
+for handle in (render, scene, context):
+    assert lib.luxfer_release(handle) == 0
 """
 
 #: A program with three interpreters at once, each in a thread of its own.

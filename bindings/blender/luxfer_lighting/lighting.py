@@ -49,7 +49,7 @@ def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
     if tuple(settings.strokes.size) != tuple(settings.photo.size):
         raise ValueError("the strokes do not have the photo's size: use New Strokes")
     transfer = luxfer.Transfer(work.context(), convert.image(work.context(), settings.photo))
-    transfer.add_strokes_image(convert.drawing(work.context(), settings.strokes))
+    transfer.set_strokes(convert.drawing(work.context(), settings.strokes))
     return transfer
 
 

@@ -67,8 +67,7 @@ class Preview:
         if self.strokes is not None and np.array_equal(strokes, self.strokes):
             return
         self.strokes = strokes
-        self.transfer.clear_strokes()
-        self.transfer.add_strokes_image(luxfer.Image(work.context(), strokes))
+        self.transfer.set_strokes(luxfer.Image(work.context(), strokes))
         self.masks, self.hint = {}, ""
         self.begin("plane")
 

@@ -24,21 +24,21 @@ constexpr bool is_compatible(std::uint32_t library, std::uint32_t header) noexce
 namespace detail {
 
 /// One reference to a C object, or none. Copies retain, the destructor releases.
-template <class C, luxfer_status (*retain)(C *), luxfer_status (*release)(C *)>
+template <class C>
 class Reference {
 public:
     Reference() noexcept = default;
     explicit Reference(C *adopted) noexcept : object_(adopted) {}
     Reference(const Reference &other) noexcept : object_(other.object_) {
         if (object_ != nullptr)
-            retain(object_);
+            luxfer_retain(object_);
     }
     Reference(Reference &&other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
     Reference &operator=(Reference other) noexcept {
         std::swap(object_, other.object_);
         return *this;
     }
-    ~Reference() { release(object_); }
+    ~Reference() { luxfer_release(object_); }
 
     C *get() const noexcept { return object_; }
 
@@ -51,13 +51,15 @@ struct IsVersioned : std::false_type {};
 template <class T>
 struct IsVersioned<T, std::void_t<decltype(T::struct_size)>> : std::true_type {};
 
-/// Calls a C function whose last parameter is a plain value or a versioned struct, and returns this value.
+/// Calls a C function that fills a plain value, or a versioned struct of the size that follows it, and returns it.
 template <class T, class... Parameters, class... Arguments>
 Result<T> get_value(luxfer_context *context, luxfer_status (*function)(Parameters...), Arguments... arguments) {
     T value = T();
+    luxfer_status status = LUXFER_OK;
     if constexpr (IsVersioned<T>::value)
-        value.struct_size = sizeof value;
-    const luxfer_status status = function(arguments..., &value);
+        status = function(arguments..., &value, sizeof value);
+    else
+        status = function(arguments..., &value);
     return finish(context, status, value);
 }
 
@@ -86,13 +88,13 @@ public:
 
     /// LUXFER_UNSUPPORTED if the loaded library is not compatible with the header with which the program was built.
     static Result<Context> create(const luxfer_context_params &params = ContextParams()) {
-        if (!is_compatible(luxfer_version(), LUXFER_VERSION))
+        if (!is_compatible(luxfer_get_version(), LUXFER_VERSION))
             return detail::fail<Context>(Error(LUXFER_UNSUPPORTED, mismatch()));
         luxfer_context *made = nullptr;
         const luxfer_status status = luxfer_context_create(&params, &made);
         if (status != LUXFER_OK)
             return detail::fail<Context>(
-                Error(status, std::string("luxfer_context_create: ") + luxfer_status_name(status)));
+                Error(status, std::string("luxfer_context_create: ") + luxfer_status_get_name(status)));
         return Context(made);
     }
 
@@ -104,7 +106,7 @@ public:
     explicit operator bool() const noexcept { return get() != nullptr; }
 
     /// The message of this thread's latest failure; Error::what() contains it too.
-    Result<std::string> last_error() const { return detail::get_text(get(), luxfer_context_last_error, get()); }
+    Result<std::string> last_error() const { return detail::get_text(get(), luxfer_context_get_last_error, get()); }
 
 private:
     explicit Context(luxfer_context *adopted) noexcept : reference_(adopted) {}
@@ -113,17 +115,17 @@ private:
         const std::uint32_t header = LUXFER_VERSION;
         return "the program was built for luxfer " + std::to_string(header / 10000) + "." +
                std::to_string(header / 100 % 100) + "." + std::to_string(header % 100) + " and has loaded luxfer " +
-               luxfer_version_string() + "; install a library that is compatible, or rebuild the program";
+               luxfer_get_version_string() + "; install a library that is compatible, or rebuild the program";
     }
 
-    detail::Reference<luxfer_context, luxfer_context_retain, luxfer_context_release> reference_;
+    detail::Reference<luxfer_context> reference_;
 };
 
 /// The base class of images, scenes, jobs and stages: a reference to a C object, and one to its context, which has the
 /// error messages. Copies share the object. A moved-from or default-constructed object is empty: it means NULL where a
 /// function accepts NULL, and gives LUXFER_INVALID_ARGUMENT elsewhere. Objects may be destroyed in any order, also
 /// after the context.
-template <class C, luxfer_status (*retain)(C *), luxfer_status (*release)(C *)>
+template <class C>
 class Handle {
 public:
     /// The type of the C object.
@@ -150,8 +152,8 @@ protected:
     }
 
     /// Calls a C function on the object whose last parameter becomes a new object of class T.
-    template <class T, class... Parameters, class... Arguments>
-    Result<T> make(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
+    template <class T, class Any, class... Parameters, class... Arguments>
+    Result<T> make(luxfer_status (*function)(Any *, Parameters...), Arguments... arguments) const {
         typename T::Object *made = nullptr;
         const luxfer_status status = function(get(), arguments..., &made);
         return detail::finish(context_.get(), status, T(context_, made));
@@ -180,7 +182,7 @@ protected:
 
 private:
     Context context_;
-    detail::Reference<C, retain, release> reference_;
+    detail::Reference<C> reference_;
 };
 
 /// Width and height in pixels, and the number of channels.
@@ -192,7 +194,7 @@ struct ImageSize {
 };
 
 /// An image, which never changes. See luxfer_image.
-class Image : public Handle<luxfer_image, luxfer_image_retain, luxfer_image_release> {
+class Image : public Handle<luxfer_image> {
 public:
     using Handle::Handle;
 
@@ -220,7 +222,7 @@ public:
 
     Result<ImageSize> size() const {
         ImageSize size;
-        const luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
+        const luxfer_status status = luxfer_image_get_size(get(), &size.width, &size.height, &size.channels);
         return detail::finish(context().get(), status, size);
     }
 
@@ -238,7 +240,7 @@ public:
     /// images with more, use read().
     Result<std::vector<float>> samples() const {
         ImageSize size;
-        luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
+        luxfer_status status = luxfer_image_get_size(get(), &size.width, &size.height, &size.channels);
         std::vector<float> samples(size.samples());
         const ImageView view(samples, size.width, size.height, size.channels);
         if (status == LUXFER_OK)
@@ -263,14 +265,17 @@ inline Result<std::array<double, 9>> homography_from_corners(const Context &cont
 /// this cancels the job, and wait() rethrows the exception (with LUXFER_NO_EXCEPTIONS it must not throw).
 using Progress = std::function<bool(double fraction)>;
 
-/// The progress of a job, and whether it has ended, with or without success.
+/// The progress of a job, and the status with which it has ended; LUXFER_NOT_READY while it runs.
 struct JobState {
     double fraction = 0;
-    bool is_finished = false;
+    luxfer_status outcome = LUXFER_NOT_READY;
+
+    /// Whether the job has ended, with or without success.
+    bool is_finished() const noexcept { return outcome != LUXFER_NOT_READY; }
 };
 
 /// Work in progress. The destructor of the last copy cancels the job and waits until it has ended. See luxfer_job.
-class Job : public Handle<luxfer_job, luxfer_job_retain, luxfer_job_release> {
+class Job : public Handle<luxfer_job> {
 public:
     using Handle::Handle;
 
@@ -290,17 +295,12 @@ public:
         return detail::finish(context().get(), status, true);
     }
 
-    /// Gets the progress without waiting.
+    /// Gets the progress and the outcome without waiting; does not fail with the job's error.
     Result<JobState> poll() const {
         JobState state;
-        std::int32_t finished = 0;
-        const luxfer_status status = luxfer_job_poll(get(), &state.fraction, &finished);
-        state.is_finished = finished != 0;
+        const luxfer_status status = luxfer_job_get_progress(get(), &state.fraction, &state.outcome);
         return detail::finish(context().get(), status, state);
     }
-
-    /// The status with which the job has ended (this call does not fail with it); LUXFER_NOT_READY while it runs.
-    luxfer_status status() const noexcept { return luxfer_job_status(get()); }
 
     /// Asks the job to end early, from any thread; returns at once.
     Result<> cancel() const { return call(luxfer_job_cancel); }

@@ -14,7 +14,7 @@ using LuminaireParams = Params<luxfer_luminaire_params, luxfer_luminaire_params_
 using PlacementParams = Params<luxfer_placement_params, luxfer_placement_params_init>;
 
 /// Solves for the powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
-class Lamps : public Handle<luxfer_lamps, luxfer_lamps_retain, luxfer_lamps_release> {
+class Lamps : public Handle<luxfer_lamps> {
 public:
     using Handle::Handle;
 
@@ -69,7 +69,7 @@ public:
 };
 
 /// A map of the light that each point of an emitting surface would send to a target. See luxfer_importance.
-class Importance : public Handle<luxfer_importance, luxfer_importance_retain, luxfer_importance_release> {
+class Importance : public Handle<luxfer_importance> {
 public:
     using Handle::Handle;
 
@@ -119,7 +119,7 @@ public:
 };
 
 /// A luminous intensity distribution from an IES or EULUMDAT file. See luxfer_distribution.
-class Distribution : public Handle<luxfer_distribution, luxfer_distribution_retain, luxfer_distribution_release> {
+class Distribution : public Handle<luxfer_distribution> {
 public:
     using Handle::Handle;
 
@@ -163,7 +163,7 @@ struct ColourTemperature {
 inline Result<ColourTemperature> colour_temperature(const Context &context, double red, double green, double blue) {
     ColourTemperature found = {};
     const luxfer_status status =
-        luxfer_colour_temperature(context.get(), red, green, blue, &found.kelvin, &found.duv);
+        luxfer_colour_to_temperature(context.get(), red, green, blue, &found.kelvin, &found.duv);
     return detail::finish(context.get(), status, found);
 }
 
@@ -171,13 +171,13 @@ inline Result<ColourTemperature> colour_temperature(const Context &context, doub
 inline Result<std::array<double, 3>> colour_of_temperature(const Context &context, ColourTemperature temperature) {
     std::array<double, 3> rgb = {};
     const luxfer_status status =
-        luxfer_colour_of_temperature(context.get(), temperature.kelvin, temperature.duv, rgb.data());
+        luxfer_temperature_to_colour(context.get(), temperature.kelvin, temperature.duv, rgb.data());
     return detail::finish(context.get(), status, rgb);
 }
 
 /// The unified glare rating of a luminance image; threshold 0 is five times its mean.
 inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
-    return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_glare, image.get(), fov_y,
+    return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_get_glare, image.get(), fov_y,
                                                   threshold);
 }
 
@@ -200,10 +200,9 @@ inline Result<Mixture> mix_primaries(const Context &context, const std::vector<s
     std::vector<double> flat;
     for (const auto &primary : primaries) flat.insert(flat.end(), primary.begin(), primary.end());
     Mixture mixture = {std::vector<double>(primaries.size()), {}};
-    mixture.light.struct_size = sizeof mixture.light;
     const luxfer_status status =
         luxfer_mix_primaries(context.get(), flat.data(), static_cast<std::uint32_t>(primaries.size()), max_drive,
-                             colour.data(), mixture.drives.data(), &mixture.light);
+                             colour.data(), mixture.drives.data(), &mixture.light, sizeof mixture.light);
     return detail::finish(context.get(), status, std::move(mixture));
 }
 
@@ -214,16 +213,9 @@ inline Result<luxfer_temperature_fit> fit_temperature(const Context &context, st
                                                      response.data(), background.data(), target.data());
 }
 
-/// Electric power per floor area in W/m²: lumens, lumens per watt, m².
-inline Result<double> power_density(const Context &context, double flux, double efficacy, double area) {
-    double density = 0;
-    const luxfer_status status = luxfer_power_density(context.get(), flux, efficacy, area, &density);
-    return detail::finish(context.get(), status, density);
-}
-
 inline Result<std::uint32_t> preset_count(const Context &context) {
     std::uint32_t count = 0;
-    const luxfer_status status = luxfer_preset_count(context.get(), &count);
+    const luxfer_status status = luxfer_preset_get_count(context.get(), &count);
     return detail::finish(context.get(), status, count);
 }
 
@@ -233,7 +225,7 @@ inline Result<luxfer_preset> preset(const Context &context, std::uint32_t index)
 }
 
 inline Result<std::string> preset_name(const Context &context, std::uint32_t index) {
-    return detail::get_text(context.get(), luxfer_preset_name, context.get(), index);
+    return detail::get_text(context.get(), luxfer_preset_get_name, context.get(), index);
 }
 
 } // namespace luxfer

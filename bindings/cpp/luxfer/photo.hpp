@@ -16,7 +16,7 @@ using SegmentParams = Params<luxfer_segment_params, luxfer_segment_params_init>;
 using EmissionParams = Params<luxfer_emission_params, luxfer_emission_params_init>;
 
 /// Finds lines, vanishing points and the camera, and unwarps a plane to a frontal view. See luxfer_rectify.
-class Rectify : public Handle<luxfer_rectify, luxfer_rectify_retain, luxfer_rectify_release> {
+class Rectify : public Handle<luxfer_rectify> {
 public:
     using Handle::Handle;
 
@@ -40,11 +40,49 @@ public:
     Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
 
     /// Reasons to doubt the camera, and the plane if it has been unwarped.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_rectify_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
+};
+
+/// Strokes for images of one size. A stage copies them: after a change, set them again. See luxfer_strokes.
+class Strokes : public Handle<luxfer_strokes> {
+public:
+    using Handle::Handle;
+
+    static Result<Strokes> create(const Context &context, std::uint32_t width, std::uint32_t height) {
+        return make_in<Strokes>(context, luxfer_strokes_create, width, height);
+    }
+
+    /// The strokes of a drawing, for images of its size.
+    static Result<Strokes> from_image(const Image &drawing) {
+        luxfer_strokes *made = nullptr;
+        std::uint32_t width = 0, height = 0;
+        luxfer_status status = luxfer_image_get_size(drawing.get(), &width, &height, nullptr);
+        if (status == LUXFER_OK)
+            status = luxfer_strokes_create(drawing.context().get(), width, height, &made);
+        Strokes strokes(drawing.context(), made);
+        if (status == LUXFER_OK)
+            status = luxfer_strokes_add_image(made, drawing.get());
+        return detail::finish(drawing.context().get(), status, std::move(strokes));
+    }
+
+    /// Adds a stroke along a polyline: points holds x and y of each, in pixels; phase is a LUXFER_PHASE_ value.
+    Result<> add(luxfer_phase phase, Span<const float> points, float radius, bool is_positive) const {
+        const std::int32_t positive = is_positive;
+        return call(luxfer_strokes_add, phase, points.data(), points.size() / 2, radius, positive);
+    }
+
+    /// Adds the strokes of a drawing of the same size.
+    Result<> add(const Image &drawing) const { return call(luxfer_strokes_add_image, drawing.get()); }
+
+    /// Adds the strokes of a text.
+    Result<> add(Text description) const { return call(luxfer_strokes_add_text, description.get()); }
+
+    /// Removes all strokes.
+    Result<> clear() const { return call(luxfer_strokes_clear); }
 };
 
 /// The features of each pixel of a photo, for segmentation. See luxfer_features.
-class Features : public Handle<luxfer_features, luxfer_features_retain, luxfer_features_release> {
+class Features : public Handle<luxfer_features> {
 public:
     using Handle::Handle;
 
@@ -66,15 +104,8 @@ public:
     /// Takes the current lines and camera of a Rectify; may be empty: no lines.
     Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
 
-    /// Adds a stroke on one plane of the room (positive) or off it, to fit the room; points holds x and y of each, in
-    /// pixels.
-    Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
-        const std::int32_t positive = is_positive;
-        return call(luxfer_features_add_stroke, points.data(), points.size() / 2, radius, positive);
-    }
-    Result<> add_strokes(const Image &drawing) const { return call(luxfer_features_add_strokes_image, drawing.get()); }
-    Result<> add_strokes(Text description) const { return call(luxfer_features_add_strokes_text, description.get()); }
-    Result<> clear_strokes() const { return call(luxfer_features_clear_strokes); }
+    /// Sets strokes on the photo, of which the fit of a room takes those for the plane; may be empty: no strokes.
+    Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_features_set_strokes, strokes.get()); }
 
     Result<Job> start(const luxfer_features_params &params = FeaturesParams()) const {
         return make<Job>(luxfer_features_start, &params);
@@ -86,11 +117,11 @@ public:
     Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
 
     /// Reasons to doubt the features.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_features_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 };
 
 /// Computes a mask from strokes. See luxfer_segment.
-class Segment : public Handle<luxfer_segment, luxfer_segment_retain, luxfer_segment_release> {
+class Segment : public Handle<luxfer_segment> {
 public:
     using Handle::Handle;
 
@@ -101,18 +132,10 @@ public:
     /// Restricts the segmentation to a mask; may be empty: everywhere.
     Result<> set_region(const Image &region) const { return call(luxfer_segment_set_region, region.get()); }
 
-    /// Adds a stroke along a polyline: points holds x and y of each, in pixels.
-    Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
-        const std::int32_t positive = is_positive;
-        return call(luxfer_segment_add_stroke, points.data(), points.size() / 2, radius, positive);
+    /// Sets the strokes for phase, a LUXFER_PHASE_ value; may be empty: no strokes.
+    Result<> set_strokes(const Strokes &strokes, luxfer_phase phase) const {
+        return call(luxfer_segment_set_strokes, strokes.get(), phase);
     }
-    Result<> add_strokes(const Image &drawing, luxfer_phase phase) const {
-        return call(luxfer_segment_add_strokes_image, drawing.get(), phase);
-    }
-    Result<> add_strokes(Text description, luxfer_phase phase) const {
-        return call(luxfer_segment_add_strokes_text, description.get(), phase);
-    }
-    Result<> clear_strokes() const { return call(luxfer_segment_clear_strokes); }
 
     Result<Job> start(const luxfer_segment_params &params = SegmentParams()) const {
         return make<Job>(luxfer_segment_start, &params);
@@ -124,11 +147,11 @@ public:
     Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
 
     /// Reasons to doubt the mask.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_segment_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 };
 
 /// Synthesises an emissive texture of any size from unwarped lights. See luxfer_emission.
-class Emission : public Handle<luxfer_emission, luxfer_emission_retain, luxfer_emission_release> {
+class Emission : public Handle<luxfer_emission> {
 public:
     using Handle::Handle;
 
@@ -178,7 +201,7 @@ public:
     Result<luxfer_emission_report> report() const { return value<luxfer_emission_report>(luxfer_emission_get_report); }
 
     /// Reasons to doubt the texture.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_emission_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     Result<luxfer_luminaire> luminaire(std::uint32_t index) const {
         return value<luxfer_luminaire>(luxfer_emission_get_luminaire, index);

@@ -13,7 +13,7 @@ namespace luxfer {
 using PlanParams = Params<luxfer_plan_params, luxfer_plan_params_init>;
 
 /// Chooses settings for a given error or time, and predicts both. See luxfer_plan.
-class Plan : public Handle<luxfer_plan, luxfer_plan_retain, luxfer_plan_release> {
+class Plan : public Handle<luxfer_plan> {
 public:
     using Handle::Handle;
 

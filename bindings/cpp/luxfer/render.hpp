@@ -15,7 +15,7 @@ using IlluminanceGrid = Params<luxfer_illuminance_grid, luxfer_illuminance_grid_
 using RelightParams = Params<luxfer_relight_params, luxfer_relight_params_init>;
 
 /// A path tracer; its current image can be read while its job runs. See luxfer_render.
-class Render : public Handle<luxfer_render, luxfer_render_retain, luxfer_render_release> {
+class Render : public Handle<luxfer_render> {
 public:
     using Handle::Handle;
 
@@ -23,9 +23,9 @@ public:
 
     Result<> set_scene(const Scene &scene) const { return call(luxfer_render_set_scene, scene.get()); }
 
-    /// Sets the camera: one of the scene, or the given one.
-    Result<> set_camera(std::uint32_t index) const { return call(luxfer_render_set_camera_index, index); }
+    /// Sets the camera; the default is the first camera of the scene.
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_render_set_camera, &camera); }
+    Result<> clear_camera() const { return call(luxfer_render_set_camera, nullptr); }
 
     // Additional layers from the paths of the picture.
 
@@ -86,7 +86,7 @@ public:
 };
 
 /// Illuminance in lux, on a grid or a mesh. See luxfer_illuminance.
-class Illuminance : public Handle<luxfer_illuminance, luxfer_illuminance_retain, luxfer_illuminance_release> {
+class Illuminance : public Handle<luxfer_illuminance> {
 public:
     using Handle::Handle;
 
@@ -119,7 +119,7 @@ public:
 };
 
 /// Solves for the colour and intensity of an emission. See luxfer_relight.
-class Relight : public Handle<luxfer_relight, luxfer_relight_retain, luxfer_relight_release> {
+class Relight : public Handle<luxfer_relight> {
 public:
     using Handle::Handle;
 
@@ -147,7 +147,7 @@ public:
     Result<luxfer_relight_report> report() const { return value<luxfer_relight_report>(luxfer_relight_get_report); }
 
     /// Reasons to doubt the solution.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_relight_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 };
 
 } // namespace luxfer

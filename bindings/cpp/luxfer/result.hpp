@@ -29,7 +29,7 @@ public:
     luxfer_status status() const noexcept { return status_; }
 
     /// The name of the status, such as "LUXFER_FORMAT".
-    const char *name() const noexcept { return luxfer_status_name(status_); }
+    const char *name() const noexcept { return luxfer_status_get_name(status_); }
 
 private:
     luxfer_status status_;
@@ -89,11 +89,11 @@ namespace detail {
 /// The message of this thread's latest failure. Without a context there is only the status.
 inline Error error_of(luxfer_context *context, luxfer_status status) {
     if (context == nullptr)
-        return Error(status, std::string(luxfer_status_name(status)) + ": the object, or the context, is empty");
+        return Error(status, std::string(luxfer_status_get_name(status)) + ": the object, or the context, is empty");
     std::size_t needed = 1;
-    luxfer_context_last_error(context, nullptr, 0, &needed);
+    luxfer_context_get_last_error(context, nullptr, 0, &needed);
     std::string text(needed, '\0');
-    luxfer_context_last_error(context, text.data(), needed, nullptr);
+    luxfer_context_get_last_error(context, text.data(), needed, nullptr);
     text.pop_back();
     return Error(status, text);
 }

@@ -37,67 +37,50 @@ struct PlacedEmission {
 using Writer = std::function<bool(const void *data, std::size_t size)>;
 
 /// The objects and materials of a scene as candidates for the ceiling. See luxfer_candidates.
-class Candidates : public Handle<luxfer_candidates, luxfer_candidates_retain, luxfer_candidates_release> {
+class Candidates : public Handle<luxfer_candidates> {
 public:
     using Handle::Handle;
 
-    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_candidates_count); }
+    Result<std::uint32_t> count() const { return value<std::uint32_t>(luxfer_candidates_get_count); }
 
-    /// Kind, index, area, height, direction and score.
+    /// Name, kind, index, area, height, direction and score. Its strings live as long as the list.
     Result<luxfer_candidate> candidate(std::uint32_t index) const {
         return value<luxfer_candidate>(luxfer_candidates_get, index);
     }
-
-    Result<std::string> name(std::uint32_t index) const { return text(luxfer_candidates_get_name, index); }
-
-    /// Words for the score.
-    Result<std::string> reason(std::uint32_t index) const { return text(luxfer_candidates_get_reason, index); }
 };
 
 /// Meshes, materials, textures, lights and cameras. See luxfer_scene.
-class Scene : public Handle<luxfer_scene, luxfer_scene_retain, luxfer_scene_release> {
+class Scene : public Handle<luxfer_scene> {
 public:
     using Handle::Handle;
 
     /// Creates an empty scene.
     static Result<Scene> create(const Context &context) { return make_in<Scene>(context, luxfer_scene_create); }
 
-    /// Loads a .glb file, or a .gltf file with the files it names.
-    static Result<Scene> load(const Context &context, Text path) {
-        return make_in<Scene>(context, luxfer_scene_load, path.get());
-    }
-
-    /// Loads such a file with settings: the unit of its lengths, and whether it may name files outside its folder.
-    static Result<Scene> load(const Context &context, Text path, const luxfer_scene_load_params &params) {
-        return make_in<Scene>(context, luxfer_scene_load_with, path.get(), &params);
+    /// Loads a .glb file, or a .gltf file with the files it names. The settings are the unit of its lengths, and whether
+    /// it may name files outside its folder.
+    static Result<Scene> load(const Context &context, Text path, const luxfer_scene_load_params &params = SceneLoadParams()) {
+        return make_in<Scene>(context, luxfer_scene_load, path.get(), &params);
     }
 
     /// Loads such a file from memory: any container of bytes. Other files that it names are read from base_path.
     template <class Bytes>
-    static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path = nullptr) {
+    static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path = nullptr,
+                                     const luxfer_scene_load_params &params = SceneLoadParams()) {
         static_assert(sizeof *std::data(file) == 1, "a file consists of bytes");
         const void *data = std::data(file);
-        return make_in<Scene>(context, luxfer_scene_load_memory, data, std::size(file), base_path.get());
-    }
-
-    /// Loads it with settings.
-    template <class Bytes>
-    static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path,
-                                     const luxfer_scene_load_params &params) {
-        static_assert(sizeof *std::data(file) == 1, "a file consists of bytes");
-        const void *data = std::data(file);
-        return make_in<Scene>(context, luxfer_scene_load_memory_with, data, std::size(file), base_path.get(), &params);
+        return make_in<Scene>(context, luxfer_scene_load_memory, data, std::size(file), base_path.get(), &params);
     }
 
     /// An implausible size, and features of the scene's file that are not rendered.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_scene_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     /// Objects and materials with area, height and direction, the likeliest ceilings first.
     Result<Candidates> candidates() const { return make<Candidates>(luxfer_scene_get_candidates); }
 
     /// A scene that the library generates: a LUXFER_DEMO_ value.
     static Result<Scene> demo(const Context &context, luxfer_demo which) {
-        return make_in<Scene>(context, luxfer_demo_scene, which);
+        return make_in<Scene>(context, luxfer_demo_create_scene, which);
     }
 
     /// Saves a .glb file that contains all textures.
@@ -159,12 +142,12 @@ public:
 
     /// Sets an environment of one radiance, in cd/m².
     Result<> set_environment(Rgb light) const {
-        return call(luxfer_scene_set_environment, light.red, light.green, light.blue);
+        return call(luxfer_scene_set_environment, nullptr, light.red, light.green, light.blue);
     }
 
     /// Sets an environment from an equirectangular image, multiplied by scale.
     Result<> set_environment(const Image &image, Rgb scale) const {
-        return call(luxfer_scene_set_environment_image, image.get(), scale.red, scale.green, scale.blue);
+        return call(luxfer_scene_set_environment, image.get(), scale.red, scale.green, scale.blue);
     }
 
     /// Sets the emission of a material, in cd/m².
@@ -199,11 +182,11 @@ public:
 
     /// The features that the scene requires of the renderer; error is the share of light for the field bounces.
     Result<luxfer_requirements> requirements(float error = 0.01f) const {
-        return value<luxfer_requirements>(luxfer_scene_requirements, error);
+        return value<luxfer_requirements>(luxfer_scene_get_requirements, error);
     }
 
     /// Describes what the renderer skips, one sentence per line.
-    Result<std::string> requirements_text() const { return text(luxfer_scene_requirements_text); }
+    Result<std::string> requirements_text() const { return text(luxfer_scene_get_requirements_text); }
 
     // Reading back, by index.
 

@@ -16,13 +16,13 @@ struct StylizeParams : Params<luxfer_stylize_params, luxfer_stylize_params_init>
 
     /// Any other value than a preset is refused when the settings are used.
     explicit StylizeParams(luxfer_stylize_preset preset) noexcept {
-        if (luxfer_stylize_params_preset(this, preset) != LUXFER_OK)
+        if (luxfer_stylize_params_preset(this, preset, sizeof(luxfer_stylize_params)) != LUXFER_OK)
             struct_size = 0;
     }
 };
 
 /// Renders the guide images of a scene for a stylisation. See luxfer_guides.
-class Guides : public Handle<luxfer_guides, luxfer_guides_retain, luxfer_guides_release> {
+class Guides : public Handle<luxfer_guides> {
 public:
     using Handle::Handle;
 
@@ -38,14 +38,14 @@ public:
     Result<Image> image(luxfer_guides_image which) const { return make<Image>(luxfer_guides_get_image, which); }
 
     /// The motion of each pixel from the previous frame.
-    Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_motion, before.get()); }
+    Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_get_motion, before.get()); }
 
     /// Draws an artwork of the scene in place of an artist: a LUXFER_ARTWORK_ value.
-    Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_artwork, style); }
+    Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_create_artwork, style); }
 };
 
 /// Paints a target scene in the style in which an artist has painted an exemplar scene. See luxfer_stylize.
-class Stylize : public Handle<luxfer_stylize, luxfer_stylize_retain, luxfer_stylize_release> {
+class Stylize : public Handle<luxfer_stylize> {
 public:
     using Handle::Handle;
 
@@ -141,8 +141,8 @@ public:
                                  const luxfer_sheet_params &params = SheetParams()) {
         luxfer_image *artwork = nullptr;
         luxfer_sheet_report report = {};
-        report.struct_size = sizeof report;
-        const luxfer_status status = luxfer_sheet_align(photo.get(), width, height, &params, &artwork, &report);
+        const luxfer_status status =
+            luxfer_sheet_align(photo.get(), width, height, &params, &artwork, &report, sizeof report);
         return detail::finish(photo.context().get(), status, Aligned{Image(photo.context(), artwork), report});
     }
 };

@@ -14,7 +14,7 @@ using PatternParams = Params<luxfer_pattern_params, luxfer_pattern_params_init>;
 using DemoPhotoParams = Params<luxfer_demo_photo_params, luxfer_demo_photo_params_init>;
 
 /// Lights a scene as in a photo, from the photo and a few strokes. See luxfer_transfer.
-class Transfer : public Handle<luxfer_transfer, luxfer_transfer_retain, luxfer_transfer_release> {
+class Transfer : public Handle<luxfer_transfer> {
 public:
     using Handle::Handle;
 
@@ -41,15 +41,8 @@ public:
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_transfer_set_camera, &camera); }
     Result<> clear_camera() const { return call(luxfer_transfer_set_camera, nullptr); }
 
-    /// Adds a stroke along a polyline: points holds x and y of each, in pixels of the photo; phase is a LUXFER_PHASE_
-    /// value.
-    Result<> add_stroke(luxfer_phase phase, Span<const float> points, float radius, bool is_positive) const {
-        const std::int32_t positive = is_positive;
-        return call(luxfer_transfer_add_stroke, phase, points.data(), points.size() / 2, radius, positive);
-    }
-    Result<> add_strokes(const Image &drawing) const { return call(luxfer_transfer_add_strokes_image, drawing.get()); }
-    Result<> add_strokes(Text description) const { return call(luxfer_transfer_add_strokes_text, description.get()); }
-    Result<> clear_strokes() const { return call(luxfer_transfer_clear_strokes); }
+    /// Sets the strokes on the photo; may be empty: no strokes.
+    Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_transfer_set_strokes, strokes.get()); }
 
     /// Sets the rectangles of the surface without lamps: u0, v0, u1 and v1 of each, in metres; they replace earlier
     /// ones.
@@ -102,14 +95,14 @@ public:
     }
 
     /// Reasons to doubt the results that there are, in the order of the stages.
-    Result<Warnings> warnings() const { return make<Warnings>(luxfer_transfer_get_warnings); }
+    Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 
     /// Writes all fixtures to a .csv or .json file.
     Result<> save_fixtures(Text path) const { return call(luxfer_transfer_save_fixtures, path.get()); }
 };
 
 /// A photo of a generated office, and strokes as a user would paint them. See luxfer_demo_photo.
-class DemoPhoto : public Handle<luxfer_demo_photo, luxfer_demo_photo_retain, luxfer_demo_photo_release> {
+class DemoPhoto : public Handle<luxfer_demo_photo> {
 public:
     using Handle::Handle;
 

@@ -30,7 +30,6 @@ from .photometry import (
     fit_temperature,
     glare,
     mix_primaries,
-    power_density,
     presets,
 )
 from .plan import Plan
@@ -40,6 +39,7 @@ from .render import Render
 from .scene import Scene
 from .segment import Segment
 from .sheet import align_sheet, print_sheet
+from .strokes import Strokes
 from .stylize import Stylize
 from .transfer import Transfer
 from .warning import StageWarning
@@ -66,6 +66,7 @@ __all__ = [
     "Scene",
     "Segment",
     "StageWarning",
+    "Strokes",
     "Stylize",
     "SurfaceCandidate",
     "Transfer",
@@ -80,7 +81,6 @@ __all__ = [
     "homography",
     "library",
     "mix_primaries",
-    "power_density",
     "presets",
     "print_sheet",
     "types",

@@ -10,7 +10,7 @@ from . import types
 from ._pointers import POINTER
 
 LUXFER_VERSION_MAJOR = 0
-LUXFER_VERSION_MINOR = 1
+LUXFER_VERSION_MINOR = 2
 LUXFER_VERSION_PATCH = 0
 LUXFER_OK = 0
 LUXFER_UNKNOWN = 1
@@ -39,6 +39,8 @@ LUXFER_FILE_COLOUR_STATED = 2
 LUXFER_FILE_COLOUR_CONVERTED = 3
 LUXFER_FILE_COLOUR_UNCONVERTED = 4
 LUXFER_FILE_COLOUR_DATA = 5
+LUXFER_PHASE_PLANE = 0
+LUXFER_PHASE_LIGHTS = 1
 LUXFER_ALPHA_OPAQUE = 0
 LUXFER_ALPHA_MASK = 1
 LUXFER_ALPHA_BLEND = 2
@@ -68,6 +70,24 @@ LUXFER_LIGHTS_DIRECTIONAL = 16
 LUXFER_LIGHTS_ENVIRONMENT = 32
 LUXFER_CANDIDATE_OBJECT = 0
 LUXFER_CANDIDATE_MATERIAL = 1
+LUXFER_RENDER_BEAUTY = 0
+LUXFER_RENDER_VARIANCE = 1
+LUXFER_RENDER_PATHS = 2
+LUXFER_RENDER_INTERVAL = 3
+LUXFER_RENDER_PREVIEW = 4
+LUXFER_AOV_DEPTH = 1
+LUXFER_AOV_DISTANCE = 2
+LUXFER_AOV_POSITION = 4
+LUXFER_AOV_NORMAL = 8
+LUXFER_AOV_GEOMETRIC_NORMAL = 16
+LUXFER_AOV_ALBEDO = 32
+LUXFER_AOV_OBJECT = 64
+LUXFER_AOV_MATERIAL = 128
+LUXFER_AOV_ALPHA = 256
+LUXFER_AOV_LUMINANCE = 512
+LUXFER_EMITTER_AS_BOTH = 0
+LUXFER_EMITTER_AS_LIGHT = 1
+LUXFER_EMITTER_AS_OBJECT = 2
 LUXFER_LINES_REGIONS = 0
 LUXFER_LINES_HOUGH = 1
 LUXFER_SEARCH_MANHATTAN = 0
@@ -93,8 +113,6 @@ LUXFER_DEPTH_FROM_CALLER = 0
 LUXFER_DEPTH_FROM_LAYOUT = 1
 LUXFER_DEPTH_FROM_NOTHING = 2
 LUXFER_DEPTH_FROM_NETWORK = 3
-LUXFER_PHASE_PLANE = 0
-LUXFER_PHASE_LIGHTS = 1
 LUXFER_SEGMENT_MASK = 0
 LUXFER_SEGMENT_CONFIDENCE = 1
 LUXFER_SEGMENT_UNSEEN = 2
@@ -112,26 +130,6 @@ LUXFER_LAW_ROW = 3
 LUXFER_LAW_WHOLE = 4
 LUXFER_LAW_FREE = 5
 LUXFER_LAW_COPY = 6
-LUXFER_RENDER_BEAUTY = 0
-LUXFER_RENDER_VARIANCE = 1
-LUXFER_RENDER_PATHS = 2
-LUXFER_RENDER_INTERVAL = 3
-LUXFER_RENDER_PREVIEW = 4
-LUXFER_AOV_DEPTH = 1
-LUXFER_AOV_DISTANCE = 2
-LUXFER_AOV_POSITION = 4
-LUXFER_AOV_NORMAL = 8
-LUXFER_AOV_GEOMETRIC_NORMAL = 16
-LUXFER_AOV_ALBEDO = 32
-LUXFER_AOV_OBJECT = 64
-LUXFER_AOV_MATERIAL = 128
-LUXFER_AOV_ALPHA = 256
-LUXFER_AOV_LUMINANCE = 512
-LUXFER_EMITTER_AS_BOTH = 0
-LUXFER_EMITTER_AS_LIGHT = 1
-LUXFER_EMITTER_AS_OBJECT = 2
-LUXFER_ILLUMINANCE_LUX = 0
-LUXFER_ILLUMINANCE_ERROR = 1
 LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_FIT_MEAN = 0
@@ -143,19 +141,6 @@ LUXFER_OUTCOME_MET = 0
 LUXFER_OUTCOME_TOO_BRIGHT = 1
 LUXFER_OUTCOME_DARK = 2
 LUXFER_OUTCOME_TOO_DIM = 3
-LUXFER_GROUP_ALL = 0
-LUXFER_GROUP_EACH = 1
-LUXFER_GROUP_FIRST = 2
-LUXFER_GROUP_SECOND = 3
-LUXFER_GROUP_THIRD = 4
-LUXFER_GROUP_TYPE = 5
-LUXFER_AIM_MOST = 0
-LUXFER_AIM_LEAST = 1
-LUXFER_AIM_RADIANCE = 2
-LUXFER_SCALE_LINEAR = 0
-LUXFER_SCALE_LOGARITHMIC = 1
-LUXFER_UNIT_LUMINANCE = 0
-LUXFER_UNIT_ILLUMINANCE = 1
 LUXFER_PATTERN_DISTANCE = 0
 LUXFER_PATTERN_LAMP = 1
 LUXFER_PATTERN_SPACING = 2
@@ -207,6 +192,21 @@ LUXFER_WARNING_UNREACHABLE = 18
 LUXFER_WARNING_TARGET_CLIPPED = 19
 LUXFER_WARNING_IMPLAUSIBLE_SIZE = 20
 LUXFER_WARNING_NOT_RENDERED = 21
+LUXFER_ILLUMINANCE_LUX = 0
+LUXFER_ILLUMINANCE_ERROR = 1
+LUXFER_GROUP_ALL = 0
+LUXFER_GROUP_EACH = 1
+LUXFER_GROUP_BY_X = 2
+LUXFER_GROUP_BY_Y = 3
+LUXFER_GROUP_BY_Z = 4
+LUXFER_GROUP_BY_TYPE = 5
+LUXFER_AIM_MAX_LUMINANCE = 0
+LUXFER_AIM_MIN_LUMINANCE = 1
+LUXFER_AIM_RADIANCE = 2
+LUXFER_SCALE_LINEAR = 0
+LUXFER_SCALE_LOGARITHMIC = 1
+LUXFER_UNIT_LUMINANCE = 0
+LUXFER_UNIT_ILLUMINANCE = 1
 LUXFER_GUIDES_FULL = 0
 LUXFER_GUIDES_DIRECT = 1
 LUXFER_GUIDES_SPECULAR = 2
@@ -260,6 +260,10 @@ class luxfer_image(Structure):
     """An image. See luxfer_image_create."""
 
 
+class luxfer_strokes(Structure):
+    """Strokes for images of one size. See luxfer_strokes_create."""
+
+
 class luxfer_job(Structure):
     """Work in progress. See luxfer_job_wait."""
 
@@ -274,6 +278,10 @@ class luxfer_distribution(Structure):
 
 class luxfer_candidates(Structure):
     """A list of candidates. See luxfer_scene_get_candidates."""
+
+
+class luxfer_render(Structure):
+    """A rendering of a scene. See luxfer_render_create."""
 
 
 class luxfer_rectify(Structure):
@@ -292,16 +300,20 @@ class luxfer_emission(Structure):
     """A synthesis of an emissive texture. See luxfer_emission_create."""
 
 
-class luxfer_render(Structure):
-    """A rendering of a scene. See luxfer_render_create."""
+class luxfer_relight(Structure):
+    """A relighting of a scene. See luxfer_relight_create."""
+
+
+class luxfer_transfer(Structure):
+    """A lighting transfer. See luxfer_transfer_create."""
+
+
+class luxfer_warnings(Structure):
+    """A list of warnings. See luxfer_get_warnings."""
 
 
 class luxfer_illuminance(Structure):
     """A calculation of illuminance. See luxfer_illuminance_create."""
-
-
-class luxfer_relight(Structure):
-    """A relighting of a scene. See luxfer_relight_create."""
 
 
 class luxfer_lamps(Structure):
@@ -312,24 +324,16 @@ class luxfer_importance(Structure):
     """A map of importance. See luxfer_importance_create."""
 
 
-class luxfer_transfer(Structure):
-    """A lighting transfer. See luxfer_transfer_create."""
-
-
-class luxfer_warnings(Structure):
-    """A list of warnings. See luxfer_transfer_get_warnings."""
-
-
-class luxfer_plan(Structure):
-    """A plan. See luxfer_plan_create."""
-
-
 class luxfer_guides(Structure):
     """The guides of a scene. See luxfer_guides_create."""
 
 
 class luxfer_stylize(Structure):
     """A stylisation. See luxfer_stylize_create."""
+
+
+class luxfer_plan(Structure):
+    """A plan. See luxfer_plan_create."""
 
 
 class luxfer_demo_photo(Structure):
@@ -429,7 +433,7 @@ class luxfer_scene_load_params(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("outside", c_uint32),
+        ("allow_external_files", c_uint32),
         ("unit", c_double),
     ]
 
@@ -624,9 +628,43 @@ class luxfer_candidate(Structure):
         ("normal", c_float * 3),
         ("score", c_float),
         ("reserved", c_uint32),
+        ("name", c_char_p),
+        ("reason", c_char_p),
     ]
     enumerations: dict[str, type] = {"kind": types.CandidateKind}
     result = types.Candidate
+
+
+class luxfer_render_params(Structure):
+    """Settings of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("samples", c_uint32),
+        ("target_error", c_float),
+        ("time_budget_ms", c_uint32),
+        ("seed", c_uint64),
+        ("pixel_error", c_float),
+        ("bounce_error", c_float),
+        ("preview", c_float),
+        ("relative_error", c_float),
+    ]
+
+
+class luxfer_render_report(Structure):
+    """Quality of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("samples", c_uint32),
+        ("error", c_double),
+        ("discarded", c_uint64),
+        ("preview_bias", c_double),
+        ("relative_error", c_double),
+    ]
+    result = types.RenderReport
 
 
 class luxfer_rectify_params(Structure):
@@ -745,7 +783,7 @@ class luxfer_emission_params(Structure):
         ("working_side", c_uint32),
         ("metadata_weight", c_float),
         ("seed", c_uint64),
-        ("least_regularity", c_float),
+        ("min_regularity", c_float),
         ("whole_lamps", c_uint32),
         ("offset", c_double * 2),
         ("clip_level", c_float),
@@ -797,50 +835,139 @@ class luxfer_luminaire(Structure):
     result = types.Luminaire
 
 
-class luxfer_render_params(Structure):
-    """Settings of a rendering."""
+class luxfer_relight_params(Structure):
+    """Settings of a relighting."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("width", c_uint32),
-        ("height", c_uint32),
-        ("samples", c_uint32),
+        ("quantity", c_int32),
+        ("paths", c_uint32),
         ("target_error", c_float),
         ("time_budget_ms", c_uint32),
+        ("fit", c_int32),
         ("seed", c_uint64),
-        ("pixel_error", c_float),
-        ("bounce_error", c_float),
-        ("preview", c_float),
-        ("relative_error", c_float),
     ]
+    enumerations: dict[str, type] = {"quantity": types.Quantity, "fit": types.Fit}
 
 
-class luxfer_render_report(Structure):
-    """Quality of a rendering."""
+class luxfer_relight_report(Structure):
+    """The solution and its confidence."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("samples", c_uint32),
+        ("paths", c_uint32),
+        ("scale", c_double * 3),
+        ("half_width", c_double * 3),
+        ("response", c_double * 3),
+        ("background", c_double * 3),
+        ("outcome", c_int32 * 3),
+        ("reserved", c_uint32),
         ("error", c_double),
-        ("discarded", c_uint64),
-        ("preview_bias", c_double),
-        ("relative_error", c_double),
+        ("delta_e", c_double),
     ]
-    result = types.RenderReport
+    enumerations: dict[str, type] = {"outcome": types.Outcome}
+    result = types.RelightReport
 
 
-class luxfer_render_part(Structure):
-    """A part of a rendering."""
+class luxfer_pattern_params(Structure):
+    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
+    Surface."""
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("x", c_uint32),
-        ("y", c_uint32),
-        ("width", c_uint32),
-        ("height", c_uint32),
-        ("first_sample", c_uint32),
-        ("samples", c_uint32),
+        ("scale", c_int32),
+        ("length", c_double),
+        ("texel_size", c_double),
+        ("rotation", c_double),
+        ("offset", c_double * 2),
+        ("margin", c_double),
     ]
+    enumerations: dict[str, type] = {"scale": types.PatternScale}
+
+
+class luxfer_transfer_params(Structure):
+    """Settings of a transfer. The structs behind the pointers are read during the call."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("max_texels", c_uint32),
+        ("plane_distance", c_double),
+        ("white_luminance", c_float),
+        ("target", c_int32),
+        ("rectify", POINTER(luxfer_rectify_params)),
+        ("features", POINTER(luxfer_features_params)),
+        ("plane", POINTER(luxfer_segment_params)),
+        ("lights", POINTER(luxfer_segment_params)),
+        ("emission", POINTER(luxfer_emission_params)),
+        ("relight", POINTER(luxfer_relight_params)),
+        ("render", POINTER(luxfer_render_params)),
+        ("pattern", POINTER(luxfer_pattern_params)),
+    ]
+    enumerations: dict[str, type] = {"target": types.Target}
+
+
+class luxfer_transfer_report(Structure):
+    """Time and error of each stage. The error of a stage without a result is NaN."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("fixtures", c_uint32),
+        ("seconds", c_double * 8),
+        ("view_error", c_double),
+        ("depth_confidence", c_double),
+        ("plane_error", c_double),
+        ("lights_error", c_double),
+        ("unwarp_error", c_double),
+        ("emission_error", c_double),
+        ("relight_error", c_double),
+        ("render_error", c_double),
+        ("texel_size", c_double),
+        ("target", c_float * 3),
+        ("reserved", c_uint32),
+        ("plane_distance", c_double),
+        ("plane_distance_error", c_double),
+        ("proposed_white", c_double),
+        ("proposed_white_low", c_double),
+        ("proposed_white_high", c_double),
+    ]
+    result = types.TransferReport
+
+
+class luxfer_fixture(Structure):
+    """One lamp of the lit scene."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("position", c_float * 3),
+        ("normal", c_float * 3),
+        ("axis", c_float * 3),
+        ("radiance", c_float * 3),
+        ("kind", c_uint32),
+        ("size", c_double * 2),
+        ("area", c_double),
+        ("flux", c_double),
+        ("cct", c_double),
+        ("duv", c_double),
+    ]
+    result = types.Fixture
+
+
+class luxfer_warning(Structure):
+    """A reason to doubt a result."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("code", c_int32),
+        ("stage", c_int32),
+        ("has_place", c_uint32),
+        ("severity", c_double),
+        ("limit", c_double),
+        ("place", c_double * 2),
+        ("message", c_char_p),
+        ("advice", c_char_p),
+    ]
+    enumerations: dict[str, type] = {"code": types.WarningCode, "stage": types.Stage}
+    result = types.Warning
 
 
 class luxfer_illuminance_params(Structure):
@@ -882,40 +1009,6 @@ class luxfer_illuminance_report(Structure):
     result = types.IlluminanceReport
 
 
-class luxfer_relight_params(Structure):
-    """Settings of a relighting."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("quantity", c_int32),
-        ("paths", c_uint32),
-        ("target_error", c_float),
-        ("time_budget_ms", c_uint32),
-        ("fit", c_int32),
-        ("seed", c_uint64),
-    ]
-    enumerations: dict[str, type] = {"quantity": types.Quantity, "fit": types.Fit}
-
-
-class luxfer_relight_report(Structure):
-    """The solution and its confidence."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("paths", c_uint32),
-        ("scale", c_double * 3),
-        ("half_width", c_double * 3),
-        ("response", c_double * 3),
-        ("background", c_double * 3),
-        ("outcome", c_int32 * 3),
-        ("reserved", c_uint32),
-        ("error", c_double),
-        ("delta_e", c_double),
-    ]
-    enumerations: dict[str, type] = {"outcome": types.Outcome}
-    result = types.RelightReport
-
-
 class luxfer_lamps_params(Structure):
     """Settings of the calculation."""
 
@@ -945,7 +1038,7 @@ class luxfer_lamps_report(Structure):
         ("groups", c_uint32),
         ("goals", c_uint32),
         ("paths", c_uint32),
-        ("met", c_uint32),
+        ("all_goals_met", c_uint32),
     ]
     result = types.LampsReport
 
@@ -1094,7 +1187,7 @@ class luxfer_mixture(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reached", c_uint32),
+        ("in_gamut", c_uint32),
         ("colour", c_double * 3),
         ("delta_e", c_double),
     ]
@@ -1130,132 +1223,6 @@ class luxfer_preset(Structure):
         ("ceiling", c_double),
     ]
     result = types.Preset
-
-
-class luxfer_pattern_params(Structure):
-    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
-    Surface."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("scale", c_int32),
-        ("length", c_double),
-        ("texel_size", c_double),
-        ("rotation", c_double),
-        ("offset", c_double * 2),
-        ("margin", c_double),
-    ]
-    enumerations: dict[str, type] = {"scale": types.PatternScale}
-
-
-class luxfer_transfer_params(Structure):
-    """Settings of a transfer. The structs behind the pointers are read during the call."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("max_texels", c_uint32),
-        ("plane_distance", c_double),
-        ("white_luminance", c_float),
-        ("target", c_int32),
-        ("rectify", POINTER(luxfer_rectify_params)),
-        ("features", POINTER(luxfer_features_params)),
-        ("plane", POINTER(luxfer_segment_params)),
-        ("lights", POINTER(luxfer_segment_params)),
-        ("emission", POINTER(luxfer_emission_params)),
-        ("relight", POINTER(luxfer_relight_params)),
-        ("render", POINTER(luxfer_render_params)),
-        ("pattern", POINTER(luxfer_pattern_params)),
-    ]
-    enumerations: dict[str, type] = {"target": types.Target}
-
-
-class luxfer_transfer_report(Structure):
-    """Time and error of each stage. The error of a stage without a result is NaN."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("fixtures", c_uint32),
-        ("seconds", c_double * 8),
-        ("view_error", c_double),
-        ("depth_confidence", c_double),
-        ("plane_error", c_double),
-        ("lights_error", c_double),
-        ("unwarp_error", c_double),
-        ("emission_error", c_double),
-        ("relight_error", c_double),
-        ("render_error", c_double),
-        ("texel_size", c_double),
-        ("target", c_float * 3),
-        ("reserved", c_uint32),
-        ("plane_distance", c_double),
-        ("plane_distance_error", c_double),
-        ("proposed_white", c_double),
-        ("proposed_white_low", c_double),
-        ("proposed_white_high", c_double),
-    ]
-    result = types.TransferReport
-
-
-class luxfer_fixture(Structure):
-    """One lamp of the lit scene."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("position", c_float * 3),
-        ("normal", c_float * 3),
-        ("axis", c_float * 3),
-        ("radiance", c_float * 3),
-        ("kind", c_uint32),
-        ("size", c_double * 2),
-        ("area", c_double),
-        ("flux", c_double),
-        ("cct", c_double),
-        ("duv", c_double),
-    ]
-    result = types.Fixture
-
-
-class luxfer_warning(Structure):
-    """A reason to doubt a result."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("code", c_int32),
-        ("stage", c_int32),
-        ("has_place", c_uint32),
-        ("severity", c_double),
-        ("limit", c_double),
-        ("place", c_double * 2),
-    ]
-    enumerations: dict[str, type] = {"code": types.WarningCode, "stage": types.Stage}
-    result = types.Warning
-
-
-class luxfer_plan_params(Structure):
-    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("time_budget_ms", c_uint32),
-        ("target_error", c_float),
-        ("reserved", c_uint32),
-    ]
-
-
-class luxfer_plan_report(Structure):
-    """Times and errors that a plan predicts."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("relights", c_uint32),
-        ("seconds", c_double),
-        ("error", c_double),
-        ("relight_seconds", c_double),
-        ("relight_error", c_double),
-        ("render_seconds", c_double),
-        ("render_error", c_double),
-    ]
-    result = types.PlanReport
 
 
 class luxfer_guides_params(Structure):
@@ -1310,7 +1277,7 @@ class luxfer_stylize_report(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("finished", c_uint32),
+        ("is_complete", c_uint32),
         ("levels", c_uint32),
         ("halvings", c_uint32),
         ("patch", c_uint32),
@@ -1344,7 +1311,7 @@ class luxfer_stylize_pass(Structure):
         ("reserved", c_uint32),
         ("knee", c_double),
         ("coverage", c_double),
-        ("gained", c_uint64),
+        ("new_matches", c_uint64),
     ]
     result = types.StylizePass
 
@@ -1376,6 +1343,47 @@ class luxfer_sheet_report(Structure):
     result = types.SheetReport
 
 
+class luxfer_plan_params(Structure):
+    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("time_budget_ms", c_uint32),
+        ("target_error", c_float),
+        ("reserved", c_uint32),
+    ]
+
+
+class luxfer_plan_report(Structure):
+    """Times and errors that a plan predicts."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("relights", c_uint32),
+        ("seconds", c_double),
+        ("error", c_double),
+        ("relight_seconds", c_double),
+        ("relight_error", c_double),
+        ("render_seconds", c_double),
+        ("render_error", c_double),
+    ]
+    result = types.PlanReport
+
+
+class luxfer_render_part(Structure):
+    """A part of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("x", c_uint32),
+        ("y", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("first_sample", c_uint32),
+        ("samples", c_uint32),
+    ]
+
+
 class luxfer_demo_photo_params(Structure):
     """Settings of the photo."""
 
@@ -1390,152 +1398,83 @@ class luxfer_demo_photo_params(Structure):
 
 #: What each function returns, and takes: names and types.
 FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
-    "luxfer_version": (c_uint32, []),
-    "luxfer_version_string": (c_char_p, []),
-    "luxfer_status_name": (c_char_p, [("status", c_int32)]),
+    "luxfer_get_version": (c_uint32, []),
+    "luxfer_get_version_string": (c_char_p, []),
+    "luxfer_status_get_name": (c_char_p, [("status", c_int32)]),
     "luxfer_context_params_init": (c_int32, [("params", POINTER(luxfer_context_params)), ("size", c_size_t)]),
     "luxfer_context_create": (c_int32, [("params", POINTER(luxfer_context_params)), ("context", POINTER(POINTER(luxfer_context)))]),
-    "luxfer_context_retain": (c_int32, [("context", POINTER(luxfer_context))]),
-    "luxfer_context_release": (c_int32, [("context", POINTER(luxfer_context))]),
-    "luxfer_context_last_error": (c_int32, [("context", POINTER(luxfer_context)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_context_get_last_error": (c_int32, [("context", POINTER(luxfer_context)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_retain": (c_int32, [("handle", c_void_p)]),
+    "luxfer_release": (c_int32, [("handle", c_void_p)]),
     "luxfer_image_view_init": (c_int32, [("view", POINTER(luxfer_image_view)), ("size", c_size_t)]),
     "luxfer_image_create": (c_int32, [("context", POINTER(luxfer_context)), ("view", POINTER(luxfer_image_view)), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_image_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_image_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_image_save": (c_int32, [("image", POINTER(luxfer_image)), ("path", c_char_p), ("exposure", c_float)]),
-    "luxfer_image_size": (c_int32, [("image", POINTER(luxfer_image)), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("channels", POINTER(c_uint32))]),
+    "luxfer_image_get_size": (c_int32, [("image", POINTER(luxfer_image)), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("channels", POINTER(c_uint32))]),
     "luxfer_image_read": (c_int32, [("image", POINTER(luxfer_image)), ("first_channel", c_uint32), ("view", POINTER(luxfer_image_view))]),
-    "luxfer_image_retain": (c_int32, [("image", POINTER(luxfer_image))]),
-    "luxfer_image_release": (c_int32, [("image", POINTER(luxfer_image))]),
-    "luxfer_image_get_metadata": (c_int32, [("image", POINTER(luxfer_image)), ("metadata", POINTER(luxfer_photo_metadata))]),
+    "luxfer_image_get_metadata": (c_int32, [("image", POINTER(luxfer_image)), ("metadata", POINTER(luxfer_photo_metadata)), ("size", c_size_t)]),
+    "luxfer_strokes_create": (c_int32, [("context", POINTER(luxfer_context)), ("width", c_uint32), ("height", c_uint32), ("strokes", POINTER(POINTER(luxfer_strokes)))]),
+    "luxfer_strokes_add": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
+    "luxfer_strokes_add_image": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("drawing", POINTER(luxfer_image))]),
+    "luxfer_strokes_add_text": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("description", c_char_p)]),
+    "luxfer_strokes_clear": (c_int32, [("strokes", POINTER(luxfer_strokes))]),
     "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p)]),
-    "luxfer_job_poll": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("finished", POINTER(c_int32))]),
-    "luxfer_job_status": (c_int32, [("job", POINTER(luxfer_job))]),
+    "luxfer_job_get_progress": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("outcome", POINTER(c_int32))]),
     "luxfer_job_cancel": (c_int32, [("job", POINTER(luxfer_job))]),
-    "luxfer_job_retain": (c_int32, [("job", POINTER(luxfer_job))]),
-    "luxfer_job_release": (c_int32, [("job", POINTER(luxfer_job))]),
     "luxfer_scene_create": (c_int32, [("context", POINTER(luxfer_context)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_export": (c_int32, [("scene", POINTER(luxfer_scene)), ("path", c_char_p)]),
     "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),
-    "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts))]),
-    "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
-    "luxfer_scene_set_environment_image": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts)), ("size", c_size_t)]),
+    "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_scene_set_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("red", c_float), ("green", c_float), ("blue", c_float)]),
-    "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface))]),
+    "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface)), ("size", c_size_t)]),
     "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
-    "luxfer_scene_retain": (c_int32, [("scene", POINTER(luxfer_scene))]),
-    "luxfer_scene_release": (c_int32, [("scene", POINTER(luxfer_scene))]),
     "luxfer_scene_load_params_init": (c_int32, [("params", POINTER(luxfer_scene_load_params)), ("size", c_size_t)]),
-    "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load_with": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_scene_load_memory_with": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_material_params_init": (c_int32, [("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
     "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
-    "luxfer_scene_get_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
+    "luxfer_scene_get_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
     "luxfer_scene_add_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("wrap_u", c_int32), ("wrap_v", c_int32), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("role", c_int32), ("texture", c_uint32), ("uv_set", c_uint32), ("transform", POINTER(c_float))]),
-    "luxfer_scene_get_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material_index", c_uint32), ("role", c_int32), ("texture_use", POINTER(luxfer_texture_use))]),
+    "luxfer_scene_get_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material_index", c_uint32), ("role", c_int32), ("texture_use", POINTER(luxfer_texture_use)), ("size", c_size_t)]),
     "luxfer_scene_get_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mesh_params_init": (c_int32, [("params", POINTER(luxfer_mesh_params)), ("size", c_size_t)]),
     "luxfer_camera_params_init": (c_int32, [("params", POINTER(luxfer_camera_params)), ("size", c_size_t)]),
     "luxfer_scene_add_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_mesh_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_add_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_camera_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
-    "luxfer_scene_get_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
+    "luxfer_scene_get_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params)), ("size", c_size_t)]),
     "luxfer_distribution_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
     "luxfer_distribution_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("format", c_int32), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
     "luxfer_distribution_save": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("path", c_char_p)]),
-    "luxfer_distribution_get_report": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("report", POINTER(luxfer_distribution_report))]),
+    "luxfer_distribution_get_report": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("report", POINTER(luxfer_distribution_report)), ("size", c_size_t)]),
     "luxfer_distribution_get_name": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_distribution_get_intensity": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("c", c_double), ("gamma", c_double), ("candela", POINTER(c_double))]),
-    "luxfer_distribution_retain": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
-    "luxfer_distribution_release": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
     "luxfer_light_params_init": (c_int32, [("params", POINTER(luxfer_light_params)), ("size", c_size_t)]),
     "luxfer_scene_add_light": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_light_params)), ("index", POINTER(c_uint32))]),
     "luxfer_luminaire_params_init": (c_int32, [("params", POINTER(luxfer_luminaire_params)), ("size", c_size_t)]),
     "luxfer_scene_add_luminaire": (c_int32, [("scene", POINTER(luxfer_scene)), ("distribution", POINTER(luxfer_distribution)), ("params", POINTER(luxfer_luminaire_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_intersect": (c_int32, [("scene", POINTER(luxfer_scene)), ("rays", POINTER(luxfer_ray)), ("count", c_size_t), ("hits", POINTER(luxfer_hit))]),
-    "luxfer_scene_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements))]),
-    "luxfer_scene_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_scene_get_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("info", POINTER(luxfer_mesh_info))]),
+    "luxfer_scene_get_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements)), ("size", c_size_t)]),
+    "luxfer_scene_get_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_scene_get_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("info", POINTER(luxfer_mesh_info)), ("size", c_size_t)]),
     "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_read_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("vertex_capacity", c_size_t), ("positions", POINTER(c_float)), ("normals", POINTER(c_float)), ("triangle_capacity", c_size_t), ("indices", POINTER(c_uint32))]),
     "luxfer_scene_read_mesh_uvs": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("uv_set", c_uint32), ("capacity", c_size_t), ("uvs", POINTER(c_float))]),
     "luxfer_scene_read_mesh_colours": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("capacity", c_size_t), ("colours", POINTER(c_float))]),
     "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
-    "luxfer_candidates_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
-    "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate))]),
-    "luxfer_candidates_get_name": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_candidates_get_reason": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_candidates_retain": (c_int32, [("candidates", POINTER(luxfer_candidates))]),
-    "luxfer_candidates_release": (c_int32, [("candidates", POINTER(luxfer_candidates))]),
-    "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
-    "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),
-    "luxfer_rectify_create": (c_int32, [("context", POINTER(luxfer_context)), ("rectify", POINTER(POINTER(luxfer_rectify)))]),
-    "luxfer_rectify_set_photo": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("photo", POINTER(luxfer_image))]),
-    "luxfer_rectify_set_mask": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("mask", POINTER(luxfer_image))]),
-    "luxfer_rectify_start": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("params", POINTER(luxfer_rectify_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report))]),
-    "luxfer_rectify_retain": (c_int32, [("rectify", POINTER(luxfer_rectify))]),
-    "luxfer_rectify_release": (c_int32, [("rectify", POINTER(luxfer_rectify))]),
-    "luxfer_features_params_init": (c_int32, [("params", POINTER(luxfer_features_params)), ("size", c_size_t)]),
-    "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
-    "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
-    "luxfer_features_set_depth": (c_int32, [("features", POINTER(luxfer_features)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
-    "luxfer_features_set_network": (c_int32, [("features", POINTER(luxfer_features)), ("path", c_char_p), ("normalisation", c_int32)]),
-    "luxfer_features_set_view": (c_int32, [("features", POINTER(luxfer_features)), ("rectify", POINTER(luxfer_rectify))]),
-    "luxfer_features_add_stroke": (c_int32, [("features", POINTER(luxfer_features)), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
-    "luxfer_features_add_strokes_image": (c_int32, [("features", POINTER(luxfer_features)), ("drawing", POINTER(luxfer_image))]),
-    "luxfer_features_add_strokes_text": (c_int32, [("features", POINTER(luxfer_features)), ("description", c_char_p)]),
-    "luxfer_features_clear_strokes": (c_int32, [("features", POINTER(luxfer_features))]),
-    "luxfer_features_start": (c_int32, [("features", POINTER(luxfer_features)), ("params", POINTER(luxfer_features_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_features_get_image": (c_int32, [("features", POINTER(luxfer_features)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_features_get_report": (c_int32, [("features", POINTER(luxfer_features)), ("report", POINTER(luxfer_features_report))]),
-    "luxfer_features_retain": (c_int32, [("features", POINTER(luxfer_features))]),
-    "luxfer_features_release": (c_int32, [("features", POINTER(luxfer_features))]),
-    "luxfer_segment_params_init": (c_int32, [("params", POINTER(luxfer_segment_params)), ("size", c_size_t)]),
-    "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
-    "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
-    "luxfer_segment_set_region": (c_int32, [("segment", POINTER(luxfer_segment)), ("region", POINTER(luxfer_image))]),
-    "luxfer_segment_add_stroke": (c_int32, [("segment", POINTER(luxfer_segment)), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
-    "luxfer_segment_add_strokes_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("drawing", POINTER(luxfer_image)), ("phase", c_int32)]),
-    "luxfer_segment_add_strokes_text": (c_int32, [("segment", POINTER(luxfer_segment)), ("description", c_char_p), ("phase", c_int32)]),
-    "luxfer_segment_clear_strokes": (c_int32, [("segment", POINTER(luxfer_segment))]),
-    "luxfer_segment_start": (c_int32, [("segment", POINTER(luxfer_segment)), ("params", POINTER(luxfer_segment_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_segment_get_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_segment_get_report": (c_int32, [("segment", POINTER(luxfer_segment)), ("report", POINTER(luxfer_segment_report))]),
-    "luxfer_segment_retain": (c_int32, [("segment", POINTER(luxfer_segment))]),
-    "luxfer_segment_release": (c_int32, [("segment", POINTER(luxfer_segment))]),
-    "luxfer_emission_params_init": (c_int32, [("params", POINTER(luxfer_emission_params)), ("size", c_size_t)]),
-    "luxfer_emission_create": (c_int32, [("context", POINTER(luxfer_context)), ("emission", POINTER(POINTER(luxfer_emission)))]),
-    "luxfer_emission_set_exemplar": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image))]),
-    "luxfer_emission_set_photo": (c_int32, [("emission", POINTER(luxfer_emission)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double))]),
-    "luxfer_emission_start": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_emission_get_image": (c_int32, [("emission", POINTER(luxfer_emission)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_emission_get_report": (c_int32, [("emission", POINTER(luxfer_emission)), ("report", POINTER(luxfer_emission_report))]),
-    "luxfer_emission_get_luminaire": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("luminaire", POINTER(luxfer_luminaire))]),
-    "luxfer_emission_get_corner": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("corner", c_uint32), ("x", POINTER(c_double)), ("y", POINTER(c_double))]),
-    "luxfer_emission_retain": (c_int32, [("emission", POINTER(luxfer_emission))]),
-    "luxfer_emission_release": (c_int32, [("emission", POINTER(luxfer_emission))]),
-    "luxfer_emission_add_style": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double)), ("scale", c_double), ("weights", POINTER(luxfer_image))]),
-    "luxfer_emission_clear_styles": (c_int32, [("emission", POINTER(luxfer_emission))]),
-    "luxfer_emission_start_plan": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_candidates_get_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
+    "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate)), ("size", c_size_t)]),
     "luxfer_render_params_init": (c_int32, [("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
     "luxfer_render_create": (c_int32, [("context", POINTER(luxfer_context)), ("render", POINTER(POINTER(luxfer_render)))]),
     "luxfer_render_set_scene": (c_int32, [("render", POINTER(luxfer_render)), ("scene", POINTER(luxfer_scene))]),
-    "luxfer_render_set_camera_index": (c_int32, [("render", POINTER(luxfer_render)), ("camera", c_uint32)]),
     "luxfer_render_set_camera": (c_int32, [("render", POINTER(luxfer_render)), ("camera", POINTER(luxfer_camera_params))]),
     "luxfer_render_start": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_render_get_image": (c_int32, [("render", POINTER(luxfer_render)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_render_get_report": (c_int32, [("render", POINTER(luxfer_render)), ("report", POINTER(luxfer_render_report))]),
-    "luxfer_render_retain": (c_int32, [("render", POINTER(luxfer_render))]),
-    "luxfer_render_release": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_get_report": (c_int32, [("render", POINTER(luxfer_render)), ("report", POINTER(luxfer_render_report)), ("size", c_size_t)]),
     "luxfer_render_add_expression": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("expression", c_char_p)]),
     "luxfer_render_clear_expressions": (c_int32, [("render", POINTER(luxfer_render))]),
     "luxfer_render_set_emitter_as": (c_int32, [("render", POINTER(luxfer_render)), ("emitter_as", c_int32)]),
@@ -1545,71 +1484,54 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_find_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("index", POINTER(c_uint32))]),
     "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
-    "luxfer_render_part_init": (c_int32, [("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
-    "luxfer_render_split": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("columns", c_uint32), ("rows", c_uint32), ("ranges", c_uint32), ("index", c_uint32), ("part", POINTER(luxfer_render_part))]),
-    "luxfer_render_start_part": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("part", POINTER(luxfer_render_part)), ("path", c_char_p), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_render_add_part": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
-    "luxfer_render_clear_parts": (c_int32, [("render", POINTER(luxfer_render))]),
-    "luxfer_render_start_merge": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_illuminance_params_init": (c_int32, [("params", POINTER(luxfer_illuminance_params)), ("size", c_size_t)]),
-    "luxfer_illuminance_grid_init": (c_int32, [("grid", POINTER(luxfer_illuminance_grid)), ("size", c_size_t)]),
-    "luxfer_illuminance_create": (c_int32, [("context", POINTER(luxfer_context)), ("illuminance", POINTER(POINTER(luxfer_illuminance)))]),
-    "luxfer_illuminance_set_scene": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("scene", POINTER(luxfer_scene))]),
-    "luxfer_illuminance_start_grid": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("grid", POINTER(luxfer_illuminance_grid)), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_illuminance_start_mesh": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("mesh", c_uint32), ("back", c_uint32), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_illuminance_get_image": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_illuminance_get_report": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("report", POINTER(luxfer_illuminance_report))]),
-    "luxfer_illuminance_retain": (c_int32, [("illuminance", POINTER(luxfer_illuminance))]),
-    "luxfer_illuminance_release": (c_int32, [("illuminance", POINTER(luxfer_illuminance))]),
+    "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
+    "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),
+    "luxfer_rectify_create": (c_int32, [("context", POINTER(luxfer_context)), ("rectify", POINTER(POINTER(luxfer_rectify)))]),
+    "luxfer_rectify_set_photo": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("photo", POINTER(luxfer_image))]),
+    "luxfer_rectify_set_mask": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("mask", POINTER(luxfer_image))]),
+    "luxfer_rectify_start": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("params", POINTER(luxfer_rectify_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
+    "luxfer_features_params_init": (c_int32, [("params", POINTER(luxfer_features_params)), ("size", c_size_t)]),
+    "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
+    "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
+    "luxfer_features_set_depth": (c_int32, [("features", POINTER(luxfer_features)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
+    "luxfer_features_set_network": (c_int32, [("features", POINTER(luxfer_features)), ("path", c_char_p), ("normalisation", c_int32)]),
+    "luxfer_features_set_view": (c_int32, [("features", POINTER(luxfer_features)), ("rectify", POINTER(luxfer_rectify))]),
+    "luxfer_features_set_strokes": (c_int32, [("features", POINTER(luxfer_features)), ("strokes", POINTER(luxfer_strokes))]),
+    "luxfer_features_start": (c_int32, [("features", POINTER(luxfer_features)), ("params", POINTER(luxfer_features_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_features_get_image": (c_int32, [("features", POINTER(luxfer_features)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_features_get_report": (c_int32, [("features", POINTER(luxfer_features)), ("report", POINTER(luxfer_features_report)), ("size", c_size_t)]),
+    "luxfer_segment_params_init": (c_int32, [("params", POINTER(luxfer_segment_params)), ("size", c_size_t)]),
+    "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
+    "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
+    "luxfer_segment_set_region": (c_int32, [("segment", POINTER(luxfer_segment)), ("region", POINTER(luxfer_image))]),
+    "luxfer_segment_set_strokes": (c_int32, [("segment", POINTER(luxfer_segment)), ("strokes", POINTER(luxfer_strokes)), ("phase", c_int32)]),
+    "luxfer_segment_start": (c_int32, [("segment", POINTER(luxfer_segment)), ("params", POINTER(luxfer_segment_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_segment_get_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_segment_get_report": (c_int32, [("segment", POINTER(luxfer_segment)), ("report", POINTER(luxfer_segment_report)), ("size", c_size_t)]),
+    "luxfer_emission_params_init": (c_int32, [("params", POINTER(luxfer_emission_params)), ("size", c_size_t)]),
+    "luxfer_emission_create": (c_int32, [("context", POINTER(luxfer_context)), ("emission", POINTER(POINTER(luxfer_emission)))]),
+    "luxfer_emission_set_exemplar": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image))]),
+    "luxfer_emission_set_photo": (c_int32, [("emission", POINTER(luxfer_emission)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double))]),
+    "luxfer_emission_start": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_emission_get_image": (c_int32, [("emission", POINTER(luxfer_emission)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_emission_get_report": (c_int32, [("emission", POINTER(luxfer_emission)), ("report", POINTER(luxfer_emission_report)), ("size", c_size_t)]),
+    "luxfer_emission_get_luminaire": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("luminaire", POINTER(luxfer_luminaire)), ("size", c_size_t)]),
+    "luxfer_emission_get_corner": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("corner", c_uint32), ("x", POINTER(c_double)), ("y", POINTER(c_double))]),
+    "luxfer_emission_add_style": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double)), ("scale", c_double), ("weights", POINTER(luxfer_image))]),
+    "luxfer_emission_clear_styles": (c_int32, [("emission", POINTER(luxfer_emission))]),
+    "luxfer_emission_start_plan": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
     "luxfer_relight_params_init": (c_int32, [("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
     "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
     "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
     "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_relight_set_constraint": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
     "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report))]),
-    "luxfer_relight_retain": (c_int32, [("relight", POINTER(luxfer_relight))]),
-    "luxfer_relight_release": (c_int32, [("relight", POINTER(luxfer_relight))]),
-    "luxfer_lamps_params_init": (c_int32, [("params", POINTER(luxfer_lamps_params)), ("size", c_size_t)]),
-    "luxfer_lamps_create": (c_int32, [("context", POINTER(luxfer_context)), ("lamps", POINTER(POINTER(luxfer_lamps)))]),
-    "luxfer_lamps_set_scene": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32)]),
-    "luxfer_lamps_start": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("params", POINTER(luxfer_lamps_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_lamps_retain": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
-    "luxfer_lamps_release": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
-    "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
-    "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
-    "luxfer_lamps_set_constraint": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
-    "luxfer_lamps_set_levels": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("levels", POINTER(c_double)), ("count", c_uint32)]),
-    "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
-    "luxfer_lamps_get_report": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("report", POINTER(luxfer_lamps_report))]),
-    "luxfer_lamps_get_lamp": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("index", c_uint32), ("lamp", POINTER(luxfer_lamp))]),
-    "luxfer_lamps_get_goal": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("index", c_uint32), ("goal", POINTER(luxfer_lamps_goal))]),
-    "luxfer_lamps_get_response": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("lamp", c_uint32), ("response", POINTER(luxfer_lamps_response))]),
-    "luxfer_lamps_get_reason": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_lamps_get_texture": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("texture", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_importance_params_init": (c_int32, [("params", POINTER(luxfer_importance_params)), ("size", c_size_t)]),
-    "luxfer_importance_create": (c_int32, [("context", POINTER(luxfer_context)), ("importance", POINTER(POINTER(luxfer_importance)))]),
-    "luxfer_importance_set_scene": (c_int32, [("importance", POINTER(luxfer_importance)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
-    "luxfer_importance_start": (c_int32, [("importance", POINTER(luxfer_importance)), ("params", POINTER(luxfer_importance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_importance_get_image": (c_int32, [("importance", POINTER(luxfer_importance)), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_importance_respond": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("report", POINTER(luxfer_importance_report))]),
-    "luxfer_importance_solve": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("red", c_float), ("green", c_float), ("blue", c_float), ("report", POINTER(luxfer_relight_report))]),
-    "luxfer_importance_retain": (c_int32, [("importance", POINTER(luxfer_importance))]),
-    "luxfer_importance_release": (c_int32, [("importance", POINTER(luxfer_importance))]),
-    "luxfer_placement_params_init": (c_int32, [("params", POINTER(luxfer_placement_params)), ("size", c_size_t)]),
-    "luxfer_importance_start_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_importance_get_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("placement", POINTER(luxfer_placement))]),
-    "luxfer_colour_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
-    "luxfer_colour_of_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
-    "luxfer_image_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report))]),
-    "luxfer_false_colour_params_init": (c_int32, [("params", POINTER(luxfer_false_colour_params)), ("size", c_size_t)]),
-    "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture))]),
-    "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit))]),
-    "luxfer_power_density": (c_int32, [("context", POINTER(luxfer_context)), ("flux", c_double), ("efficacy", c_double), ("area", c_double), ("density", POINTER(c_double))]),
-    "luxfer_preset_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
-    "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset))]),
-    "luxfer_preset_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
     "luxfer_pattern_params_init": (c_int32, [("params", POINTER(luxfer_pattern_params)), ("size", c_size_t)]),
     "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
     "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
@@ -1619,58 +1541,75 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_set_triangles": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("triangles", POINTER(c_uint32)), ("count", c_size_t)]),
     "luxfer_transfer_set_texture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("texture", POINTER(luxfer_image))]),
     "luxfer_transfer_set_camera": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("camera", POINTER(luxfer_camera_params))]),
-    "luxfer_transfer_add_stroke": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
-    "luxfer_transfer_add_strokes_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("drawing", POINTER(luxfer_image))]),
-    "luxfer_transfer_add_strokes_text": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("description", c_char_p)]),
+    "luxfer_transfer_set_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("strokes", POINTER(luxfer_strokes))]),
     "luxfer_transfer_set_zones": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("zones", POINTER(c_double)), ("count", c_size_t)]),
-    "luxfer_transfer_clear_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
     "luxfer_transfer_use_rectify": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("rectify", POINTER(luxfer_rectify))]),
     "luxfer_transfer_use_features": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("features", POINTER(luxfer_features))]),
     "luxfer_transfer_use_segment": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("segment", POINTER(luxfer_segment))]),
     "luxfer_transfer_use_mask": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("mask", POINTER(luxfer_image))]),
     "luxfer_transfer_start": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("first", c_int32), ("last", c_int32), ("params", POINTER(luxfer_transfer_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_transfer_retain": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
-    "luxfer_transfer_release": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
     "luxfer_transfer_get_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_transfer_get_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_transfer_get_report": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("report", POINTER(luxfer_transfer_report))]),
-    "luxfer_transfer_get_view": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("view", POINTER(luxfer_rectify_report))]),
-    "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report))]),
-    "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture))]),
+    "luxfer_transfer_get_report": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("report", POINTER(luxfer_transfer_report)), ("size", c_size_t)]),
+    "luxfer_transfer_get_view": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("view", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
+    "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
+    "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture)), ("size", c_size_t)]),
     "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
-    "luxfer_transfer_get_warnings": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_rectify_get_warnings": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_features_get_warnings": (c_int32, [("features", POINTER(luxfer_features)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_segment_get_warnings": (c_int32, [("segment", POINTER(luxfer_segment)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_emission_get_warnings": (c_int32, [("emission", POINTER(luxfer_emission)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_relight_get_warnings": (c_int32, [("relight", POINTER(luxfer_relight)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_scene_get_warnings": (c_int32, [("scene", POINTER(luxfer_scene)), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
-    "luxfer_warnings_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
-    "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning))]),
-    "luxfer_warnings_get_message": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_warnings_get_advice": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_warnings_retain": (c_int32, [("warnings", POINTER(luxfer_warnings))]),
-    "luxfer_warnings_release": (c_int32, [("warnings", POINTER(luxfer_warnings))]),
-    "luxfer_warning_name": (c_char_p, [("code", c_int32)]),
-    "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
-    "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
-    "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_plan_start_transfer": (c_int32, [("plan", POINTER(luxfer_plan)), ("transfer", POINTER(luxfer_transfer)), ("settings", POINTER(luxfer_transfer_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_plan_get_report": (c_int32, [("plan", POINTER(luxfer_plan)), ("report", POINTER(luxfer_plan_report))]),
-    "luxfer_plan_get_render_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_render_params))]),
-    "luxfer_plan_get_relight_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_relight_params))]),
-    "luxfer_plan_retain": (c_int32, [("plan", POINTER(luxfer_plan))]),
-    "luxfer_plan_release": (c_int32, [("plan", POINTER(luxfer_plan))]),
+    "luxfer_get_warnings": (c_int32, [("handle", c_void_p), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
+    "luxfer_warnings_get_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
+    "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning)), ("size", c_size_t)]),
+    "luxfer_warning_get_name": (c_char_p, [("code", c_int32)]),
+    "luxfer_illuminance_params_init": (c_int32, [("params", POINTER(luxfer_illuminance_params)), ("size", c_size_t)]),
+    "luxfer_illuminance_grid_init": (c_int32, [("grid", POINTER(luxfer_illuminance_grid)), ("size", c_size_t)]),
+    "luxfer_illuminance_create": (c_int32, [("context", POINTER(luxfer_context)), ("illuminance", POINTER(POINTER(luxfer_illuminance)))]),
+    "luxfer_illuminance_set_scene": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("scene", POINTER(luxfer_scene))]),
+    "luxfer_illuminance_start_grid": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("grid", POINTER(luxfer_illuminance_grid)), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_illuminance_start_mesh": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("mesh", c_uint32), ("back", c_uint32), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_illuminance_get_image": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_illuminance_get_report": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("report", POINTER(luxfer_illuminance_report)), ("size", c_size_t)]),
+    "luxfer_lamps_params_init": (c_int32, [("params", POINTER(luxfer_lamps_params)), ("size", c_size_t)]),
+    "luxfer_lamps_create": (c_int32, [("context", POINTER(luxfer_context)), ("lamps", POINTER(POINTER(luxfer_lamps)))]),
+    "luxfer_lamps_set_scene": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32)]),
+    "luxfer_lamps_start": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("params", POINTER(luxfer_lamps_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
+    "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
+    "luxfer_lamps_set_constraint": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
+    "luxfer_lamps_set_levels": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("levels", POINTER(c_double)), ("count", c_uint32)]),
+    "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
+    "luxfer_lamps_get_report": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("report", POINTER(luxfer_lamps_report)), ("size", c_size_t)]),
+    "luxfer_lamps_get_lamp": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("index", c_uint32), ("lamp", POINTER(luxfer_lamp)), ("size", c_size_t)]),
+    "luxfer_lamps_get_goal": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("index", c_uint32), ("goal", POINTER(luxfer_lamps_goal)), ("size", c_size_t)]),
+    "luxfer_lamps_get_response": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("lamp", c_uint32), ("response", POINTER(luxfer_lamps_response)), ("size", c_size_t)]),
+    "luxfer_lamps_get_reason": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_lamps_get_texture": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("texture", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_importance_params_init": (c_int32, [("params", POINTER(luxfer_importance_params)), ("size", c_size_t)]),
+    "luxfer_importance_create": (c_int32, [("context", POINTER(luxfer_context)), ("importance", POINTER(POINTER(luxfer_importance)))]),
+    "luxfer_importance_set_scene": (c_int32, [("importance", POINTER(luxfer_importance)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
+    "luxfer_importance_start": (c_int32, [("importance", POINTER(luxfer_importance)), ("params", POINTER(luxfer_importance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_importance_get_image": (c_int32, [("importance", POINTER(luxfer_importance)), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_importance_respond": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("report", POINTER(luxfer_importance_report)), ("size", c_size_t)]),
+    "luxfer_importance_solve": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("red", c_float), ("green", c_float), ("blue", c_float), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
+    "luxfer_placement_params_init": (c_int32, [("params", POINTER(luxfer_placement_params)), ("size", c_size_t)]),
+    "luxfer_importance_start_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_importance_get_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("placement", POINTER(luxfer_placement)), ("size", c_size_t)]),
+    "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
+    "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
+    "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
+    "luxfer_false_colour_params_init": (c_int32, [("params", POINTER(luxfer_false_colour_params)), ("size", c_size_t)]),
+    "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
+    "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
+    "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
+    "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
+    "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_guides_params_init": (c_int32, [("params", POINTER(luxfer_guides_params)), ("size", c_size_t)]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),
     "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_guides_get_image": (c_int32, [("guides", POINTER(luxfer_guides)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_guides_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("before", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_guides_retain": (c_int32, [("guides", POINTER(luxfer_guides))]),
-    "luxfer_guides_release": (c_int32, [("guides", POINTER(luxfer_guides))]),
+    "luxfer_guides_get_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("before", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
     "luxfer_stylize_params_init": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
-    "luxfer_stylize_params_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("preset", c_int32)]),
+    "luxfer_stylize_params_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("preset", c_int32), ("size", c_size_t)]),
     "luxfer_stylize_create": (c_int32, [("context", POINTER(luxfer_context)), ("stylize", POINTER(POINTER(luxfer_stylize)))]),
     "luxfer_stylize_set_artwork": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image))]),
     "luxfer_stylize_add_guide": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("name", c_char_p), ("source", POINTER(luxfer_image)), ("target", POINTER(luxfer_image)), ("weight", c_float), ("range", c_int32)]),
@@ -1682,24 +1621,33 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_stylize_start": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("params", POINTER(luxfer_stylize_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_stylize_update": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image)), ("changed", POINTER(luxfer_image)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_stylize_set_painted": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("painted", POINTER(luxfer_image))]),
-    "luxfer_stylize_retain": (c_int32, [("stylize", POINTER(luxfer_stylize))]),
-    "luxfer_stylize_release": (c_int32, [("stylize", POINTER(luxfer_stylize))]),
     "luxfer_stylize_get_image": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_stylize_get_report": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("report", POINTER(luxfer_stylize_report))]),
+    "luxfer_stylize_get_report": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("report", POINTER(luxfer_stylize_report)), ("size", c_size_t)]),
     "luxfer_stylize_get_level": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("rounds", POINTER(c_uint32))]),
-    "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round))]),
-    "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass))]),
-    "luxfer_plan_start_stylize": (c_int32, [("plan", POINTER(luxfer_plan)), ("stylize", POINTER(luxfer_stylize)), ("settings", POINTER(luxfer_stylize_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_plan_get_stylize_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_stylize_params))]),
+    "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round)), ("size", c_size_t)]),
+    "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass)), ("size", c_size_t)]),
     "luxfer_sheet_params_init": (c_int32, [("params", POINTER(luxfer_sheet_params)), ("size", c_size_t)]),
     "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report))]),
-    "luxfer_demo_scene": (c_int32, [("context", POINTER(luxfer_context)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_demo_artwork": (c_int32, [("guides", POINTER(luxfer_guides)), ("style", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report)), ("size", c_size_t)]),
+    "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
+    "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
+    "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_start_transfer": (c_int32, [("plan", POINTER(luxfer_plan)), ("transfer", POINTER(luxfer_transfer)), ("settings", POINTER(luxfer_transfer_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_get_report": (c_int32, [("plan", POINTER(luxfer_plan)), ("report", POINTER(luxfer_plan_report)), ("size", c_size_t)]),
+    "luxfer_plan_get_render_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
+    "luxfer_plan_get_relight_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
+    "luxfer_plan_start_stylize": (c_int32, [("plan", POINTER(luxfer_plan)), ("stylize", POINTER(luxfer_stylize)), ("settings", POINTER(luxfer_stylize_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_get_stylize_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
+    "luxfer_render_part_init": (c_int32, [("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
+    "luxfer_render_split": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("columns", c_uint32), ("rows", c_uint32), ("ranges", c_uint32), ("index", c_uint32), ("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
+    "luxfer_render_start_part": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("part", POINTER(luxfer_render_part)), ("path", c_char_p), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_render_add_part": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
+    "luxfer_render_clear_parts": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_start_merge": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_demo_create_scene": (c_int32, [("context", POINTER(luxfer_context)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_demo_create_artwork": (c_int32, [("guides", POINTER(luxfer_guides)), ("style", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_demo_photo_params_init": (c_int32, [("params", POINTER(luxfer_demo_photo_params)), ("size", c_size_t)]),
     "luxfer_demo_photo_create": (c_int32, [("context", POINTER(luxfer_context)), ("demo", POINTER(POINTER(luxfer_demo_photo)))]),
     "luxfer_demo_photo_start": (c_int32, [("demo", POINTER(luxfer_demo_photo)), ("params", POINTER(luxfer_demo_photo_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_demo_photo_get_image": (c_int32, [("demo", POINTER(luxfer_demo_photo)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_demo_photo_retain": (c_int32, [("demo", POINTER(luxfer_demo_photo))]),
-    "luxfer_demo_photo_release": (c_int32, [("demo", POINTER(luxfer_demo_photo))]),
 }

@@ -58,7 +58,7 @@ class Handle:
         """Releases the object. A job that runs on it continues; a job without references is cancelled."""
         pointer, self._pointer = self._pointer, None
         if pointer and self._forks == _forks:
-            getattr(library, f"luxfer_{self.kind}_release")(pointer)
+            library.luxfer_release(pointer)
 
     @property
     def context(self) -> Context:
@@ -96,9 +96,13 @@ class Handle:
 
     def _read(self, verb: str, struct: Any, *arguments: Any) -> Any:
         """A report, as its dataclass."""
-        out = _params.sized(struct)
-        self._call(verb, *arguments, out)
-        return _params.report(out)
+        return _params.report(self._fill(verb, struct, *arguments))
+
+    def _fill(self, verb: str, struct: Any, *arguments: Any) -> Any:
+        """A struct that the library has filled."""
+        out = struct()
+        self._call(verb, *arguments, out, ctypes.sizeof(out))
+        return out
 
     def _get_image(self, verb: str, *arguments: Any) -> Image:
         from .image import Image

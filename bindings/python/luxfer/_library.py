@@ -38,9 +38,9 @@ def _load() -> ctypes.CDLL:
         for name, (result, arguments) in _abi.FUNCTIONS.items():
             function = getattr(library, name)
             function.restype, function.argtypes = result, [kind for _, kind in arguments]
-        version = library.luxfer_version()
+        version = library.luxfer_get_version()
         if version // 100 != (10000 * _abi.LUXFER_VERSION_MAJOR + 100 * _abi.LUXFER_VERSION_MINOR) // 100:
-            failures.append(f"{path}: is version {library.luxfer_version_string().decode()}")
+            failures.append(f"{path}: is version {library.luxfer_get_version_string().decode()}")
             continue
         return library
     raise ImportError(

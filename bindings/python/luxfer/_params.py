@@ -142,16 +142,10 @@ def defaults(struct: type[ctypes.Structure]) -> dict[str, Any]:
     return settings(fill(struct, {}, []))
 
 
-def sized(struct: type[ctypes.Structure]) -> Any:
-    """A struct for the library to write its answer into."""
-    out = struct()
-    if hasattr(out, "struct_size"):
-        out.struct_size = ctypes.sizeof(out)
-    return out
-
-
 def plain(value: Any, params: ctypes.Structure, name: str) -> Any:
-    """A field's value: arrays as tuples, enumerations as their members where the number is one."""
+    """A field's value: texts as str, arrays as tuples, enumerations as their members where the number is one."""
+    if isinstance(value, bytes):
+        return value.decode()
     if isinstance(value, ctypes.Array):
         return tuple(plain(v, params, name) for v in value)
     kind = getattr(params, "enumerations", {}).get(name)

@@ -58,14 +58,14 @@ class Candidates(Handle):
     def read(self) -> list[SurfaceCandidate]:
         """All of them."""
         count = ctypes.c_uint32()
-        self._call("count", count)
+        self._call("get_count", count)
         return [self._at(index) for index in range(count.value)]
 
     def _at(self, index: int) -> SurfaceCandidate:
         c = cast(Candidate, self._read("get", _abi.luxfer_candidate, index))
         return SurfaceCandidate(
             kind=CandidateKind(c.kind),
-            name=self._get_text("get_name", index),
+            name=c.name,
             index=c.index,
             triangles=c.triangles,
             area=c.area,
@@ -75,7 +75,7 @@ class Candidates(Handle):
             high=c.high,
             normal=(c.normal[0], c.normal[1], c.normal[2]),
             score=c.score,
-            reason=self._get_text("get_reason", index),
+            reason=c.reason,
         )
 
 

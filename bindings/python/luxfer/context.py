@@ -36,4 +36,4 @@ class Context(Handle):
 
     def last_error(self) -> str:
         """The message of this thread's latest failure in this context; exceptions contain it too."""
-        return self._get_text("last_error") if self._pointer else ""
+        return self._get_text("get_last_error") if self._pointer else ""

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, cast
 from . import _abi, _params
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
-from .segment import stroke_arguments
+from .strokes import set_strokes
 from .types import DepthKind, FeaturesImage, FeaturesReport, Normalisation
 from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
     from .context import Context
     from .image import ImageLike
     from .rectify import Rectify
+    from .strokes import Strokes
     from .types import FeaturesParams
 
 
@@ -59,23 +59,10 @@ class Features(StageBase):
         """Takes the lines and the camera that a Rectify has found in this photo; None: no lines."""
         self._call("set_view", None if rectify is None else rectify)
 
-    def add_stroke(self, points: ArrayLike, radius: float, positive: bool) -> None:
-        """Adds a stroke along points (n, 2) in pixels, to fit the room: positive on one of its planes, else off this
-        plane."""
-        self._call("add_stroke", *stroke_arguments(points, radius, positive))
-
-    def add_strokes_image(self, drawing: ImageLike) -> None:
-        """Adds the strokes of a drawing that concern the plane: green, and yellow as lights lie in it; red elsewhere. An array of
-        uint8 is taken as sRGB."""
-        self._call("add_strokes_image", image_of(self._context, drawing, "srgb"))
-
-    def add_strokes_text(self, description: str) -> None:
-        """Adds the strokes of a text that concern the plane, one a line: "plane 3 310.5 30 320 31"."""
-        self._call("add_strokes_text", _params.text(description, "description"))
-
-    def clear_strokes(self) -> None:
-        """Removes all strokes."""
-        self._call("clear_strokes")
+    def set_strokes(self, strokes: Strokes | ImageLike | None) -> None:
+        """Sets strokes on the photo, to fit the room: those for the plane lie on one of its planes or off this plane, and
+        lights lie on it. A drawing is taken as by Strokes.from_image. None: no strokes."""
+        set_strokes(self, strokes)
 
     def start(self, **params: Unpack[FeaturesParams]) -> Job[Features]:
         """Starts the work."""

@@ -49,8 +49,8 @@ class Guides(StageBase):
 
     def motion(self, before: Guides) -> Image:
         """The motion of each pixel from the previous frame, for Stylize.set_motion."""
-        return self._get_image("motion", before)
+        return self._get_image("get_motion", before)
 
     def demo_artwork(self, style: Artwork | str) -> Image:
         """Draws an artwork of the scene in place of an artist: "pen", "stipple" or "paint"."""
-        return made(self._context, "luxfer_demo_artwork", self, _params.member(Artwork, style))
+        return made(self._context, "luxfer_demo_create_artwork", self, _params.member(Artwork, style))

@@ -65,7 +65,7 @@ class Image(Handle):
     def size(self) -> tuple[int, int, int]:
         """Width, height and the number of channels."""
         numbers = [ctypes.c_uint32() for _ in range(3)]
-        self._call("size", *numbers)
+        self._call("get_size", *numbers)
         return numbers[0].value, numbers[1].value, numbers[2].value
 
     @property

@@ -88,9 +88,13 @@ class Job(Handle, Generic[T]):
 
     def poll(self) -> tuple[float, bool]:
         """The finished share, and whether the job has ended, with or without success."""
-        fraction, finished = ctypes.c_double(), ctypes.c_int32()
-        self._call("poll", fraction, finished)
-        return fraction.value, bool(finished.value)
+        fraction, outcome = self._progress()
+        return fraction, outcome != Status.NOT_READY
+
+    def _progress(self) -> tuple[float, Status]:
+        fraction, outcome = ctypes.c_double(), ctypes.c_int32()
+        self._call("get_progress", fraction, outcome)
+        return fraction.value, Status(outcome.value)
 
     @property
     def finished(self) -> bool:
@@ -100,7 +104,7 @@ class Job(Handle, Generic[T]):
     @property
     def status(self) -> Status:
         """The status with which the job has ended; Status.NOT_READY while it runs."""
-        return Status(library.luxfer_job_status(self.handle))
+        return self._progress()[1]
 
     def cancel(self) -> None:
         """Asks the job to end early, which takes at most about 100 ms; any thread."""

@@ -77,21 +77,21 @@ def colour_temperature(context: Context, colour: Sequence[float]) -> tuple[float
     """
     kelvin, duv = ctypes.c_double(), ctypes.c_double()
     red, green, blue = (float(v) for v in colour)
-    call(context, "luxfer_colour_temperature", context, red, green, blue, kelvin, duv)
+    call(context, "luxfer_colour_to_temperature", context, red, green, blue, kelvin, duv)
     return kelvin.value, duv.value
 
 
 def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tuple[float, float, float]:
     """The linear colour, with luminance 1, of a colour temperature."""
     rgb = (ctypes.c_double * 3)()
-    call(context, "luxfer_colour_of_temperature", context, kelvin, duv, rgb)
+    call(context, "luxfer_temperature_to_colour", context, kelvin, duv, rgb)
     return rgb[0], rgb[1], rgb[2]
 
 
 def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0) -> GlareReport:
     """The unified glare rating of a luminance image in cd/m²; threshold 0 is five times its mean."""
-    report = _params.sized(_abi.luxfer_glare_report)
-    call(context, "luxfer_image_glare", image_of(context, image), fov_y, threshold, report)
+    report = _abi.luxfer_glare_report()
+    call(context, "luxfer_image_get_glare", image_of(context, image), fov_y, threshold, report, ctypes.sizeof(report))
     return cast(GlareReport, _params.report(report))
 
 
@@ -107,14 +107,14 @@ def mix_primaries(
     """The drive levels of a luminaire's LEDs for a linear colour, and the mixture that they give.
 
     >>> drives, light = mix_primaries(context, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], (0.5, 0.25, 0.75))
-    >>> [round(drive, 3) for drive in drives], light.reached
+    >>> [round(drive, 3) for drive in drives], light.in_gamut
     ([0.5, 0.25, 0.75], 1)
     """
     flat = [float(v) for primary in primaries for v in primary]
     drives = (ctypes.c_double * len(primaries))()
-    report = _params.sized(_abi.luxfer_mixture)
+    report = _abi.luxfer_mixture()
     leds, wanted = (ctypes.c_double * len(flat))(*flat), _three(colour)
-    call(context, "luxfer_mix_primaries", context, leds, len(primaries), max_drive, wanted, drives, report)
+    call(context, "luxfer_mix_primaries", context, leds, len(primaries), max_drive, wanted, drives, report, ctypes.sizeof(report))
     return list(drives), cast(Mixture, _params.report(report))
 
 
@@ -123,29 +123,22 @@ def fit_temperature(
 ) -> TemperatureFit:
     """The blackbody light that brings a target nearest to a mean radiance; response is the response to white light of
     1 cd/m²."""
-    report = _params.sized(_abi.luxfer_temperature_fit)
+    report = _abi.luxfer_temperature_fit()
     vectors = (_three(v) for v in (response, background, target))
-    call(context, "luxfer_fit_temperature", context, *vectors, report)
+    call(context, "luxfer_fit_temperature", context, *vectors, report, ctypes.sizeof(report))
     return cast(TemperatureFit, _params.report(report))
-
-
-def power_density(context: Context, flux: float, efficacy: float, area: float) -> float:
-    """Electric power per floor area in W/m²: lumens, lumens per watt, m²."""
-    density = ctypes.c_double()
-    call(context, "luxfer_power_density", context, flux, efficacy, area, density)
-    return density.value
 
 
 def presets(context: Context) -> dict[str, Preset]:
     """The requirements of EN 12464-1 for kinds of rooms, by name."""
     count = ctypes.c_uint32()
-    call(context, "luxfer_preset_count", context, count)
+    call(context, "luxfer_preset_get_count", context, count)
     found = {}
     for index in range(count.value):
-        report = _params.sized(_abi.luxfer_preset)
-        call(context, "luxfer_preset_get", context, index, report)
+        report = _abi.luxfer_preset()
+        call(context, "luxfer_preset_get", context, index, report, ctypes.sizeof(report))
         name = ctypes.create_string_buffer(200)
-        call(context, "luxfer_preset_name", context, index, name, len(name), None)
+        call(context, "luxfer_preset_get_name", context, index, name, len(name), None)
         found[name.value.decode()] = cast(Preset, _params.report(report))
     return found
 

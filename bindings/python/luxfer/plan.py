@@ -77,20 +77,17 @@ class Plan(StageBase):
     @property
     def render_params(self) -> RenderParams:
         """The settings to render with."""
-        params = _params.sized(_abi.luxfer_render_params)
-        self._call("get_render_params", params)
+        params = self._fill("get_render_params", _abi.luxfer_render_params)
         return cast("RenderParams", _params.settings(params))
 
     @property
     def relight_params(self) -> RelightParams:
         """The settings to relight with."""
-        params = _params.sized(_abi.luxfer_relight_params)
-        self._call("get_relight_params", params)
+        params = self._fill("get_relight_params", _abi.luxfer_relight_params)
         return cast("RelightParams", _params.settings(params))
 
     @property
     def stylize_params(self) -> StylizeParams:
         """The settings to stylise with."""
-        params = _params.sized(_abi.luxfer_stylize_params)
-        self._call("get_stylize_params", params)
+        params = self._fill("get_stylize_params", _abi.luxfer_stylize_params)
         return cast("StylizeParams", _params.settings(params))

@@ -52,13 +52,10 @@ class Render(StageBase):
         """Sets the scene; each job renders the scene as it is when the job starts."""
         self._call("set_scene", scene)
 
-    def set_camera_index(self, camera: int) -> None:
-        """Renders from a camera of the scene; the default is 0."""
-        self._call("set_camera_index", camera)
-
-    def set_camera(self, **params: Unpack[CameraParams]) -> None:
-        """Renders from the given camera."""
-        self._call("set_camera", _params.fill(_abi.luxfer_camera_params, params, []))
+    def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
+        """Sets the camera, such as scene.camera(1); without arguments it is the first camera of the scene."""
+        values = {**(camera or {}), **params}
+        self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
 
     def add_expression(self, name: str, expression: str) -> None:
         """Adds a layer of the light that a light path expression selects, such as "LDE" or "C<RD>L"."""
@@ -93,9 +90,8 @@ class Render(StageBase):
         >>> Render(context).split(2, 1, 4, 3, width=64, height=32, samples=16)["x"]
         32
         """
-        part = _params.sized(_abi.luxfer_render_part)
         settings = _params.fill(_abi.luxfer_render_params, params, [])
-        self._call("split", settings, columns, rows, ranges, index, part)
+        part = self._fill("split", _abi.luxfer_render_part, settings, columns, rows, ranges, index)
         return cast("RenderPart", _params.settings(part))
 
     def start_part(self, path: str | os.PathLike[str], part: RenderPart, **params: Unpack[RenderParams]) -> Job[Render]:

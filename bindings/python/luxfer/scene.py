@@ -63,7 +63,7 @@ class Scene(Handle):
     def load(cls, context: Context, path: str | os.PathLike[str], **params: Unpack[SceneLoadParams]) -> Scene:
         """Loads a glTF 2.0 file, .glb or .gltf with the files it names. unit is the length of its unit in metres."""
         settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
-        return cls._made(context, "luxfer_scene_load_with", _params.text(os.fspath(path), "path"), settings)
+        return cls._made(context, "luxfer_scene_load", _params.text(os.fspath(path), "path"), settings)
 
     @classmethod
     def from_bytes(
@@ -76,7 +76,7 @@ class Scene(Handle):
         """Loads a glTF file in memory; files that it names are read from base_path."""
         base = None if base_path is None else _params.text(os.fspath(base_path), "base_path")
         settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
-        return cls._made(context, "luxfer_scene_load_memory_with", data, len(data), base, settings)
+        return cls._made(context, "luxfer_scene_load_memory", data, len(data), base, settings)
 
     @property
     def warnings(self) -> list[StageWarning]:
@@ -212,10 +212,8 @@ class Scene(Handle):
 
     def set_environment(self, colour: Sequence[float], image: ImageLike | None = None) -> None:
         """Sets an environment of one radiance, in cd/m², or an equirectangular image multiplied by it."""
-        if image is None:
-            self._call("set_environment", *_colour(colour))
-        else:
-            self._call("set_environment_image", image_of(self._context, image), *_colour(colour))
+        sky = None if image is None else image_of(self._context, image)
+        self._call("set_environment", sky, *_colour(colour))
 
     def set_emission(self, material: int, colour: Sequence[float]) -> None:
         """Sets the emission of a material, in cd/m²; it multiplies the emission texture."""
@@ -242,14 +240,12 @@ class Scene(Handle):
 
     def camera(self, index: int = 0) -> CameraParams:
         """The settings of a camera, as for add_camera."""
-        params = _params.sized(_abi.luxfer_camera_params)
-        self._call("get_camera", index, params)
+        params = self._fill("get_camera", _abi.luxfer_camera_params, index)
         return cast(CameraParams, _params.settings(params))
 
     def material(self, index: int) -> MaterialParams:
         """The settings of a material, as for add_material, without its name."""
-        params = _params.sized(_abi.luxfer_material_params)
-        self._call("get_material", index, params)
+        params = self._fill("get_material", _abi.luxfer_material_params, index)
         return cast(MaterialParams, _params.settings(params))
 
     def material_texture(self, index: int, role: TextureRole | str) -> TextureUse:
@@ -313,20 +309,19 @@ class Scene(Handle):
 
     def requirements(self, error: float = 0.01) -> Requirements:
         """The features that the scene requires of the renderer; error is the share of light for the field bounces."""
-        out = _params.sized(_abi.luxfer_requirements)
-        self._call("requirements", error, out)
+        out = self._fill("get_requirements", _abi.luxfer_requirements, error)
         return cast(Requirements, _params.report(out))
 
     def requirements_text(self) -> str:
         """Describes what the renderer skips, one sentence per line."""
-        return self._get_text("requirements_text")
+        return self._get_text("get_requirements_text")
 
     @classmethod
     def demo(cls, context: Context, which: Any) -> Scene:
         """A generated scene: "target-room", "exemplar-room", "sphere-on-table" or "still-life"."""
         from .types import Demo
 
-        return cls._made(context, "luxfer_demo_scene", _params.member(Demo, which))
+        return cls._made(context, "luxfer_demo_create_scene", _params.member(Demo, which))
 
 
 def _rows(values: ArrayLike, width: int, dtype: Any, name: str) -> NDArray[Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
@@ -37,6 +38,6 @@ def align_sheet(
     resamples it to that picture: returns the artwork and the quality of the alignment."""
     pointer = POINTER(_abi.luxfer_image)()
     settings = _params.fill(_abi.luxfer_sheet_params, params, [])
-    report = _params.sized(_abi.luxfer_sheet_report)
-    call(context, "luxfer_sheet_align", image_of(context, photo), width, height, settings, pointer, report)
+    report = _abi.luxfer_sheet_report()
+    call(context, "luxfer_sheet_align", image_of(context, photo), width, height, settings, pointer, report, ctypes.sizeof(report))
     return Image._adopt(context, pointer), cast(SheetReport, _params.report(report))

@@ -159,6 +159,7 @@ def preset(which: StylizePreset | str) -> StylizeParams:
 
 
 def _preset(which: StylizePreset | str) -> Any:
-    settings = _params.fill(_abi.luxfer_stylize_params, {}, [])
-    library.luxfer_stylize_params_preset(settings, _params.member(StylizePreset, which))  # of a member: cannot fail
+    settings = _abi.luxfer_stylize_params()
+    which = _params.member(StylizePreset, which)
+    library.luxfer_stylize_params_preset(settings, which, ctypes.sizeof(settings))  # of a member: cannot fail
     return settings

@@ -13,7 +13,7 @@ from ._pointers import POINTER
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
 from .scene import Scene
-from .segment import stroke_arguments
+from .strokes import set_strokes
 from .types import DepthKind, Fixture, Phase, RectifyReport, RelightReport, Stage, TransferImage, TransferReport, TransferScene
 from .warning import StageWarning, warnings_of
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .image import ImageLike
     from .rectify import Rectify
     from .segment import Segment
+    from .strokes import Strokes
     from .types import CameraParams, TransferParams
 
 
@@ -34,7 +35,7 @@ class Transfer(StageBase):
     continue from any stage. Settings of the stages are dicts: run(render={"width": 640}, rectify={"max_side": 1024}).
 
     >>> transfer = Transfer(context, photo, room, "Ceiling")
-    >>> transfer.add_strokes_image(strokes)
+    >>> transfer.set_strokes(strokes)
     >>> transfer.run(last="lights").image("lights-mask").size == photo.size[:2] + (1,)
     True
     """
@@ -78,22 +79,9 @@ class Transfer(StageBase):
         values = {**(camera or {}), **params}
         self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
 
-    def add_stroke(self, phase: Phase | str, points: ArrayLike, radius: float, positive: bool) -> None:
-        """Adds a stroke along points (n, 2) of the photo, for the "plane" or the "lights"; positive on them."""
-        self._call("add_stroke", _params.member(Phase, phase), *stroke_arguments(points, radius, positive))
-
-    def add_strokes_image(self, drawing: ImageLike) -> None:
-        """Adds the strokes of a drawing of the photo's size: green plane, red not plane, yellow light, blue not light. An
-        array of uint8 is taken as sRGB."""
-        self._call("add_strokes_image", image_of(self._context, drawing, "srgb"))
-
-    def add_strokes_text(self, description: str) -> None:
-        """Adds the strokes that a text describes, one a line: "light 3 310.5 30 320 31"."""
-        self._call("add_strokes_text", _params.text(description, "description"))
-
-    def clear_strokes(self) -> None:
-        """Removes all strokes."""
-        self._call("clear_strokes")
+    def set_strokes(self, strokes: Strokes | ImageLike | None) -> None:
+        """Sets the strokes on the photo; a drawing is taken as by Strokes.from_image. None: no strokes."""
+        set_strokes(self, strokes)
 
     def set_zones(self, zones: ArrayLike) -> None:
         """Sets rectangles (n, 4) of the surface without lamps: u0, v0, u1, v1 in metres from its corner along its

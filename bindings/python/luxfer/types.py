@@ -86,6 +86,16 @@ class FileColour(IntEnum):
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 
 
+class Phase(IntEnum):
+    """The mask that strokes are for."""
+
+    PLANE = 0
+    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
+    too."""
+    LIGHTS = 1
+    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
+
+
 class AlphaMode(IntEnum):
     """Meaning of a surface's alpha."""
 
@@ -148,6 +158,36 @@ class CandidateKind(IntEnum):
     """All meshes of one name."""
     MATERIAL = 1
     """All triangles of one material."""
+
+
+class RenderImage(IntEnum):
+    """An image of a rendering."""
+
+    BEAUTY = 0
+    """Mean radiance of each pixel, linear RGB in cd/m²."""
+    VARIANCE = 1
+    """Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their
+    errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances."""
+    PATHS = 2
+    """Number of paths of each pixel; 1 channel."""
+    INTERVAL = 3
+    """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
+    where a pixel has fewer than two paths."""
+    PREVIEW = 4
+    """The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces
+    do not show, such as soft shadows; preview_bias of the report estimates the error. Only if
+    RenderParams.preview is not 0."""
+
+
+class EmitterAs(IntEnum):
+    """Letters that match emissive surfaces and the environment in camera-first expressions."""
+
+    BOTH = 0
+    """Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default."""
+    LIGHT = 1
+    """Every light matches L only."""
+    OBJECT = 2
+    """As in Open Shading Language: surfaces match O, the environment matches B."""
 
 
 class Lines(IntEnum):
@@ -263,16 +303,6 @@ class Subject(IntEnum):
     CIELAB."""
 
 
-class Phase(IntEnum):
-    """The mask that strokes are for."""
-
-    PLANE = 0
-    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
-    too."""
-    LIGHTS = 1
-    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
-
-
 class SegmentImage(IntEnum):
     """An image of a segmentation."""
 
@@ -292,7 +322,7 @@ class EmissionLaw(IntEnum):
     """The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly
     better."""
     CORRELATION = 1
-    """The law that the correlation of the lights tells, by least_regularity."""
+    """The law that the correlation of the lights tells, by min_regularity."""
     LATTICE = 2
     """A lattice of two periods."""
     ROW = 3
@@ -317,45 +347,6 @@ class EmissionImage(IntEnum):
     channels."""
     METADATA = 3
     """Metadata of the result, with these channels."""
-
-
-class RenderImage(IntEnum):
-    """An image of a rendering."""
-
-    BEAUTY = 0
-    """Mean radiance of each pixel, linear RGB in cd/m²."""
-    VARIANCE = 1
-    """Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their
-    errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances."""
-    PATHS = 2
-    """Number of paths of each pixel; 1 channel."""
-    INTERVAL = 3
-    """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
-    where a pixel has fewer than two paths."""
-    PREVIEW = 4
-    """The beauty image after a noise filter guided by the surfaces. The filter blurs features that the surfaces
-    do not show, such as soft shadows; preview_bias of the report estimates the error. Only if
-    RenderParams.preview is not 0."""
-
-
-class EmitterAs(IntEnum):
-    """Letters that match emissive surfaces and the environment in camera-first expressions."""
-
-    BOTH = 0
-    """Surfaces match L and O, the environment matches L and B: C<RD>L is all direct light. The default."""
-    LIGHT = 1
-    """Every light matches L only."""
-    OBJECT = 2
-    """As in Open Shading Language: surfaces match O, the environment matches B."""
-
-
-class IlluminanceImage(IntEnum):
-    """An image of the calculation."""
-
-    LUX = 0
-    """Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover."""
-    ERROR = 1
-    """Standard error of each value, in lux; 1 channel."""
 
 
 class Quantity(IntEnum):
@@ -401,53 +392,6 @@ class Outcome(IntEnum):
     """No light of this channel reaches the target: the emission uses the mean scale of the other channels."""
     TOO_DIM = 3
     """All lamps at their largest power are too weak, or two goals contradict each other."""
-
-
-class Group(IntEnum):
-    """Which lamps share one power."""
-
-    ALL = 0
-    """All lamps form one group."""
-    EACH = 1
-    """Each lamp is a group of its own."""
-    FIRST = 2
-    """Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes."""
-    SECOND = 3
-    """Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes."""
-    THIRD = 4
-    """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
-    TYPE = 5
-    """Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and
-    all luminaires of one distribution."""
-
-
-class Aim(IntEnum):
-    """Objective of a placement."""
-
-    MOST = 0
-    """The largest luminance of the target."""
-    LEAST = 1
-    """The smallest luminance of the target."""
-    RADIANCE = 2
-    """The mean radiance of the target that is nearest to PlacementParams.radiance, all other light included."""
-
-
-class Scale(IntEnum):
-    """The scale from values to colours."""
-
-    LINEAR = 0
-    """Linear: equal differences of the value have equal width."""
-    LOGARITHMIC = 1
-    """Logarithmic: decades have equal width."""
-
-
-class Unit(IntEnum):
-    """The quantity of an image's values."""
-
-    LUMINANCE = 0
-    """Luminance in cd/m²."""
-    ILLUMINANCE = 1
-    """Illuminance in lux."""
 
 
 class PatternScale(IntEnum):
@@ -596,6 +540,62 @@ class WarningCode(IntEnum):
     first objects that have it; the severity is their number."""
 
 
+class IlluminanceImage(IntEnum):
+    """An image of the calculation."""
+
+    LUX = 0
+    """Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover."""
+    ERROR = 1
+    """Standard error of each value, in lux; 1 channel."""
+
+
+class Group(IntEnum):
+    """Which lamps share one power."""
+
+    ALL = 0
+    """All lamps form one group."""
+    EACH = 1
+    """Each lamp is a group of its own."""
+    BY_X = 2
+    """Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes."""
+    BY_Y = 3
+    """Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes."""
+    BY_Z = 4
+    """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
+    BY_TYPE = 5
+    """Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and
+    all luminaires of one distribution."""
+
+
+class Aim(IntEnum):
+    """Objective of a placement."""
+
+    MAX_LUMINANCE = 0
+    """The largest luminance of the target."""
+    MIN_LUMINANCE = 1
+    """The smallest luminance of the target."""
+    RADIANCE = 2
+    """The mean radiance of the target that is nearest to PlacementParams.radiance, all other light included."""
+
+
+class Scale(IntEnum):
+    """The scale from values to colours."""
+
+    LINEAR = 0
+    """Linear: equal differences of the value have equal width."""
+    LOGARITHMIC = 1
+    """Logarithmic: decades have equal width."""
+
+
+class Unit(IntEnum):
+    """The quantity of an image's values."""
+
+    LUMINANCE = 0
+    """Luminance in cd/m²."""
+    ILLUMINANCE = 1
+    """Illuminance in lux."""
+
+
 class GuidesImage(IntEnum):
     """An image of guides."""
 
@@ -729,7 +729,7 @@ class DemoPhotoImage(IntEnum):
     PICTURE = 0
     """The photo: linear RGB, 1 = display white; its lamps are clipped."""
     STROKES = 1
-    """The strokes on it, in the colours of luxfer_segment_add_strokes_image."""
+    """The strokes on it, in the colours of luxfer_strokes_add_image."""
 
 
 class Aov(IntFlag):
@@ -931,7 +931,7 @@ class Surface:
 class SceneLoadParams(TypedDict, total=False):
     """Settings of reading a scene's file."""
 
-    outside: int
+    allow_external_files: int
     """1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the
     default: this gives Status.UNSUPPORTED. Set it only for files that you trust. Only files are read, never
     devices or addresses on a network."""
@@ -1184,6 +1184,66 @@ class Candidate:
     """Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan
     that it covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts
     too."""
+    name: str
+    """Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates."""
+    reason: str
+    """The reason for the score, in English and with its figures."""
+
+
+class RenderParams(TypedDict, total=False):
+    """Settings of a rendering."""
+
+    width: int
+    """Width of the image in pixels, in [1, 65536]; default 1280."""
+    height: int
+    """Height of the image in pixels, in [1, 65536]; default 720."""
+    samples: int
+    """Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the
+    image."""
+    target_error: float
+    """Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they
+    reduce the error most. Default 0: no target."""
+    time_budget_ms: int
+    """Stop after this number of milliseconds; default 0: no limit."""
+    seed: int
+    """Seed of the paths; default 1."""
+    pixel_error: float
+    """Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is
+    the root mean square over its pixels of half the width of the 95 % confidence interval of the luminance,
+    divided by that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of
+    the value, 19 times out of 20. A block receives at most 64 times samples paths per pixel, even if it then
+    misses the target. Default 0: no target."""
+    bounce_error: float
+    """Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light
+    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the
+    number of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
+    preview: float
+    """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
+    Default 0: no preview, as for final images. It does not change the other images."""
+    relative_error: float
+    """Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where
+    they reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no
+    target. With several targets, rendering stops when all are reached."""
+
+
+@dataclass(frozen=True)
+class RenderReport:
+    """Quality of a rendering."""
+
+    samples: int
+    """Mean number of paths per pixel so far."""
+    error: float
+    """Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a
+    pixel has fewer than two paths."""
+    discarded: int
+    """Number of paths that were discarded because their radiance was not finite."""
+    preview_bias: float
+    """Estimated bias of the preview: the difference between its expected value and the true image, as root mean
+    square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview."""
+    relative_error: float
+    """Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its
+    channels, but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths.
+    With few paths it overestimates: with 8 by about a quarter."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -1347,7 +1407,7 @@ class EmissionParams(TypedDict, total=False):
     """Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
-    least_regularity: float
+    min_regularity: float
     """Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition
     is continued exactly; at 1 no repetition is, and patches may lie anywhere."""
     whole_lamps: int
@@ -1438,122 +1498,6 @@ class Luminaire:
     sorted by the number of their lamps, the largest first. 0 if the border cuts the lamp."""
 
 
-class RenderParams(TypedDict, total=False):
-    """Settings of a rendering."""
-
-    width: int
-    """Width of the image in pixels, in [1, 65536]; default 1280."""
-    height: int
-    """Height of the image in pixels, in [1, 65536]; default 720."""
-    samples: int
-    """Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the
-    image."""
-    target_error: float
-    """Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they
-    reduce the error most. Default 0: no target."""
-    time_budget_ms: int
-    """Stop after this number of milliseconds; default 0: no limit."""
-    seed: int
-    """Seed of the paths; default 1."""
-    pixel_error: float
-    """Stop when the error of every block of 8 x 8 pixels is at most this value, >= 0. The error of a block is
-    the root mean square over its pixels of half the width of the 95 % confidence interval of the luminance,
-    divided by that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of
-    the value, 19 times out of 20. A block receives at most 64 times samples paths per pixel, even if it then
-    misses the target. Default 0: no target."""
-    bounce_error: float
-    """Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light
-    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_requirements gives the number
-    of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
-    preview: float
-    """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-    Default 0: no preview, as for final images. It does not change the other images."""
-    relative_error: float
-    """Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where
-    they reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no
-    target. With several targets, rendering stops when all are reached."""
-
-
-@dataclass(frozen=True)
-class RenderReport:
-    """Quality of a rendering."""
-
-    samples: int
-    """Mean number of paths per pixel so far."""
-    error: float
-    """Root mean square over the pixels of the standard error, divided by the image's mean; infinite while a
-    pixel has fewer than two paths."""
-    discarded: int
-    """Number of paths that were discarded because their radiance was not finite."""
-    preview_bias: float
-    """Estimated bias of the preview: the difference between its expected value and the true image, as root mean
-    square over blocks of 8 x 8 pixels, divided by the image's mean. 0 without a preview."""
-    relative_error: float
-    """Root mean square over the pixels of the standard error, divided by the pixel's value (the mean of its
-    channels, but at least a hundredth of the image's mean); infinite while a pixel has fewer than two paths.
-    With few paths it overestimates: with 8 by about a quarter."""
-
-
-class RenderPart(TypedDict, total=False):
-    """A part of a rendering."""
-
-    x: int
-    """Column of the first pixel; default 0."""
-    y: int
-    """Row of the first pixel, from the top; default 0."""
-    width: int
-    """Width in pixels; default 0: up to the right edge of the image."""
-    height: int
-    """Height in pixels; default 0: up to the bottom edge of the image."""
-    first_sample: int
-    """Index of the first path of each pixel; default 0."""
-    samples: int
-    """Paths per pixel; default 0: all paths from first_sample up to RenderParams.samples."""
-
-
-class IlluminanceParams(TypedDict, total=False):
-    """Settings of the calculation."""
-
-    columns: int
-    """Points along the first edge or texture coordinate, in [1, 65536]; default 32."""
-    rows: int
-    """Points along the second, in [1, 65536]; default 32."""
-    samples: int
-    """Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024."""
-    seed: int
-    """Seed of the paths; default 1."""
-
-
-class IlluminanceGrid(TypedDict, total=False):
-    """A calculation grid."""
-
-    origin: Sequence[float]
-    """Corner of the grid, in metres; default (0, 0, 0)."""
-    across: Sequence[float]
-    """Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the
-    centres of the cells."""
-    down: Sequence[float]
-    """Edge of the grid along which the rows are counted, in metres; default (0, 0, 1)."""
-    normal: Sequence[float]
-    """Normal of the side that receives the light; any length but 0; default (0, 1, 0)."""
-
-
-@dataclass(frozen=True)
-class IlluminanceReport:
-    """Summary of the illuminance, in lux."""
-
-    points: int
-    """Number of points; on a mesh, the texels that the surface covers."""
-    minimum: float
-    """Smallest illuminance; minimum / mean is the uniformity U0."""
-    mean: float
-    """Mean illuminance."""
-    maximum: float
-    """Largest illuminance."""
-    mean_error: float
-    """Standard error of the mean."""
-
-
 class RelightParams(TypedDict, total=False):
     """Settings of a relighting."""
 
@@ -1593,269 +1537,6 @@ class RelightReport:
     delta_e: float
     """Uncertainty of the target's colour: with a probability of 95 % the CIEDE2000 difference is below this
     value, at the exposure that shows the target as middle grey."""
-
-
-class LampsParams(TypedDict, total=False):
-    """Settings of the calculation."""
-
-    group: Group | str | int
-    """Group; default Group.EACH."""
-    row_tolerance: float
-    """Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a
-    new row; default 0.01."""
-    free_colour: int
-    """1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default:
-    solve for the power only."""
-    max_scale: float
-    """Largest factor for the emission of a group, >= 0; default infinity."""
-    regularisation: float
-    """Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep
-    the powers equal; default 1e-6."""
-    tolerance: float
-    """A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise;
-    default 0.01."""
-    paths: int
-    """Maximum number of paths for each goal, in [1024, 2^30]; default 2^20."""
-    target_error: float
-    """Stop tracing a goal when the relative error of its response to all lamps together is below this value, in
-    [0, 1]; default 0.01; 0: no target."""
-    time_budget_ms: int
-    """Stop after this number of milliseconds; default 0: no limit."""
-    seed: int
-    """Seed of the paths; default 1."""
-
-
-@dataclass(frozen=True)
-class LampsReport:
-    """Summary of the result."""
-
-    lamps: int
-    """Number of lamps."""
-    groups: int
-    """Number of groups."""
-    goals: int
-    """Number of goals."""
-    paths: int
-    """Number of paths traced for each goal."""
-    met: int
-    """1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason."""
-
-
-@dataclass(frozen=True)
-class Lamp:
-    """One lamp."""
-
-    group: int
-    """Index of its group."""
-    centre: tuple[float, float, float]
-    """Centre: texture coordinates and 0, or, without a texture, the position in metres."""
-    scale: tuple[float, float, float]
-    """Factor for its emission, per channel, >= 0."""
-    half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of scale."""
-
-
-@dataclass(frozen=True)
-class LampsGoal:
-    """The light that a goal receives."""
-
-    outcome: tuple[Outcome, Outcome, Outcome]
-    """Outcome of each channel."""
-    target: tuple[float, float, float]
-    """Mean radiance of the goal, in cd/m²; illuminance / pi for a grid."""
-    achieved: tuple[float, float, float]
-    """Mean radiance with the powers found, in cd/m²."""
-    half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of achieved."""
-    background: tuple[float, float, float]
-    """Mean radiance from all other light, in cd/m²."""
-    target_lux: float
-    """For goals of illuminance, which are those of grids and of Quantity.INCIDENT: target in lux, pi times the
-    luminance of target; 0 for other goals, and likewise for the fields below."""
-    achieved_lux: float
-    """Illuminance with the powers found, in lux."""
-    half_width_lux: float
-    """Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side."""
-    background_lux: float
-    """Illuminance from all other light, in lux."""
-
-
-@dataclass(frozen=True)
-class LampsResponse:
-    """The light that one goal receives from one lamp."""
-
-    mean: tuple[float, float, float]
-    """Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel."""
-    half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of mean."""
-
-
-class ImportanceParams(TypedDict, total=False):
-    """Settings of the map."""
-
-    width: int
-    """Cells along u of the surface, in [1, 512]; default 64."""
-    height: int
-    """Cells along v, in [1, 512]; default 64."""
-    quantity: Quantity | str | int
-    """Quantity; default Quantity.OUTGOING."""
-    paths: int
-    """Maximum number of paths, in [1024, 2^30]; default 2^20."""
-    target_error: float
-    """Stop when the relative error of the response to a uniform emission is below this value, in [0, 1];
-    default 0.01; 0: no target."""
-    time_budget_ms: int
-    """Stop after this number of milliseconds; default 0: no limit."""
-    seed: int
-    """Seed of the paths; default 1."""
-
-
-@dataclass(frozen=True)
-class ImportanceReport:
-    """The light that the target receives from a texture."""
-
-    paths: int
-    """Number of paths of the map."""
-    response: tuple[float, float, float]
-    """Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture."""
-    half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of response."""
-    band_error: tuple[float, float, float]
-    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
-    the cells is about a third of it."""
-
-
-class PlacementParams(TypedDict, total=False):
-    """Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated
-    about their centre (0.5, 0.5), and then shifted."""
-
-    aim: Aim | str | int
-    """Aim; default Aim.MOST."""
-    radiance: Sequence[float]
-    """Mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default 0."""
-    starts: int
-    """Number of placements at which the search starts, in [1, 4096]; default 64."""
-    min_offset: Sequence[float]
-    """Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5."""
-    max_offset: Sequence[float]
-    """Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value
-    is fixed."""
-    min_scale: Sequence[float]
-    """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
-    max_scale: Sequence[float]
-    """Largest number of repetitions, in [1/64, 64]; default 1."""
-    min_rotation: float
-    """Smallest rotation in radians, in [-2 pi, 2 pi]; default 0."""
-    max_rotation: float
-    """Largest rotation in radians, in [-2 pi, 2 pi]; default 0."""
-    seed: int
-    """Seed of the starting placements; default 1."""
-
-
-@dataclass(frozen=True)
-class Placement:
-    """The best placement, and the light that the target then receives."""
-
-    placement: tuple[float, ...]
-    """The map from the surface's texture coordinates to those of the texture, as for
-    luxfer_importance_respond."""
-    offset: tuple[float, float]
-    """Offset along u and v."""
-    scale: tuple[float, float]
-    """Scale along u and v."""
-    rotation: float
-    """Rotation in radians."""
-    response: tuple[float, float, float]
-    """Mean radiance of the target from the texture alone, in cd/m² per channel."""
-    half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of response."""
-    band_error: tuple[float, float, float]
-    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
-    the cells is about a third of it."""
-
-
-@dataclass(frozen=True)
-class GlareReport:
-    """The glare of a view."""
-
-    sources: int
-    """Number of glare sources."""
-    ugr: float
-    """Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity
-    without sources."""
-    background: float
-    """Luminance of the background in cd/m²."""
-    threshold: float
-    """Luminance in cd/m² above which a pixel counted as a glare source."""
-    solid_angle: float
-    """Solid angle of all sources in steradians."""
-
-
-class FalseColourParams(TypedDict, total=False):
-    """Settings of a false colour image."""
-
-    scale: Scale | str | int
-    """Scale; default Scale.LINEAR."""
-    unit: Unit | str | int
-    """Unit, written above the bar; default Unit.LUMINANCE."""
-    bar: int
-    """1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar."""
-    minimum: float
-    """Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the
-    lightest colour; default 0."""
-    maximum: float
-    """Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the
-    image."""
-
-
-@dataclass(frozen=True)
-class Mixture:
-    """A colour mixed from primaries."""
-
-    reached: int
-    """1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
-    mixture."""
-    colour: tuple[float, float, float]
-    """Linear colour of the mixture."""
-    delta_e: float
-    """CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle
-    grey."""
-
-
-@dataclass(frozen=True)
-class TemperatureFit:
-    """The blackbody light that fits a target best."""
-
-    kelvin: float
-    """Correlated colour temperature, in [1000, 20000] kelvin."""
-    luminance: float
-    """Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m²."""
-    achieved: tuple[float, float, float]
-    """Mean radiance of the target from this light and all other light, in cd/m²."""
-    delta_e: float
-    """CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle
-    grey."""
-
-
-@dataclass(frozen=True)
-class Preset:
-    """Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the
-    standard itself is binding."""
-
-    edition: int
-    """Year of the edition of the standard."""
-    illuminance: float
-    """Minimum mean illuminance of the task area, in lux."""
-    glare: float
-    """Maximum unified glare rating."""
-    uniformity: float
-    """Minimum uniformity U0 of the task area."""
-    rendering: float
-    """Minimum colour rendering index."""
-    walls: float
-    """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
-    ceiling: float
-    """Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement."""
 
 
 class PatternParams(TypedDict, total=False):
@@ -2003,38 +1684,317 @@ class Warning:
     """The limit that the figure has passed."""
     place: tuple[float, float]
     """The place in the photo, x and y in pixels; 0 without one."""
+    message: str
+    """The defect, in English and with its figure: zero-terminated UTF-8. The strings live as long as the
+    luxfer_warnings."""
+    advice: str
+    """The remedy."""
 
 
-class PlanParams(TypedDict, total=False):
-    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
+class IlluminanceParams(TypedDict, total=False):
+    """Settings of the calculation."""
 
-    time_budget_ms: int
-    """Time for all planned work in milliseconds; default 0: the goal is target_error."""
-    target_error: float
-    """Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the
-    goal is time_budget_ms."""
+    columns: int
+    """Points along the first edge or texture coordinate, in [1, 65536]; default 32."""
+    rows: int
+    """Points along the second, in [1, 65536]; default 32."""
+    samples: int
+    """Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024."""
+    seed: int
+    """Seed of the paths; default 1."""
+
+
+class IlluminanceGrid(TypedDict, total=False):
+    """A calculation grid."""
+
+    origin: Sequence[float]
+    """Corner of the grid, in metres; default (0, 0, 0)."""
+    across: Sequence[float]
+    """Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the
+    centres of the cells."""
+    down: Sequence[float]
+    """Edge of the grid along which the rows are counted, in metres; default (0, 0, 1)."""
+    normal: Sequence[float]
+    """Normal of the side that receives the light; any length but 0; default (0, 1, 0)."""
 
 
 @dataclass(frozen=True)
-class PlanReport:
-    """Times and errors that a plan predicts."""
+class IlluminanceReport:
+    """Summary of the illuminance, in lux."""
 
-    relights: int
-    """1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation."""
-    seconds: float
-    """Seconds for all planned work."""
-    error: float
-    """Error of the picture."""
-    relight_seconds: float
-    """Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer."""
-    relight_error: float
-    """Predicted field error of RelightReport, half the width of its interval; 0 unless the plan is of a
-    transfer."""
-    render_seconds: float
-    """Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
-    stylisation."""
-    render_error: float
-    """Predicted field error of RenderReport; 0 in a plan of a stylisation."""
+    points: int
+    """Number of points; on a mesh, the texels that the surface covers."""
+    minimum: float
+    """Smallest illuminance; minimum / mean is the uniformity U0."""
+    mean: float
+    """Mean illuminance."""
+    maximum: float
+    """Largest illuminance."""
+    mean_error: float
+    """Standard error of the mean."""
+
+
+class LampsParams(TypedDict, total=False):
+    """Settings of the calculation."""
+
+    group: Group | str | int
+    """Group; default Group.EACH."""
+    row_tolerance: float
+    """Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a
+    new row; default 0.01."""
+    free_colour: int
+    """1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default:
+    solve for the power only."""
+    max_scale: float
+    """Largest factor for the emission of a group, >= 0; default infinity."""
+    regularisation: float
+    """Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep
+    the powers equal; default 1e-6."""
+    tolerance: float
+    """A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise;
+    default 0.01."""
+    paths: int
+    """Maximum number of paths for each goal, in [1024, 2^30]; default 2^20."""
+    target_error: float
+    """Stop tracing a goal when the relative error of its response to all lamps together is below this value, in
+    [0, 1]; default 0.01; 0: no target."""
+    time_budget_ms: int
+    """Stop after this number of milliseconds; default 0: no limit."""
+    seed: int
+    """Seed of the paths; default 1."""
+
+
+@dataclass(frozen=True)
+class LampsReport:
+    """Summary of the result."""
+
+    lamps: int
+    """Number of lamps."""
+    groups: int
+    """Number of groups."""
+    goals: int
+    """Number of goals."""
+    paths: int
+    """Number of paths traced for each goal."""
+    all_goals_met: int
+    """1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason."""
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """One lamp."""
+
+    group: int
+    """Index of its group."""
+    centre: tuple[float, float, float]
+    """Centre: texture coordinates and 0, or, without a texture, the position in metres."""
+    scale: tuple[float, float, float]
+    """Factor for its emission, per channel, >= 0."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of scale."""
+
+
+@dataclass(frozen=True)
+class LampsGoal:
+    """The light that a goal receives."""
+
+    outcome: tuple[Outcome, Outcome, Outcome]
+    """Outcome of each channel."""
+    target: tuple[float, float, float]
+    """Mean radiance of the goal, in cd/m²; illuminance / pi for a grid."""
+    achieved: tuple[float, float, float]
+    """Mean radiance with the powers found, in cd/m²."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of achieved."""
+    background: tuple[float, float, float]
+    """Mean radiance from all other light, in cd/m²."""
+    target_lux: float
+    """For goals of illuminance, which are those of grids and of Quantity.INCIDENT: target in lux, pi times the
+    luminance of target; 0 for other goals, and likewise for the fields below."""
+    achieved_lux: float
+    """Illuminance with the powers found, in lux."""
+    half_width_lux: float
+    """Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side."""
+    background_lux: float
+    """Illuminance from all other light, in lux."""
+
+
+@dataclass(frozen=True)
+class LampsResponse:
+    """The light that one goal receives from one lamp."""
+
+    mean: tuple[float, float, float]
+    """Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of mean."""
+
+
+class ImportanceParams(TypedDict, total=False):
+    """Settings of the map."""
+
+    width: int
+    """Cells along u of the surface, in [1, 512]; default 64."""
+    height: int
+    """Cells along v, in [1, 512]; default 64."""
+    quantity: Quantity | str | int
+    """Quantity; default Quantity.OUTGOING."""
+    paths: int
+    """Maximum number of paths, in [1024, 2^30]; default 2^20."""
+    target_error: float
+    """Stop when the relative error of the response to a uniform emission is below this value, in [0, 1];
+    default 0.01; 0: no target."""
+    time_budget_ms: int
+    """Stop after this number of milliseconds; default 0: no limit."""
+    seed: int
+    """Seed of the paths; default 1."""
+
+
+@dataclass(frozen=True)
+class ImportanceReport:
+    """The light that the target receives from a texture."""
+
+    paths: int
+    """Number of paths of the map."""
+    response: tuple[float, float, float]
+    """Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of response."""
+    band_error: tuple[float, float, float]
+    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
+    the cells is about a third of it."""
+
+
+class PlacementParams(TypedDict, total=False):
+    """Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated
+    about their centre (0.5, 0.5), and then shifted."""
+
+    aim: Aim | str | int
+    """Aim; default Aim.MAX_LUMINANCE."""
+    radiance: Sequence[float]
+    """Mean radiance of the target for Aim.RADIANCE, in cd/m² per channel, each finite and >= 0; default 0."""
+    starts: int
+    """Number of placements at which the search starts, in [1, 4096]; default 64."""
+    min_offset: Sequence[float]
+    """Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5."""
+    max_offset: Sequence[float]
+    """Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value
+    is fixed."""
+    min_scale: Sequence[float]
+    """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
+    max_scale: Sequence[float]
+    """Largest number of repetitions, in [1/64, 64]; default 1."""
+    min_rotation: float
+    """Smallest rotation in radians, in [-2 pi, 2 pi]; default 0."""
+    max_rotation: float
+    """Largest rotation in radians, in [-2 pi, 2 pi]; default 0."""
+    seed: int
+    """Seed of the starting placements; default 1."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """The best placement, and the light that the target then receives."""
+
+    placement: tuple[float, ...]
+    """The map from the surface's texture coordinates to those of the texture, as for
+    luxfer_importance_respond."""
+    offset: tuple[float, float]
+    """Offset along u and v."""
+    scale: tuple[float, float]
+    """Scale along u and v."""
+    rotation: float
+    """Rotation in radians."""
+    response: tuple[float, float, float]
+    """Mean radiance of the target from the texture alone, in cd/m² per channel."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of response."""
+    band_error: tuple[float, float, float]
+    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
+    the cells is about a third of it."""
+
+
+@dataclass(frozen=True)
+class GlareReport:
+    """The glare of a view."""
+
+    sources: int
+    """Number of glare sources."""
+    ugr: float
+    """Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity
+    without sources."""
+    background: float
+    """Luminance of the background in cd/m²."""
+    threshold: float
+    """Luminance in cd/m² above which a pixel counted as a glare source."""
+    solid_angle: float
+    """Solid angle of all sources in steradians."""
+
+
+class FalseColourParams(TypedDict, total=False):
+    """Settings of a false colour image."""
+
+    scale: Scale | str | int
+    """Scale; default Scale.LINEAR."""
+    unit: Unit | str | int
+    """Unit, written above the bar; default Unit.LUMINANCE."""
+    bar: int
+    """1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar."""
+    minimum: float
+    """Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the
+    lightest colour; default 0."""
+    maximum: float
+    """Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the
+    image."""
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """A colour mixed from primaries."""
+
+    in_gamut: int
+    """1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
+    mixture."""
+    colour: tuple[float, float, float]
+    """Linear colour of the mixture."""
+    delta_e: float
+    """CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle
+    grey."""
+
+
+@dataclass(frozen=True)
+class TemperatureFit:
+    """The blackbody light that fits a target best."""
+
+    kelvin: float
+    """Correlated colour temperature, in [1000, 20000] kelvin."""
+    luminance: float
+    """Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m²."""
+    achieved: tuple[float, float, float]
+    """Mean radiance of the target from this light and all other light, in cd/m²."""
+    delta_e: float
+    """CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle
+    grey."""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the
+    standard itself is binding."""
+
+    edition: int
+    """Year of the edition of the standard."""
+    illuminance: float
+    """Minimum mean illuminance of the task area, in lux."""
+    glare: float
+    """Maximum unified glare rating."""
+    uniformity: float
+    """Minimum uniformity U0 of the task area."""
+    rendering: float
+    """Minimum colour rendering index."""
+    walls: float
+    """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
+    ceiling: float
+    """Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement."""
 
 
 class GuidesParams(TypedDict, total=False):
@@ -2124,7 +2084,7 @@ class StylizeParams(TypedDict, total=False):
 class StylizeReport:
     """Quality of a stylisation."""
 
-    finished: int
+    is_complete: int
     """1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are
     0."""
     levels: int
@@ -2169,7 +2129,7 @@ class StylizePass:
     knee of the error curve."""
     coverage: float
     """Share of the target with a match after this pass, in [0, 1]."""
-    gained: int
+    new_matches: int
     """Number of target patches that received a match in this pass."""
 
 
@@ -2204,6 +2164,55 @@ class SheetReport:
     """Expected alignment error in pixels of the picture."""
     to_photo: tuple[float, ...]
     """Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row."""
+
+
+class PlanParams(TypedDict, total=False):
+    """Goal of a plan: set exactly one of time_budget_ms and target_error."""
+
+    time_budget_ms: int
+    """Time for all planned work in milliseconds; default 0: the goal is target_error."""
+    target_error: float
+    """Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the
+    goal is time_budget_ms."""
+
+
+@dataclass(frozen=True)
+class PlanReport:
+    """Times and errors that a plan predicts."""
+
+    relights: int
+    """1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation."""
+    seconds: float
+    """Seconds for all planned work."""
+    error: float
+    """Error of the picture."""
+    relight_seconds: float
+    """Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer."""
+    relight_error: float
+    """Predicted field error of RelightReport, half the width of its interval; 0 unless the plan is of a
+    transfer."""
+    render_seconds: float
+    """Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
+    stylisation."""
+    render_error: float
+    """Predicted field error of RenderReport; 0 in a plan of a stylisation."""
+
+
+class RenderPart(TypedDict, total=False):
+    """A part of a rendering."""
+
+    x: int
+    """Column of the first pixel; default 0."""
+    y: int
+    """Row of the first pixel, from the top; default 0."""
+    width: int
+    """Width in pixels; default 0: up to the right edge of the image."""
+    height: int
+    """Height in pixels; default 0: up to the bottom edge of the image."""
+    first_sample: int
+    """Index of the first path of each pixel; default 0."""
+    samples: int
+    """Paths per pixel; default 0: all paths from first_sample up to RenderParams.samples."""
 
 
 class DemoPhotoParams(TypedDict, total=False):

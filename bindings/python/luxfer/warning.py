@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from . import _abi
-from ._handle import Handle
+from ._handle import Handle, call
 from ._pointers import POINTER
 from .types import Stage, Warning, WarningCode
 
@@ -49,19 +49,18 @@ class Warnings(Handle):
     def read(self) -> list[StageWarning]:
         """All of them."""
         count = ctypes.c_uint32()
-        self._call("count", count)
+        self._call("get_count", count)
         return [self._at(index) for index in range(count.value)]
 
     def _at(self, index: int) -> StageWarning:
         found = cast(Warning, self._read("get", _abi.luxfer_warning, index))
-        message, advice = self._get_text("get_message", index), self._get_text("get_advice", index)
         place = (found.place[0], found.place[1]) if found.has_place else None
-        return StageWarning(found.code, found.stage, found.severity, found.limit, message, advice, place)
+        return StageWarning(found.code, found.stage, found.severity, found.limit, found.message, found.advice, place)
 
 
 def warnings_of(stage: Handle) -> list[StageWarning]:
     """The warnings of a stage that has some."""
     pointer = POINTER(_abi.luxfer_warnings)()
-    stage._call("get_warnings", pointer)
+    call(stage.context, "luxfer_get_warnings", stage, pointer)
     with Warnings._adopt(stage.context, pointer) as warnings:
         return warnings.read()

@@ -292,7 +292,7 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     if !params.tileable || by_patches {
         return Err(Error::argument(format!(
             "emission.offset is {}; the lights lie on no lattice that it could shift: set it to 0, or lower \
-             emission.least_regularity",
+             emission.min_regularity",
             params.offset
         )));
     }

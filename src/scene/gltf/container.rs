@@ -192,7 +192,9 @@ fn relative_path(uri: &str, is_open: bool) -> Result<PathBuf> {
     }
     let is_inside = path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
     if !is_inside && !is_open {
-        return Err(refused("lies outside the folder of the scene; allow this by luxfer_scene_load_params.outside"));
+        return Err(refused(
+            "lies outside the folder of the scene; allow this by luxfer_scene_load_params.allow_external_files",
+        ));
     }
     Ok(path)
 }

@@ -1,0 +1,552 @@
+/* luxfer: version, status, context, references, images, strokes and jobs.
+ *
+ * tests/abi_header.rs generates this file from src/ffi.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+#ifndef LUXFER_CORE_H
+#define LUXFER_CORE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ====================================================================================================================
+ * Version
+ *
+ * The macros give the version of this header, the functions give the version of the loaded library. Before 1.0,
+ * libraries with the same minor version are compatible (libluxfer.so.0.2); from 1.0 on, libraries with the same major
+ * version.
+ *
+ * A program that loads the library at run time (dlopen, a folder of plug-ins) should check at its start that
+ * luxfer_get_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, that both are equal when divided by 10000 and that
+ * the library is not older than the header. luxfer::Context::create of bindings/cpp checks this.
+ * ==================================================================================================================== */
+
+/** The version of this header. */
+#define LUXFER_VERSION_MAJOR 0
+#define LUXFER_VERSION_MINOR 2
+#define LUXFER_VERSION_PATCH 0
+
+/** The version of this header as one number, comparable with luxfer_get_version(). */
+#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + LUXFER_VERSION_PATCH)
+
+/** The version of the loaded library, comparable with LUXFER_VERSION. Any thread. */
+uint32_t luxfer_get_version(void);
+
+/** The version of the loaded library as text, such as "0.2.0". The string is static: never free it. Any thread. */
+const char *luxfer_get_version_string(void);
+
+/* ====================================================================================================================
+ * Status
+ *
+ * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added. A
+ * function writes its outputs only when it returns LUXFER_OK. luxfer_context_get_last_error describes the failure in
+ * words.
+ * ==================================================================================================================== */
+
+/** The result of a call: LUXFER_OK, or the reason for the failure. */
+typedef int32_t luxfer_status;
+
+/** Success. */
+#define LUXFER_OK 0
+
+/** An error that has no status value of its own. */
+#define LUXFER_UNKNOWN 1
+
+/** A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another. */
+#define LUXFER_INVALID_ARGUMENT 2
+
+/** The call is not allowed in the object's present state: a job is still running on it, or an input is missing. */
+#define LUXFER_INVALID_OPERATION 3
+
+/** The memory budget of the context, or the machine, is used up. */
+#define LUXFER_OUT_OF_MEMORY 4
+
+/** The file or the request is valid, but uses a feature that this library does not support. */
+#define LUXFER_UNSUPPORTED 5
+
+/** The job was cancelled by the caller. */
+#define LUXFER_CANCELLED 6
+
+/** The operating system could not read or write a file, or the caller's write function returned an error. */
+#define LUXFER_IO 7
+
+/** A file is truncated, corrupt, or not what it claims to be. */
+#define LUXFER_FORMAT 8
+
+/** A result was requested before its job has succeeded, or a wait timed out. */
+#define LUXFER_NOT_READY 9
+
+/** A bug in this library: please report it. */
+#define LUXFER_INTERNAL 10
+
+/** The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only. */
+#define LUXFER_DEGENERATE 11
+
+/** No surface, image or entry has the given name or index. */
+#define LUXFER_NOT_FOUND 12
+
+/**
+ * No light can reach the target: there is no light path, a channel is fully absorbed, or negative light would be
+ * needed.
+ */
+#define LUXFER_UNREACHABLE 13
+
+/**
+ * The name of a status, such as "LUXFER_FORMAT"; "LUXFER_UNKNOWN" for a number that is not a status. The string is
+ * static: never free it. Any thread.
+ */
+const char *luxfer_status_get_name(luxfer_status status);
+
+/* ====================================================================================================================
+ * Context
+ *
+ * A context owns the worker threads, a memory budget and the error messages. All other objects are created in a
+ * context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
+ * (LUXFER_INVALID_ARGUMENT).
+ *
+ * Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
+ * reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was
+ * built with an older header works with a newer library: fields that it does not know keep their defaults.
+ *
+ * Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
+ * handle in most cases, but not if its memory has been reused.
+ *
+ * Threads: "Any thread" in a comment means that any thread may call the function, at any time. Different threads may
+ * use different objects at the same time, and also the same object: calls that change an object wait for each other.
+ * Only the release of the last reference must not overlap with another use of the object.
+ *
+ * The library prints nothing, not even the message of a defect (LUXFER_INTERNAL), reads no environment variables, does
+ * not end the process on an error and installs no handlers of the system. All state belongs to a context, with one
+ * exception: an emergency reserve of memory, shared by all contexts of the process. The library uses it for small
+ * allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
+ *
+ * Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
+ * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
+ * luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
+ *
+ * Stack: a thread of the host needs 128 KiB to read files and to make calls that return when their work is done.
+ *
+ * With equal inputs, parameters and seeds, results are equal to the bit on one machine, for any number of threads and
+ * any floating-point mode (rounding, flush to zero) of the host: a call sets the standard mode on entry and restores
+ * the mode of the host on return. Callbacks run in the standard mode.
+ * ==================================================================================================================== */
+
+/** A context: threads, memory budget and error messages. See luxfer_context_create. */
+typedef struct luxfer_context luxfer_context;
+
+/** Settings of a context. Fill it with luxfer_context_params_init. */
+typedef struct luxfer_context_params {
+    /** sizeof(luxfer_context_params), set by luxfer_context_params_init. */
+    uint32_t struct_size;
+    /**
+     * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
+     * these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
+     * or on as many further threads, which the context starts for the first of them.
+     */
+    uint32_t num_threads;
+    /**
+     * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
+     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a picture file
+     * takes counts while the file is read. The working memory of jobs and their results do not count.
+     */
+    uint64_t memory_budget_mib;
+} luxfer_context_params;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
+ * the struct has this size.
+ */
+luxfer_status luxfer_context_params_init(luxfer_context_params *params,
+                                         size_t size);
+
+/**
+ * Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
+ * LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY
+ * if the threads cannot be started.
+ */
+luxfer_status luxfer_context_create(const luxfer_context_params *params,
+                                    luxfer_context **context);
+
+/**
+ * Copies the message of the calling thread's latest failure in this context into buffer, as zero-terminated UTF-8,
+ * truncated to capacity bytes. *needed, unless NULL, receives the capacity that the whole message needs. If no call
+ * has failed, the message is empty. A message stays until the thread's next failure; the messages of the 256 threads
+ * that failed last are kept. buffer may be NULL if capacity is 0. A call that fails because its first handle is not
+ * valid leaves no message. Any thread.
+ */
+luxfer_status luxfer_context_get_last_error(luxfer_context *context,
+                                            char *buffer,
+                                            size_t capacity,
+                                            size_t *needed);
+
+/* ====================================================================================================================
+ * References
+ *
+ * Handles of every kind are reference counted: a create function returns one reference, luxfer_retain adds one,
+ * luxfer_release removes one, and removing the last reference frees the object. Objects may be released in any order.
+ * ==================================================================================================================== */
+
+/**
+ * Adds a reference to an object of any kind. Any thread.
+ * LUXFER_INVALID_ARGUMENT if handle is NULL or not a live object; the failure leaves no message.
+ */
+luxfer_status luxfer_retain(void *handle);
+
+/**
+ * Removes a reference to an object of any kind; NULL does nothing. Any thread.
+ *
+ * An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
+ * long as its job, which continues. Two releases take time. The last reference to a job cancels the job and waits
+ * until it has ended; the last reference to a context and all objects created in it waits until the worker threads
+ * have ended.
+ * LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
+ */
+luxfer_status luxfer_release(void *handle);
+
+/* ====================================================================================================================
+ * Image
+ *
+ * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top to
+ * bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels in
+ * the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
+ * ==================================================================================================================== */
+
+/** Flag of a view: the first row in memory is the bottom one. */
+#define LUXFER_VIEW_BOTTOM_UP 1
+
+/** An image. See luxfer_image_create. */
+typedef struct luxfer_image luxfer_image;
+
+/** Storage type of a sample, in the machine's byte order: a LUXFER_SAMPLE_ value. */
+typedef int32_t luxfer_sample;
+
+/** Encoding of the values: a LUXFER_COLOUR_ value. */
+typedef int32_t luxfer_colour_space;
+
+/** An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data. */
+typedef struct luxfer_image_view {
+    /** sizeof(luxfer_image_view), set by luxfer_image_view_init. */
+    uint32_t struct_size;
+    /** Samples per pixel in [1, 4]; default 3. */
+    uint32_t channels;
+    /** LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32. */
+    luxfer_sample sample;
+    /** LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR. */
+    luxfer_colour_space colour_space;
+    /** Pixels in a row, in [1, 65536]; default 0, to be set. */
+    uint32_t width;
+    /** Rows, in [1, 65536]; default 0, to be set. */
+    uint32_t height;
+    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error. */
+    uint32_t flags;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed. */
+    size_t pixel_stride;
+    /** Bytes from one row to the next; at least the size of a row, or 0, the default: packed. */
+    size_t row_stride;
+    /** Size of the memory at data in bytes; LUXFER_INVALID_ARGUMENT if the layout needs more. To be set. */
+    size_t byte_size;
+    /** The pixels; any alignment. Bytes between pixels and rows are never touched. To be set. */
+    void *data;
+} luxfer_image_view;
+
+/** 8-bit unsigned integer that stands for [0, 1]. */
+#define LUXFER_SAMPLE_U8 0
+
+/** 16-bit unsigned integer that stands for [0, 1]. */
+#define LUXFER_SAMPLE_U16 1
+
+/** 16-bit floating point (IEEE 754 half). */
+#define LUXFER_SAMPLE_F16 2
+
+/** 32-bit floating point. */
+#define LUXFER_SAMPLE_F32 3
+
+/** Scene-linear Rec.709, or data that is not colour. */
+#define LUXFER_COLOUR_LINEAR 0
+
+/** Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear. */
+#define LUXFER_COLOUR_SRGB 1
+
+/**
+ * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or no version of the
+ * struct has this size.
+ */
+luxfer_status luxfer_image_view_init(luxfer_image_view *view,
+                                     size_t size);
+
+/**
+ * Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The
+ * caller releases *image. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
+ */
+luxfer_status luxfer_image_create(luxfer_context *context,
+                                  const luxfer_image_view *view,
+                                  luxfer_image **image);
+
+/**
+ * Loads a JPEG, PNG, WebP, TIFF, BMP, GIF (its first frame), Radiance HDR or OpenEXR file, and rotates it upright by
+ * its EXIF orientation. path is UTF-8. With LUXFER_COLOUR_SRGB, for pictures, colours are converted to linear Rec.709
+ * from the colour space that the file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of
+ * OpenEXR; PRIMARIES, EXPOSURE and COLORCORR of Radiance). Without such a statement, integer samples are sRGB and
+ * floating-point samples linear. See luxfer_photo_metadata.colour. With LUXFER_COLOUR_LINEAR, for data such as masks
+ * and depth, samples are not converted. An OpenEXR picture has the size of its display window. Grey with alpha
+ * becomes RGBA, palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any
+ * thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
+ * it is of a known format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of
+ * cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G, B nor
+ * a single channel), or larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_image_load(luxfer_context *context,
+                                const char *path,
+                                luxfer_colour_space colour_space,
+                                luxfer_image **image);
+
+/** Loads an image from a file in memory of size bytes; otherwise as luxfer_image_load. */
+luxfer_status luxfer_image_load_memory(luxfer_context *context,
+                                       const void *data,
+                                       size_t size,
+                                       luxfer_colour_space colour_space,
+                                       luxfer_image **image);
+
+/**
+ * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by
+ * exposure (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB, which the file
+ * states. .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709; exposure
+ * is not used. An existing file is replaced only once the new one is complete, and keeps its mode and owner. Symbolic
+ * links are followed; devices, FIFOs and files with several names are written in place. All functions of this library
+ * save files in this way. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
+ */
+luxfer_status luxfer_image_save(luxfer_image *image,
+                                const char *path,
+                                float exposure);
+
+/** Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
+luxfer_status luxfer_image_get_size(luxfer_image *image,
+                                    uint32_t *width,
+                                    uint32_t *height,
+                                    uint32_t *channels);
+
+/**
+ * Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
+ * of the image, starting at first_channel. Integers are clamped to their range and rounded; NaN becomes 0 in integers.
+ * Any thread.
+ * LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
+ */
+luxfer_status luxfer_image_read(luxfer_image *image,
+                                uint32_t first_channel,
+                                const luxfer_image_view *view);
+
+/* ====================================================================================================================
+ * Photo metadata
+ *
+ * The camera settings that the file of a loaded photo records in its EXIF tags (JPEG, PNG, WebP, TIFF), and how its
+ * colours were understood. luxfer_image_load applies the orientation. luxfer_rectify and luxfer_transfer use the
+ * focal length as a prior unless the caller sets one; the lines of the photo outweigh it where they determine it
+ * better. The library does not use white_luminance by itself: to apply it, copy it to
+ * luxfer_transfer_params.white_luminance.
+ * ==================================================================================================================== */
+
+/**
+ * How the colours of an image were understood: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
+ * ones may be added.
+ */
+typedef int32_t luxfer_file_colour;
+
+/** Metadata of the file of a loaded photo. */
+typedef struct luxfer_photo_metadata {
+    /** sizeof(luxfer_photo_metadata), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /**
+     * EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied it: 2
+     * mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90 degrees, 8
+     * counter-clockwise, 5 and 7 rotate by 90 degrees and mirror.
+     */
+    uint32_t orientation;
+    /**
+     * Focal length in pixels of the loaded photo; 0 = unknown. Also 0 if the photo was cropped, which its aspect
+     * ratio shows.
+     */
+    double focal;
+    /** Standard deviation of focal, in pixels; 0 = unknown. */
+    double focal_error;
+    /** F-number N of the aperture; 0 = unknown. */
+    double f_number;
+    /** Exposure time t in seconds; 0 = unknown. */
+    double exposure_time;
+    /** ISO speed S; 0 = unknown. */
+    double iso;
+    /**
+     * Scene luminance in cd/m² that the camera recorded as white (value 1): 78 N² / (0.65 t S), the saturation-based
+     * speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change the
+     * brightness keep these tags.
+     */
+    double white_luminance;
+    /** Lower bound of white_luminance: 0.71 times it, if the camera states its standard output sensitivity instead. */
+    double white_luminance_low;
+    /** Upper bound of white_luminance: one stop above it, if the camera states a recommended exposure index. */
+    double white_luminance_high;
+    /** How the colours of the file were understood. */
+    luxfer_file_colour colour;
+    /** 0. */
+    uint32_t reserved;
+} luxfer_photo_metadata;
+
+/** The image was not loaded from a file. */
+#define LUXFER_FILE_COLOUR_NONE 0
+
+/**
+ * The file states no colour space. Integers were decoded as sRGB, and floating-point samples taken as linear Rec.709.
+ */
+#define LUXFER_FILE_COLOUR_ASSUMED 1
+
+/** The file states sRGB (integers) or linear Rec.709 (floating point). */
+#define LUXFER_FILE_COLOUR_STATED 2
+
+/** The file states another colour space. The colours were converted to linear Rec.709. */
+#define LUXFER_FILE_COLOUR_CONVERTED 3
+
+/**
+ * A warning: the file states a colour space that the library cannot convert, such as a profile for CMYK or a damaged
+ * profile. The colours were read as if the file stated none, so saturated colours may be wrong. Export the photo as
+ * sRGB.
+ */
+#define LUXFER_FILE_COLOUR_UNCONVERTED 4
+
+/** The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged. */
+#define LUXFER_FILE_COLOUR_DATA 5
+
+/**
+ * Gets the metadata of the file that an image was loaded from. All values are unknown if the image was not loaded
+ * from a file, or if the file has no metadata. size is sizeof *metadata. Any thread.
+ */
+luxfer_status luxfer_image_get_metadata(luxfer_image *image,
+                                        luxfer_photo_metadata *metadata,
+                                        size_t size);
+
+/* ====================================================================================================================
+ * Strokes
+ *
+ * What the user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a drawing
+ * or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
+ * luxfer_features_set_strokes. A stage copies the strokes; to show it later strokes, set them again.
+ * ==================================================================================================================== */
+
+/** Strokes for images of one size. See luxfer_strokes_create. */
+typedef struct luxfer_strokes luxfer_strokes;
+
+/** The mask that strokes are for: a LUXFER_PHASE_ value. */
+typedef int32_t luxfer_phase;
+
+/** The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too. */
+#define LUXFER_PHASE_PLANE 0
+
+/** The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them. */
+#define LUXFER_PHASE_LIGHTS 1
+
+/**
+ * Creates an empty set of strokes for a photo, or features, of width x height pixels. The caller releases *strokes.
+ * Any thread.
+ * LUXFER_INVALID_ARGUMENT if width or height is not in [1, 65536].
+ */
+luxfer_status luxfer_strokes_create(luxfer_context *context,
+                                    uint32_t width,
+                                    uint32_t height,
+                                    luxfer_strokes **strokes);
+
+/**
+ * Adds a stroke along a polyline. phase is a LUXFER_PHASE_ value; positive is 1 on the plane or on lights, 0 beside
+ * them. points is an array of point_count pairs of float x, y in pixels (the centre of the top-left pixel is 0.5,
+ * 0.5); radius is in pixels, in [0.001, 4096]. One point makes a dot. Where strokes of both classes overlap, the later
+ * stroke counts. Any thread.
+ */
+luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
+                                 luxfer_phase phase,
+                                 const float *points,
+                                 size_t point_count,
+                                 float radius,
+                                 int32_t positive);
+
+/**
+ * Adds the strokes of a drawing of the same size: green (0, 255, 0) is plane, red (255, 0, 0) not plane, yellow (255,
+ * 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels are ignored. Load drawings with
+ * LUXFER_COLOUR_SRGB. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the size differs or the drawing has fewer than 3 channels.
+ */
+luxfer_status luxfer_strokes_add_image(luxfer_strokes *strokes,
+                                       luxfer_image *drawing);
+
+/**
+ * Adds the strokes of a text in UTF-8. Each line has a class, a radius, and x and y of the points in pixels, such as
+ * "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light; # starts a comment. Any thread.
+ * LUXFER_FORMAT, naming the line, if the text is malformed.
+ */
+luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
+                                      const char *description);
+
+/** Removes all strokes. Stages keep their copies. Any thread. */
+luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
+
+/* ====================================================================================================================
+ * Job
+ *
+ * X_start starts long work and returns a job at once; the job runs on threads of the library. It works on the inputs
+ * as they are at the start: changing or releasing them later does not affect the job. While a job runs, its object
+ * refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
+ * succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
+ *
+ * Jobs of one context share its threads, so a job may have to wait until another ends; cancelling it then ends it at
+ * once. All other calls run at once, whatever the jobs do, also from a progress function.
+ * ==================================================================================================================== */
+
+/** Work in progress. See luxfer_job_wait. */
+typedef struct luxfer_job luxfer_job;
+
+/**
+ * Receives the progress of a job: fraction starts at 0 and never falls. Only after success it is exactly 1, once, in
+ * the last call. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the function about 50
+ * times a second, on the waiting thread and with no lock held, so it may call any luxfer function. It must not throw
+ * an exception or leave by longjmp.
+ */
+typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
+
+/**
+ * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
+ * progress may be NULL; it receives user. Any thread; several threads may wait for one job.
+ *
+ * Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
+ * request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues.
+ */
+luxfer_status luxfer_job_wait(luxfer_job *job,
+                              int32_t timeout_ms,
+                              luxfer_progress_fn progress,
+                              void *user);
+
+/**
+ * Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1]; *outcome
+ * receives the status with which the job has ended, as luxfer_job_wait returns it, or LUXFER_NOT_READY while the job
+ * runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any thread.
+ */
+luxfer_status luxfer_job_get_progress(luxfer_job *job,
+                                      double *fraction,
+                                      luxfer_status *outcome);
+
+/**
+ * Asks a job to end early and returns at once; the work ends within about 100 ms. A request cannot be withdrawn; a
+ * request after the end has no effect. Any thread.
+ */
+luxfer_status luxfer_job_cancel(luxfer_job *job);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* LUXFER_CORE_H */

@@ -1,0 +1,901 @@
+/* luxfer: lighting design: illuminance, powers and places of lamps, photometry.
+ *
+ * tests/abi_header.rs generates this file from src/ffi.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+#ifndef LUXFER_LIGHTING_H
+#define LUXFER_LIGHTING_H
+
+#include "transfer.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ====================================================================================================================
+ * Illuminance
+ *
+ * Computes the illuminance in lux on a calculation grid, or on a mesh by its texture coordinates, with the standard
+ * error of every point, and with mean and extremes for reports.
+ * ==================================================================================================================== */
+
+/** A calculation of illuminance. See luxfer_illuminance_create. */
+typedef struct luxfer_illuminance luxfer_illuminance;
+
+/** Settings of the calculation. Fill them with luxfer_illuminance_params_init. */
+typedef struct luxfer_illuminance_params {
+    /** sizeof(luxfer_illuminance_params), set by luxfer_illuminance_params_init. */
+    uint32_t struct_size;
+    /** Points along the first edge or texture coordinate, in [1, 65536]; default 32. */
+    uint32_t columns;
+    /** Points along the second, in [1, 65536]; default 32. */
+    uint32_t rows;
+    /** Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024. */
+    uint32_t samples;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_illuminance_params;
+
+/**
+ * A calculation grid. Fill it with luxfer_illuminance_grid_init; the default is a square metre at the origin that
+ * faces up.
+ */
+typedef struct luxfer_illuminance_grid {
+    /** sizeof(luxfer_illuminance_grid), set by luxfer_illuminance_grid_init. */
+    uint32_t struct_size;
+    /** Corner of the grid, in metres; default (0, 0, 0). */
+    float origin[3];
+    /**
+     * Edge of the grid along which the columns are counted, in metres; default (1, 0, 0). The points are the centres
+     * of the cells.
+     */
+    float across[3];
+    /** Edge of the grid along which the rows are counted, in metres; default (0, 0, 1). */
+    float down[3];
+    /** Normal of the side that receives the light; any length but 0; default (0, 1, 0). */
+    float normal[3];
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_illuminance_grid;
+
+/** An image of the calculation: a LUXFER_ILLUMINANCE_ value. */
+typedef int32_t luxfer_illuminance_image;
+
+/** Summary of the illuminance, in lux. */
+typedef struct luxfer_illuminance_report {
+    /** sizeof(luxfer_illuminance_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of points; on a mesh, the texels that the surface covers. */
+    uint32_t points;
+    /** Smallest illuminance; minimum / mean is the uniformity U0. */
+    double minimum;
+    /** Mean illuminance. */
+    double mean;
+    /** Largest illuminance. */
+    double maximum;
+    /** Standard error of the mean. */
+    double mean_error;
+} luxfer_illuminance_report;
+
+/** Illuminance in lux; 1 channel; NaN in texels that the mesh does not cover. */
+#define LUXFER_ILLUMINANCE_LUX 0
+
+/** Standard error of each value, in lux; 1 channel. */
+#define LUXFER_ILLUMINANCE_ERROR 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_illuminance_params_init(luxfer_illuminance_params *params,
+                                             size_t size);
+
+/** Fills *grid with the defaults; size is sizeof *grid. LUXFER_INVALID_ARGUMENT if grid is NULL or size is wrong. */
+luxfer_status luxfer_illuminance_grid_init(luxfer_illuminance_grid *grid,
+                                           size_t size);
+
+/** Creates the stage. The caller releases *illuminance. Any thread. */
+luxfer_status luxfer_illuminance_create(luxfer_context *context, luxfer_illuminance **illuminance);
+
+/** Sets the scene; each job uses the scene as it is when the job starts. Any thread. */
+luxfer_status luxfer_illuminance_set_scene(luxfer_illuminance *illuminance, luxfer_scene *scene);
+
+/**
+ * Starts a job that computes the illuminance on a grid. grid and params may be NULL for their defaults. The caller
+ * releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if the scene is not valid, the grid has no normal, or a setting is out of range.
+ */
+luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
+                                            const luxfer_illuminance_grid *grid,
+                                            const luxfer_illuminance_params *params,
+                                            luxfer_job **job);
+
+/**
+ * Starts a job that computes the illuminance on a mesh by its first set of texture coordinates: columns along u, rows
+ * along v. back is 0 for the front side of the triangles (by their winding), 1 for the back side. params may be NULL
+ * for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if the scene is not valid or has no such mesh, if the mesh has no texture coordinates, or if a setting is out of
+ * range.
+ */
+luxfer_status luxfer_illuminance_start_mesh(luxfer_illuminance *illuminance,
+                                            uint32_t mesh,
+                                            uint32_t back,
+                                            const luxfer_illuminance_params *params,
+                                            luxfer_job **job);
+
+/**
+ * Gets an image of the calculation; which is a LUXFER_ILLUMINANCE_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_illuminance_get_image(luxfer_illuminance *illuminance,
+                                           luxfer_illuminance_image which,
+                                           luxfer_image **image);
+
+/**
+ * Gets the summary of the illuminance. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
+                                            luxfer_illuminance_report *report,
+                                            size_t size);
+
+/* ====================================================================================================================
+ * Lamps
+ *
+ * Solves for the powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and
+ * calculation grids that should receive a given light. One set of paths per goal measures its response to all lamps at
+ * once, even to thousands.
+ * ==================================================================================================================== */
+
+/** A solver for the powers of lamps. See luxfer_lamps_create. */
+typedef struct luxfer_lamps luxfer_lamps;
+
+/**
+ * Which lamps share one power: a LUXFER_GROUP_ value. A lamp is a connected region of the emission texture, or a
+ * connected piece of the meshes if the emission has no texture.
+ */
+typedef int32_t luxfer_group;
+
+/** Settings of the calculation. Fill them with luxfer_lamps_params_init. */
+typedef struct luxfer_lamps_params {
+    /** sizeof(luxfer_lamps_params), set by luxfer_lamps_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_GROUP_ value; default LUXFER_GROUP_EACH. */
+    luxfer_group group;
+    /**
+     * Largest gap between the sorted coordinates of neighbouring lamps in one row, >= 0; a larger gap starts a new
+     * row; default 0.01.
+     */
+    float row_tolerance;
+    /**
+     * 1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default: solve
+     * for the power only.
+     */
+    uint32_t free_colour;
+    /** Largest factor for the emission of a group, >= 0; default infinity. */
+    double max_scale;
+    /**
+     * Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
+     * powers equal; default 1e-6.
+     */
+    double regularisation;
+    /**
+     * A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise; default
+     * 0.01.
+     */
+    double tolerance;
+    /** Maximum number of paths for each goal, in [1024, 2^30]; default 2^20. */
+    uint32_t paths;
+    /**
+     * Stop tracing a goal when the relative error of its response to all lamps together is below this value, in [0,
+     * 1]; default 0.01; 0: no target.
+     */
+    float target_error;
+    /** Stop after this number of milliseconds; default 0: no limit. */
+    uint32_t time_budget_ms;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_lamps_params;
+
+/** All lamps form one group. */
+#define LUXFER_GROUP_ALL 0
+
+/** Each lamp is a group of its own. */
+#define LUXFER_GROUP_EACH 1
+
+/** Lamps whose centres agree in their first coordinate form a group: u of a texture, x of meshes. */
+#define LUXFER_GROUP_BY_X 2
+
+/** Lamps whose centres agree in their second coordinate form a group: v of a texture, y of meshes. */
+#define LUXFER_GROUP_BY_Y 3
+
+/** Lamps whose centres agree in their third coordinate form a group: z of meshes. */
+#define LUXFER_GROUP_BY_Z 4
+
+/**
+ * Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
+ * luminaires of one distribution.
+ */
+#define LUXFER_GROUP_BY_TYPE 5
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
+                                       size_t size);
+
+/** Creates the stage. The caller releases *lamps. Any thread. */
+luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
+
+/**
+ * Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
+ * they have in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
+ * luxfer_scene_add_light and luxfer_scene_add_luminaire add them. Removes all goals. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such material.
+ */
+luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
+                                     luxfer_scene *scene,
+                                     uint32_t material);
+
+/**
+ * Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
+ * with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
+ * Any thread.
+ * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. The job may end with
+ * LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
+ * emission has no lamp, or a setting is out of range.
+ */
+luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
+                                 const luxfer_lamps_params *params,
+                                 luxfer_job **job);
+
+/* ====================================================================================================================
+ * Goals of lamps
+ *
+ * Goals for the lamps: surfaces and calculation grids that should receive a given light, exactly or as a limit, and
+ * the dimming levels of the lamps' drivers.
+ * ==================================================================================================================== */
+
+/**
+ * Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
+ * LUXFER_QUANTITY_ value; weight, >= 0, is relative to the other goals. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ */
+luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
+                                    uint32_t mesh,
+                                    luxfer_quantity quantity,
+                                    float red,
+                                    float green,
+                                    float blue,
+                                    double weight);
+
+/**
+ * Adds a goal: the mean illuminance in lux that a calculation grid should have, for light of any colour; weight, >= 0,
+ * is relative to the other goals. grid may be NULL for its default. Any thread.
+ * LUXFER_INVALID_ARGUMENT if lux is negative or not finite, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ */
+luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
+                                    const luxfer_illuminance_grid *grid,
+                                    float lux,
+                                    double weight);
+
+/**
+ * Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must
+ * be equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL.
+ * Any thread.
+ * LUXFER_NOT_FOUND if there is no such goal.
+ */
+luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
+                                          uint32_t goal,
+                                          luxfer_constraint red,
+                                          luxfer_constraint green,
+                                          luxfer_constraint blue);
+
+/**
+ * Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
+ * count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group one of the levels,
+ * so that together they are best for the goals; the half-widths remain those of powers without steps. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
+ */
+luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
+                                      const double *levels,
+                                      uint32_t count);
+
+/** Removes all goals. Any thread. */
+luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
+
+/* ====================================================================================================================
+ * Results of lamps
+ *
+ * The powers found, the light that each goal receives, and the contribution of each lamp to each goal.
+ * ==================================================================================================================== */
+
+/** Summary of the result. */
+typedef struct luxfer_lamps_report {
+    /** sizeof(luxfer_lamps_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of lamps. */
+    uint32_t lamps;
+    /** Number of groups. */
+    uint32_t groups;
+    /** Number of goals. */
+    uint32_t goals;
+    /** Number of paths traced for each goal. */
+    uint32_t paths;
+    /** 1 if all goals are met; 0 if not: luxfer_lamps_get_reason gives the reason. */
+    uint32_t all_goals_met;
+} luxfer_lamps_report;
+
+/** One lamp. */
+typedef struct luxfer_lamp {
+    /** sizeof(luxfer_lamp), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Index of its group. */
+    uint32_t group;
+    /** Centre: texture coordinates and 0, or, without a texture, the position in metres. */
+    double centre[3];
+    /** Factor for its emission, per channel, >= 0. */
+    double scale[3];
+    /** Half-widths of the 95 % confidence intervals of scale. */
+    double half_width[3];
+} luxfer_lamp;
+
+/** The light that a goal receives. */
+typedef struct luxfer_lamps_goal {
+    /** sizeof(luxfer_lamps_goal), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** LUXFER_OUTCOME_ value of each channel. */
+    luxfer_outcome outcome[3];
+    /** Mean radiance of the goal, in cd/m²; illuminance / pi for a grid. */
+    double target[3];
+    /** Mean radiance with the powers found, in cd/m². */
+    double achieved[3];
+    /** Half-widths of the 95 % confidence intervals of achieved. */
+    double half_width[3];
+    /** Mean radiance from all other light, in cd/m². */
+    double background[3];
+    /**
+     * For goals of illuminance, which are those of grids and of LUXFER_QUANTITY_INCIDENT: target in lux, pi times the
+     * luminance of target; 0 for other goals, and likewise for the fields below.
+     */
+    double target_lux;
+    /** Illuminance with the powers found, in lux. */
+    double achieved_lux;
+    /** Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side. */
+    double half_width_lux;
+    /** Illuminance from all other light, in lux. */
+    double background_lux;
+} luxfer_lamps_goal;
+
+/** The light that one goal receives from one lamp. */
+typedef struct luxfer_lamps_response {
+    /** sizeof(luxfer_lamps_response), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel. */
+    double mean[3];
+    /** Half-widths of the 95 % confidence intervals of mean. */
+    double half_width[3];
+} luxfer_lamps_response;
+
+/**
+ * Gets the summary of the result. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_lamps_get_report(luxfer_lamps *lamps, luxfer_lamps_report *report, size_t size);
+
+/**
+ * Gets the power of a lamp. size is sizeof *lamp. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
+ */
+luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps,
+                                    uint32_t index,
+                                    luxfer_lamp *lamp,
+                                    size_t size);
+
+/**
+ * Gets the light that a goal receives. size is sizeof *goal. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
+ */
+luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps,
+                                    uint32_t index,
+                                    luxfer_lamps_goal *goal,
+                                    size_t size);
+
+/**
+ * Gets the light that a goal receives from a lamp, for hosts that mix the light themselves. size is sizeof *response.
+ * Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
+ */
+luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
+                                        uint32_t goal,
+                                        uint32_t lamp,
+                                        luxfer_lamps_response *response,
+                                        size_t size);
+
+/**
+ * Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes; the text
+ * is empty if all goals are met. *needed, unless NULL, receives the capacity that the whole text needs. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
+                                      char *buffer,
+                                      size_t capacity,
+                                      size_t *needed);
+
+/**
+ * Gets the emission texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
+ * thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
+ */
+luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
+                                       luxfer_image **texture);
+
+/* ====================================================================================================================
+ * Importance
+ *
+ * A map of the light that each point of an emitting surface would send to a target. It is traced once; then it gives
+ * the light of any emissive texture on that surface, at any scale, rotation and offset, within milliseconds and with a
+ * confidence interval.
+ * ==================================================================================================================== */
+
+/** A map of importance. See luxfer_importance_create. */
+typedef struct luxfer_importance luxfer_importance;
+
+/** Settings of the map. Fill them with luxfer_importance_params_init. */
+typedef struct luxfer_importance_params {
+    /** sizeof(luxfer_importance_params), set by luxfer_importance_params_init. */
+    uint32_t struct_size;
+    /** Cells along u of the surface, in [1, 512]; default 64. */
+    uint32_t width;
+    /** Cells along v, in [1, 512]; default 64. */
+    uint32_t height;
+    /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
+    luxfer_quantity quantity;
+    /** Maximum number of paths, in [1024, 2^30]; default 2^20. */
+    uint32_t paths;
+    /**
+     * Stop when the relative error of the response to a uniform emission is below this value, in [0, 1]; default 0.01;
+     * 0: no target.
+     */
+    float target_error;
+    /** Stop after this number of milliseconds; default 0: no limit. */
+    uint32_t time_budget_ms;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_importance_params;
+
+/** The light that the target receives from a texture. */
+typedef struct luxfer_importance_report {
+    /** sizeof(luxfer_importance_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of paths of the map. */
+    uint32_t paths;
+    /** Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture. */
+    double response[3];
+    /** Half-widths of the 95 % confidence intervals of response. */
+    double half_width[3];
+    /**
+     * Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
+     * cells is about a third of it.
+     */
+    double band_error[3];
+} luxfer_importance_report;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_importance_params_init(luxfer_importance_params *params,
+                                            size_t size);
+
+/** Creates the stage. The caller releases *importance. Any thread. */
+luxfer_status luxfer_importance_create(luxfer_context *context, luxfer_importance **importance);
+
+/**
+ * Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is
+ * the target. The current emission of the material does not count. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such material or mesh.
+ */
+luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
+                                          luxfer_scene *scene,
+                                          uint32_t material,
+                                          uint32_t mesh);
+
+/**
+ * Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
+ * releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
+ */
+luxfer_status luxfer_importance_start(luxfer_importance *importance,
+                                      const luxfer_importance_params *params,
+                                      luxfer_job **job);
+
+/**
+ * Gets the map: for each cell, the mean radiance of the target, per channel, if only this cell emitted, with 1 cd/m².
+ * The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
+                                          luxfer_image **image);
+
+/**
+ * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps the
+ * surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the
+ * identity. Takes a few milliseconds. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
+ */
+luxfer_status luxfer_importance_respond(luxfer_importance *importance,
+                                        luxfer_image *texture,
+                                        const double *placement,
+                                        luxfer_importance_report *report,
+                                        size_t size);
+
+/**
+ * Solves for the factor of a texture that gives the target a mean radiance of (red, green, blue) in cd/m², each
+ * finite and >= 0, as luxfer_relight does by tracing; texture and placement are as for luxfer_importance_respond.
+ * size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
+ */
+luxfer_status luxfer_importance_solve(luxfer_importance *importance,
+                                      luxfer_image *texture,
+                                      const double *placement,
+                                      float red,
+                                      float green,
+                                      float blue,
+                                      luxfer_relight_report *report,
+                                      size_t size);
+
+/* ====================================================================================================================
+ * Placement
+ *
+ * Finds the position of a texture on a surface that gives a target the most light, the least light, or a given
+ * radiance, by gradient descent on the map of luxfer_importance, without tracing more paths.
+ * ==================================================================================================================== */
+
+/** Objective of a placement: a LUXFER_AIM_ value. */
+typedef int32_t luxfer_aim;
+
+/**
+ * Objective and bounds of a placement. The texture coordinates of the surface are scaled and then rotated about their
+ * centre (0.5, 0.5), and then shifted. Fill it with luxfer_placement_params_init.
+ */
+typedef struct luxfer_placement_params {
+    /** sizeof(luxfer_placement_params), set by luxfer_placement_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_AIM_ value; default LUXFER_AIM_MAX_LUMINANCE. */
+    luxfer_aim aim;
+    /** Mean radiance of the target for LUXFER_AIM_RADIANCE, in cd/m² per channel, each finite and >= 0; default 0. */
+    float radiance[3];
+    /** Number of placements at which the search starts, in [1, 4096]; default 64. */
+    uint32_t starts;
+    /** Smallest offset along u and v of the texture, whose period is 1, in [-16, 16]; default -0.5. */
+    double min_offset[2];
+    /**
+     * Largest offset, in [-16, 16]; default 0.5. If smallest and largest are equal, here and below, the value is
+     * fixed.
+     */
+    double max_offset[2];
+    /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
+    double min_scale[2];
+    /** Largest number of repetitions, in [1/64, 64]; default 1. */
+    double max_scale[2];
+    /** Smallest rotation in radians, in [-2 pi, 2 pi]; default 0. */
+    double min_rotation;
+    /** Largest rotation in radians, in [-2 pi, 2 pi]; default 0. */
+    double max_rotation;
+    /** Seed of the starting placements; default 1. */
+    uint64_t seed;
+} luxfer_placement_params;
+
+/** The best placement, and the light that the target then receives. */
+typedef struct luxfer_placement {
+    /** sizeof(luxfer_placement), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** The map from the surface's texture coordinates to those of the texture, as for luxfer_importance_respond. */
+    double placement[9];
+    /** Offset along u and v. */
+    double offset[2];
+    /** Scale along u and v. */
+    double scale[2];
+    /** Rotation in radians. */
+    double rotation;
+    /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
+    double response[3];
+    /** Half-widths of the 95 % confidence intervals of response. */
+    double half_width[3];
+    /**
+     * Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
+     * cells is about a third of it.
+     */
+    double band_error[3];
+} luxfer_placement;
+
+/** The largest luminance of the target. */
+#define LUXFER_AIM_MAX_LUMINANCE 0
+
+/** The smallest luminance of the target. */
+#define LUXFER_AIM_MIN_LUMINANCE 1
+
+/** The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included. */
+#define LUXFER_AIM_RADIANCE 2
+
+/**
+ * Fills *params with the defaults: any offset, with fixed scale 1 and rotation 0; size is sizeof *params.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_placement_params_init(luxfer_placement_params *params, size_t size);
+
+/**
+ * Starts a job that finds the best placement of a texture (linear, in cd/m²; it repeats) for the target. params may be
+ * NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
+ * LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ */
+luxfer_status luxfer_importance_start_placement(luxfer_importance *importance,
+                                                luxfer_image *texture,
+                                                const luxfer_placement_params *params,
+                                                luxfer_job **job);
+
+/**
+ * Gets the placement that was found. size is sizeof *placement. Any thread.
+ * LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and after another map has been
+ * started.
+ */
+luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
+                                              luxfer_placement *placement,
+                                              size_t size);
+
+/* ====================================================================================================================
+ * Photometry
+ *
+ * Photometric quantities of lighting design: the correlated colour temperature of a light, and the glare of a view.
+ * These calls return when their work is done.
+ * ==================================================================================================================== */
+
+/** The glare of a view. */
+typedef struct luxfer_glare_report {
+    /** sizeof(luxfer_glare_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of glare sources. */
+    uint32_t sources;
+    /**
+     * Unified glare rating (CIE 117): below 10 there is no glare, 19 is the limit for offices; -infinity without
+     * sources.
+     */
+    double ugr;
+    /** Luminance of the background in cd/m². */
+    double background;
+    /** Luminance in cd/m² above which a pixel counted as a glare source. */
+    double threshold;
+    /** Solid angle of all sources in steradians. */
+    double solid_angle;
+} luxfer_glare_report;
+
+/**
+ * Gets the correlated colour temperature of a linear colour: *kelvin receives the temperature of the nearest
+ * blackbody, in [1000, 20000], *duv the distance from the blackbody in the CIE 1960 diagram, positive for greenish
+ * colours. Any thread.
+ * LUXFER_DEGENERATE if the colour is black or not finite.
+ */
+luxfer_status luxfer_colour_to_temperature(luxfer_context *context,
+                                           double red,
+                                           double green,
+                                           double blue,
+                                           double *kelvin,
+                                           double *duv);
+
+/**
+ * Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
+ * 20000], duv, the distance from the blackbody, in [-0.05, 0.05]. A channel is negative if the colour is out of gamut.
+ * Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
+                                           double kelvin,
+                                           double duv,
+                                           double *rgb);
+
+/**
+ * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), seen by a level camera with
+ * the vertical angle of view fov_y, in radians. Glare sources are the connected patches with a luminance of at least
+ * threshold; 0: five times the mean luminance. A wider angle of view gives a better estimate of the background
+ * luminance. size is sizeof *report. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
+ */
+luxfer_status luxfer_image_get_glare(luxfer_image *image,
+                                     double fov_y,
+                                     double threshold,
+                                     luxfer_glare_report *report,
+                                     size_t size);
+
+/* ====================================================================================================================
+ * False colour
+ *
+ * Shows a luminance or illuminance image in false colours of rising brightness, with a scale bar.
+ * ==================================================================================================================== */
+
+/** The scale from values to colours: a LUXFER_SCALE_ value. */
+typedef int32_t luxfer_scale;
+
+/** The quantity of an image's values: a LUXFER_UNIT_ value. */
+typedef int32_t luxfer_unit;
+
+/** Settings of a false colour image. Fill them with luxfer_false_colour_params_init. */
+typedef struct luxfer_false_colour_params {
+    /** sizeof(luxfer_false_colour_params), set by luxfer_false_colour_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR. */
+    luxfer_scale scale;
+    /** LUXFER_UNIT_ value, written above the bar; default LUXFER_UNIT_LUMINANCE. */
+    luxfer_unit unit;
+    /** 1, the default: draw a scale bar beside the image, which makes it wider; 0: no bar. */
+    uint32_t bar;
+    /**
+     * Value of the darkest colour, >= 0; on a logarithmic scale 0 means a thousandth of the value of the lightest
+     * colour; default 0.
+     */
+    double minimum;
+    /** Value of the lightest colour, greater than minimum; 0, the default, means the largest value of the image. */
+    double maximum;
+} luxfer_false_colour_params;
+
+/** Linear: equal differences of the value have equal width. */
+#define LUXFER_SCALE_LINEAR 0
+
+/** Logarithmic: decades have equal width. */
+#define LUXFER_SCALE_LOGARITHMIC 1
+
+/** Luminance in cd/m². */
+#define LUXFER_UNIT_LUMINANCE 0
+
+/** Illuminance in lux. */
+#define LUXFER_UNIT_ILLUMINANCE 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_params *params,
+                                              size_t size);
+
+/**
+ * Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: linear RGB, grey where a
+ * value is NaN. params may be NULL for the defaults. Takes a few milliseconds per megapixel. The caller releases
+ * *shown. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the range of values is empty, or if it should come from the image and the image is black;
+ * LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_image_false_colour(luxfer_image *image,
+                                        const luxfer_false_colour_params *params,
+                                        luxfer_image **shown);
+
+/* ====================================================================================================================
+ * Lighting design
+ *
+ * Realises a solved light with real luminaires: the drive levels of LED primaries, the nearest blackbody light, the
+ * electric power, and the requirements of a standard. These calls return when their work is done.
+ * ==================================================================================================================== */
+
+/** A colour mixed from primaries. */
+typedef struct luxfer_mixture {
+    /** sizeof(luxfer_mixture), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /**
+     * 1 if the mixture equals the requested colour; 0 if the primaries cannot reach it and this is the nearest
+     * mixture.
+     */
+    uint32_t in_gamut;
+    /** Linear colour of the mixture. */
+    double colour[3];
+    /**
+     * CIEDE2000 difference from the requested colour, at the exposure that shows the requested colour as middle grey.
+     */
+    double delta_e;
+} luxfer_mixture;
+
+/** The blackbody light that fits a target best. */
+typedef struct luxfer_temperature_fit {
+    /** sizeof(luxfer_temperature_fit), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** Correlated colour temperature, in [1000, 20000] kelvin. */
+    double kelvin;
+    /** Luminance of the emission in cd/m², >= 0, if response was measured for a white emission of 1 cd/m². */
+    double luminance;
+    /** Mean radiance of the target from this light and all other light, in cd/m². */
+    double achieved[3];
+    /** CIEDE2000 difference of achieved from the target, at the exposure that shows the target as middle grey. */
+    double delta_e;
+} luxfer_temperature_fit;
+
+/**
+ * Requirements of EN 12464-1 for a kind of room, as manufacturers of luminaires quote them. Only the standard itself
+ * is binding.
+ */
+typedef struct luxfer_preset {
+    /** sizeof(luxfer_preset), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Year of the edition of the standard. */
+    uint32_t edition;
+    /** Minimum mean illuminance of the task area, in lux. */
+    double illuminance;
+    /** Maximum unified glare rating. */
+    double glare;
+    /** Minimum uniformity U0 of the task area. */
+    double uniformity;
+    /** Minimum colour rendering index. */
+    double rendering;
+    /** Minimum mean illuminance of the walls, in lux; 0 if there is no requirement. */
+    double walls;
+    /** Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement. */
+    double ceiling;
+} luxfer_preset;
+
+/**
+ * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds
+ * the linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1,
+ * 64]. drives receives count drive levels in [0, max_drive]; max_drive may be infinite. If several mixtures give the
+ * colour, the one with the smallest sum of squared drive levels is returned. size is sizeof *mixture. Any thread.
+ * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
+ */
+luxfer_status luxfer_mix_primaries(luxfer_context *context,
+                                   const double *primaries,
+                                   uint32_t count,
+                                   double max_drive,
+                                   const double *colour,
+                                   double *drives,
+                                   luxfer_mixture *mixture,
+                                   size_t size);
+
+/**
+ * Finds the temperature and luminance of the blackbody light that brings a target nearest to a mean radiance. Each
+ * array holds three channels: response is the response to a white emission, from luxfer_relight_get_report or
+ * luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. size is
+ * sizeof *fit. Any thread.
+ * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
+ */
+luxfer_status luxfer_fit_temperature(luxfer_context *context,
+                                     const double *response,
+                                     const double *background,
+                                     const double *target,
+                                     luxfer_temperature_fit *fit,
+                                     size_t size);
+
+/** Gets the number of presets. Any thread. */
+luxfer_status luxfer_preset_get_count(luxfer_context *context, uint32_t *count);
+
+/**
+ * Gets the requirements of a preset. size is sizeof *preset. Any thread.
+ * LUXFER_NOT_FOUND if there is no such preset.
+ */
+luxfer_status luxfer_preset_get(luxfer_context *context,
+                                uint32_t index,
+                                luxfer_preset *preset,
+                                size_t size);
+
+/**
+ * Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
+ * capacity bytes. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
+ * LUXFER_NOT_FOUND if there is no such preset.
+ */
+luxfer_status luxfer_preset_get_name(luxfer_context *context,
+                                     uint32_t index,
+                                     char *buffer,
+                                     size_t capacity,
+                                     size_t *needed);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* LUXFER_LIGHTING_H */

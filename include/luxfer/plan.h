@@ -1,0 +1,177 @@
+/* luxfer: settings for a given error or time.
+ *
+ * tests/abi_header.rs generates this file from src/ffi.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+#ifndef LUXFER_PLAN_H
+#define LUXFER_PLAN_H
+
+#include "transfer.h"
+#include "stylize.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ====================================================================================================================
+ * Planning
+ *
+ * Chooses settings for a given error or a given time before anything is rendered: of relighting and rendering, or of a
+ * stylisation. A plan also predicts the time and the error of each. The cost of a path and the noise depend on the
+ * scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a second, besides the
+ * preparation of the scene. It assumes that the load of the machine by other programs does not change.
+ *
+ * The error of a picture is the root mean square error over its pixels, divided by its mean; it includes the noise and
+ * the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the error of
+ * a stylisation.
+ * ==================================================================================================================== */
+
+/** A plan. See luxfer_plan_create. */
+typedef struct luxfer_plan luxfer_plan;
+
+/** Goal of a plan: set exactly one of time_budget_ms and target_error. Fill it with luxfer_plan_params_init. */
+typedef struct luxfer_plan_params {
+    /** sizeof(luxfer_plan_params), set by luxfer_plan_params_init. */
+    uint32_t struct_size;
+    /** Time for all planned work in milliseconds; default 0: the goal is target_error. */
+    uint32_t time_budget_ms;
+    /**
+     * Error of the picture, root mean square over its pixels divided by its mean, in [1e-5, 1]; default 0: the goal is
+     * time_budget_ms.
+     */
+    float target_error;
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_plan_params;
+
+/** Times and errors that a plan predicts. */
+typedef struct luxfer_plan_report {
+    /** sizeof(luxfer_plan_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** 1 if the plan includes relighting (plan of a transfer); 0 for a plan of a rendering or a stylisation. */
+    uint32_t relights;
+    /** Seconds for all planned work. */
+    double seconds;
+    /** Error of the picture. */
+    double error;
+    /** Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer. */
+    double relight_seconds;
+    /**
+     * Predicted field error of luxfer_relight_report, half the width of its interval; 0 unless the plan is of a
+     * transfer.
+     */
+    double relight_error;
+    /**
+     * Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
+     * stylisation.
+     */
+    double render_seconds;
+    /** Predicted field error of luxfer_render_report; 0 in a plan of a stylisation. */
+    double render_error;
+} luxfer_plan_report;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_plan_params_init(luxfer_plan_params *params,
+                                      size_t size);
+
+/** Creates a plan. The caller releases *plan. Any thread. */
+luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
+
+/**
+ * Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
+ * and the other settings that do not affect quality; NULL for the defaults. params gives the goal. The caller releases
+ * *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera.
+ */
+luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
+                                       luxfer_render *render,
+                                       const luxfer_render_params *settings,
+                                       const luxfer_plan_params *params,
+                                       luxfer_job **job);
+
+/**
+ * Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
+ * made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
+ * its relight and render by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, which change the
+ * settings that affect quality. params gives the goal. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+ * LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
+ * LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
+ */
+luxfer_status luxfer_plan_start_transfer(luxfer_plan *plan,
+                                         luxfer_transfer *transfer,
+                                         const luxfer_transfer_params *settings,
+                                         const luxfer_plan_params *params,
+                                         luxfer_job **job);
+
+/**
+ * Gets the predictions of the plan. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_plan_get_report(luxfer_plan *plan,
+                                     luxfer_plan_report *report,
+                                     size_t size);
+
+/**
+ * Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
+ * rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths and sets
+ * time_budget_ms to a quarter more than they should take, so that every run gives an equal picture unless the machine
+ * becomes slower. Set params->struct_size before the call. size is sizeof *params. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
+ */
+luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
+                                            luxfer_render_params *params,
+                                            size_t size);
+
+/**
+ * Gets the settings to relight with: the given settings with the choices of the plan. Set params->struct_size before
+ * the call. size is sizeof *params. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
+ */
+luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
+                                             luxfer_relight_params *params,
+                                             size_t size);
+
+/* ====================================================================================================================
+ * Planning of stylisations
+ *
+ * Chooses the settings of a stylisation for a given time or error. A plan tries settings from fast to slow on the
+ * actual input at reduced resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL; the larger the
+ * target, the smaller the part.
+ * ==================================================================================================================== */
+
+/**
+ * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize. The
+ * plan chooses only the numbers of rounds and sweeps; all other values, also the resolution, come from settings, or
+ * the defaults if it is NULL. params gives the goal; the error is the square root of luxfer_stylize_report.energy: the
+ * root mean square difference of matched patches in colours and guides, whose values are in [0, 1]. If the goal cannot
+ * be reached, the plan gives the settings that come nearest. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end with the statuses
+ * of luxfer_stylize_start's job.
+ */
+luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
+                                        luxfer_stylize *stylize,
+                                        const luxfer_stylize_params *settings,
+                                        const luxfer_plan_params *params,
+                                        luxfer_job **job);
+
+/**
+ * Gets the settings to stylise with: the given settings with the choices of the plan. Set params->struct_size before
+ * the call. size is sizeof *params. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
+ */
+luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan,
+                                             luxfer_stylize_params *params,
+                                             size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* LUXFER_PLAN_H */

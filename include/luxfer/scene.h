@@ -1,0 +1,972 @@
+/* luxfer: scenes: loading, building, reading and queries.
+ *
+ * tests/abi_header.rs generates this file from src/ffi.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+#ifndef LUXFER_SCENE_H
+#define LUXFER_SCENE_H
+
+#include "core.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ====================================================================================================================
+ * Scene
+ *
+ * A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
+ * world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
+ * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
+ * unchanged.
+ * ==================================================================================================================== */
+
+/** A scene. See luxfer_scene_load and luxfer_scene_create. */
+typedef struct luxfer_scene luxfer_scene;
+
+/**
+ * Receives the next size bytes of a file. The export calls it one or more times, in order, on the calling thread and
+ * with no lock held. Return 0 to continue, any other value to stop: the export then returns LUXFER_IO. It must not
+ * throw an exception or leave by longjmp.
+ */
+typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
+
+/** Numbers of the objects in a scene. */
+typedef struct luxfer_scene_counts {
+    /** sizeof(luxfer_scene_counts), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below. */
+    uint32_t meshes;
+    /** Number of materials. */
+    uint32_t materials;
+    /** Number of textures. */
+    uint32_t textures;
+    /** Number of punctual lights: points, spots, directional lights and luminaires. */
+    uint32_t lights;
+    /** Number of cameras. */
+    uint32_t cameras;
+    /** Number of triangles in all meshes. */
+    uint64_t triangles;
+} luxfer_scene_counts;
+
+/** A planar surface of a scene. */
+typedef struct luxfer_surface {
+    /** sizeof(luxfer_surface), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of triangles. */
+    uint32_t triangles;
+    /** Corner of the bounding rectangle where u = v = 0, in metres. */
+    float origin[3];
+    /** Unit vector of u, along the first side of the rectangle. */
+    float u_axis[3];
+    /** Unit vector of v, along the second side. */
+    float v_axis[3];
+    /** Unit normal on the side that will emit; it points into the room. */
+    float normal[3];
+    /** Lengths of the sides along u and v, in metres. */
+    float size[2];
+    /** Area of the triangles in m². */
+    float area;
+    /**
+     * Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, as
+     * those of a vault; they receive no emission.
+     */
+    float sloped_area;
+} luxfer_surface;
+
+/** Creates an empty scene. The caller releases *scene. Any thread. */
+luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene);
+
+/**
+ * Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is replaced
+ * only once the new one is complete. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
+ */
+luxfer_status luxfer_scene_export(luxfer_scene *scene,
+                                  const char *path);
+
+/**
+ * Writes a scene as GLB through the caller's function, which receives user. Any thread.
+ * LUXFER_IO if the function returns anything but 0.
+ */
+luxfer_status luxfer_scene_export_memory(luxfer_scene *scene, luxfer_write_fn write, void *user);
+
+/** Gets the numbers of the objects in a scene. size is sizeof *counts. Any thread. */
+luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
+                                      luxfer_scene_counts *counts,
+                                      size_t size);
+
+/**
+ * Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
+ * or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
+ * image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
+ * right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
+ * budget.
+ */
+luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
+                                           luxfer_image *image,
+                                           float red,
+                                           float green,
+                                           float blue);
+
+/**
+ * Sets the emission of a material: red, green and blue in cd/m², each finite and >= 0. An emission texture of the
+ * material is multiplied by it. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material.
+ */
+luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
+                                        uint32_t material,
+                                        float red,
+                                        float green,
+                                        float blue);
+
+/**
+ * Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. size is
+ * sizeof *found. Any thread.
+ * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
+ * there is no planar surface.
+ */
+luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
+                                        const char *name,
+                                        luxfer_surface *found,
+                                        size_t size);
+
+/**
+ * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
+ * luxfer_scene_find_surface finds by name. The surface becomes a separate mesh, index *mesh, with a copy of its
+ * material, index *material, that emits texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material
+ * may be NULL. Any thread.
+ * As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
+                                          const char *name,
+                                          luxfer_image *texture,
+                                          float red,
+                                          float green,
+                                          float blue,
+                                          uint32_t *mesh,
+                                          uint32_t *material);
+
+/* ====================================================================================================================
+ * Scene files
+ *
+ * Loads glTF 2.0 files. luxfer_get_warnings and luxfer_scene_get_requirements_text name the features of a file that
+ * are not rendered.
+ * ==================================================================================================================== */
+
+/** Settings of reading a scene's file. Fill it with luxfer_scene_load_params_init. */
+typedef struct luxfer_scene_load_params {
+    /** sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init. */
+    uint32_t struct_size;
+    /**
+     * 1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the default:
+     * this gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices or
+     * addresses on a network.
+     */
+    uint32_t allow_external_files;
+    /**
+     * Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
+     * leaves intensities and luminances as they are. 0.001: the file is in millimetres.
+     */
+    double unit;
+} luxfer_scene_load_params;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
+ * the struct has this size.
+ */
+luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_params *params,
+                                            size_t size);
+
+/**
+ * Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
+ * params may be NULL for the defaults. The caller releases *scene. Any thread.
+ * LUXFER_IO if a file cannot be read, LUXFER_FORMAT if a file is damaged or refers to something that does not exist,
+ * LUXFER_UNSUPPORTED for another version of glTF, for a required extension that this library does not know and for a
+ * file outside the folder, LUXFER_OUT_OF_MEMORY beyond the memory budget, LUXFER_INVALID_ARGUMENT if a setting is out
+ * of range.
+ */
+luxfer_status luxfer_scene_load(luxfer_context *context,
+                                const char *path,
+                                const luxfer_scene_load_params *params,
+                                luxfer_scene **scene);
+
+/**
+ * Loads a scene from a GLB or glTF file in memory of size bytes. Other files that it names are read from the folder
+ * base_path (UTF-8); with NULL it must not name any. Otherwise as luxfer_scene_load.
+ */
+luxfer_status luxfer_scene_load_memory(luxfer_context *context,
+                                       const void *data,
+                                       size_t size,
+                                       const char *base_path,
+                                       const luxfer_scene_load_params *params,
+                                       luxfer_scene **scene);
+
+/* ====================================================================================================================
+ * Materials
+ *
+ * Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
+ * textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when its
+ * values change.
+ * ==================================================================================================================== */
+
+/** Meaning of a surface's alpha: a LUXFER_ALPHA_ value. */
+typedef int32_t luxfer_alpha_mode;
+
+/** A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init. */
+typedef struct luxfer_material_params {
+    /** sizeof(luxfer_material_params), set by luxfer_material_params_init. */
+    uint32_t struct_size;
+    /** 1, the default: back faces reflect and emit as front faces do; 0: only front faces do. */
+    uint32_t double_sided;
+    /** Name in UTF-8, copied; NULL, the default: no name. */
+    const char *name;
+    /** Linear colour of the surface, each channel in [0, 1]; default 0.8. */
+    float base_color[3];
+    /** Share of the surface that is metal, in [0, 1]; default 0. */
+    float metallic;
+    /** Perceptual roughness in [0, 1]; default 1. */
+    float roughness;
+    /** Emitted luminance per channel in cd/m², >= 0; default 0. */
+    float emission[3];
+    /**
+     * Share of the light that passes through the surface instead of being reflected diffusely, in [0, 1]; default 0.
+     */
+    float transmission;
+    /** Index of refraction in [1, 4]; default 1.5. */
+    float ior;
+    /** Opacity in [0, 1]; multiplies the alpha of the base colour texture; default 1. */
+    float alpha;
+    /** LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE. */
+    luxfer_alpha_mode alpha_mode;
+    /** Threshold of alpha for LUXFER_ALPHA_MASK, >= 0; default 0.5. */
+    float alpha_cutoff;
+    /** Strength of the normal texture: multiplies its x and y; finite; default 1. */
+    float normal_scale;
+} luxfer_material_params;
+
+/** Continuation of a texture beyond its edges: a LUXFER_WRAP_ value. */
+typedef int32_t luxfer_wrap;
+
+/** Purpose of a material's texture: a LUXFER_TEXTURE_ value. */
+typedef int32_t luxfer_texture_role;
+
+/** The texture that a material uses for one purpose. */
+typedef struct luxfer_texture_use {
+    /** sizeof(luxfer_texture_use), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0. */
+    uint32_t texture;
+    /** Set of the mesh's texture coordinates that it uses, 0 or 1. */
+    uint32_t uv_set;
+    /** LUXFER_WRAP_ value along u. */
+    luxfer_wrap wrap_u;
+    /** LUXFER_WRAP_ value along v. */
+    luxfer_wrap wrap_v;
+    /** Affine map of the texture coordinates: two rows of three, applied to (u, v, 1) before the look-up. */
+    float transform[6];
+} luxfer_texture_use;
+
+/** The alpha is ignored: the surface is opaque. */
+#define LUXFER_ALPHA_OPAQUE 0
+
+/** The surface is opaque where alpha is at least alpha_cutoff, and absent elsewhere. */
+#define LUXFER_ALPHA_MASK 1
+
+/** The surface stops the share alpha of the light; the rest passes straight through. */
+#define LUXFER_ALPHA_BLEND 2
+
+/** Multiplies the base colour; its alpha multiplies the material's. */
+#define LUXFER_TEXTURE_BASE_COLOR 0
+
+/** The green channel multiplies the roughness, the blue channel the metallic value. */
+#define LUXFER_TEXTURE_METALLIC_ROUGHNESS 1
+
+/** Normals in tangent space. */
+#define LUXFER_TEXTURE_NORMAL 2
+
+/** Multiplies the emission; looked up without interpolation. */
+#define LUXFER_TEXTURE_EMISSION 3
+
+/** The texture repeats. */
+#define LUXFER_WRAP_REPEAT 0
+
+/** The texels at the edge continue. */
+#define LUXFER_WRAP_CLAMP 1
+
+/** The texture repeats, mirrored every second time. */
+#define LUXFER_WRAP_MIRROR 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_material_params_init(luxfer_material_params *params,
+                                          size_t size);
+
+/**
+ * Adds a material; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
+                                        const luxfer_material_params *params,
+                                        uint32_t *index);
+
+/**
+ * Replaces the values of a material. It keeps its textures, and its name if params->name is NULL. params may be NULL
+ * for the defaults. To change single values, read the material first. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
+                                        uint32_t index,
+                                        const luxfer_material_params *params);
+
+/**
+ * Reads a material; set params->struct_size before the call. params->name becomes NULL. size is sizeof *params. Any
+ * thread.
+ * LUXFER_NOT_FOUND if there is no such material.
+ */
+luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
+                                        uint32_t index,
+                                        luxfer_material_params *params,
+                                        size_t size);
+
+/**
+ * Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth is alpha; wrap_u and wrap_v are
+ * LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the image has 2 channels or a value that is not finite; LUXFER_OUT_OF_MEMORY beyond the
+ * memory budget.
+ */
+luxfer_status luxfer_scene_add_texture(luxfer_scene *scene,
+                                       luxfer_image *image,
+                                       luxfer_wrap wrap_u,
+                                       luxfer_wrap wrap_v,
+                                       uint32_t *index);
+
+/**
+ * Sets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or
+ * LUXFER_NONE for no texture. uv_set, 0 or 1, chooses the mesh's set of texture coordinates. transform is two rows of
+ * three, finite, applied to (u, v, 1) before the look-up; NULL is the identity. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if an
+ * emission texture has negative values.
+ */
+luxfer_status luxfer_scene_set_material_texture(luxfer_scene *scene,
+                                                uint32_t material,
+                                                luxfer_texture_role role,
+                                                uint32_t texture,
+                                                uint32_t uv_set,
+                                                const float *transform);
+
+/**
+ * Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. size is sizeof *texture_use.
+ * Any thread.
+ * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
+ */
+luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
+                                                uint32_t material_index,
+                                                luxfer_texture_role role,
+                                                luxfer_texture_use *texture_use,
+                                                size_t size);
+
+/**
+ * Gets a texture as an image in linear values. The caller releases *image. Any thread.
+ * LUXFER_NOT_FOUND if there is no such texture.
+ */
+luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxfer_image **image);
+
+/* ====================================================================================================================
+ * Scene description
+ *
+ * Describes a scene by arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
+ * copy the arrays, which may have any alignment and stride.
+ * ==================================================================================================================== */
+
+/** A triangle mesh in world space. Fill it with luxfer_mesh_params_init. */
+typedef struct luxfer_mesh_params {
+    /** sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init. */
+    uint32_t struct_size;
+    /** Index of the mesh's material, from luxfer_scene_add_material; default 0. */
+    uint32_t material;
+    /** Name in UTF-8, copied; luxfer_scene_find_surface finds surfaces by it. NULL, the default: no name. */
+    const char *name;
+    /** Number of vertices in [3, 2^32 - 1]; to be set. */
+    size_t vertex_count;
+    /** Three floats per vertex, in metres, each in [-1e15, 1e15]; to be set. */
+    const void *positions;
+    /** Bytes from one position to the next; at least 12, or 0, the default: packed. */
+    size_t position_stride;
+    /** Three floats per vertex, finite; NULL, the default: flat faces. */
+    const void *normals;
+    /** Bytes from one normal to the next; at least 12, or 0, the default: packed. */
+    size_t normal_stride;
+    /**
+     * Texture coordinates: two floats per vertex, finite; (0, 0) is the top-left corner of a texture. NULL, the
+     * default: no texture coordinates.
+     */
+    const void *uvs;
+    /** Bytes from one pair of texture coordinates to the next; at least 8, or 0, the default: packed. */
+    size_t uv_stride;
+    /** Number of triangles, at least 1; to be set. */
+    size_t triangle_count;
+    /** Three uint32_t per triangle, each less than vertex_count, counter-clockwise seen from the front; to be set. */
+    const void *indices;
+    /** Bytes from one triangle to the next; at least 12, or 0, the default: packed. */
+    size_t index_stride;
+    /**
+     * Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1]. They
+     * multiply the material's base colour and alpha. NULL, the default: none.
+     */
+    const void *colours;
+    /** Bytes from one colour to the next; at least 16, or 0, the default: packed. */
+    size_t colour_stride;
+} luxfer_mesh_params;
+
+/** A pinhole camera. Fill it with luxfer_camera_params_init. */
+typedef struct luxfer_camera_params {
+    /** sizeof(luxfer_camera_params), set by luxfer_camera_params_init. */
+    uint32_t struct_size;
+    /** Full vertical angle of view in radians, in [0.001, 3.1]; default 1. */
+    float fov_y;
+    /** Position in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    float position[3];
+    /** The point that it looks at, in metres, in [-1e15, 1e15], different from position; default (0, 0, -1). */
+    float target[3];
+    /** Up direction of the image, not parallel to the viewing direction; default (0, 1, 0). */
+    float up[3];
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_camera_params;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_mesh_params_init(luxfer_mesh_params *params,
+                                      size_t size);
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_camera_params_init(luxfer_camera_params *params,
+                                        size_t size);
+
+/**
+ * Adds a mesh and copies its arrays; *index, unless NULL, receives its index. Any thread.
+ * LUXFER_INVALID_ARGUMENT if an array is missing, a stride is too small, a number is not finite or an index is out of
+ * range; LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_scene_add_mesh(luxfer_scene *scene,
+                                    const luxfer_mesh_params *params,
+                                    uint32_t *index);
+
+/**
+ * Adds a camera; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
+                                      const luxfer_camera_params *params,
+                                      uint32_t *index);
+
+/**
+ * Replaces a camera. params may be NULL for the defaults. Any thread.
+ * LUXFER_NOT_FOUND if there is no such camera; LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_set_camera(luxfer_scene *scene,
+                                      uint32_t index,
+                                      const luxfer_camera_params *params);
+
+/**
+ * Reads a camera; set params->struct_size before the call. size is sizeof *params. Any thread.
+ * LUXFER_NOT_FOUND if there is no such camera.
+ */
+luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
+                                      uint32_t index,
+                                      luxfer_camera_params *params,
+                                      size_t size);
+
+/* ====================================================================================================================
+ * Luminous intensity distributions
+ *
+ * The luminous intensity of a luminaire by direction, read from and written to IES (LM-63) and EULUMDAT files. These
+ * calls return when their work is done.
+ * ==================================================================================================================== */
+
+/** A luminous intensity distribution. See luxfer_distribution_load. */
+typedef struct luxfer_distribution luxfer_distribution;
+
+/** A file format of distributions: a LUXFER_DISTRIBUTION_ value. */
+typedef int32_t luxfer_distribution_format;
+
+/** Summary of a distribution. */
+typedef struct luxfer_distribution_report {
+    /** sizeof(luxfer_distribution_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of C planes. */
+    uint32_t planes;
+    /** Number of vertical angles in each plane. */
+    uint32_t angles;
+    /** 0. */
+    uint32_t reserved;
+    /** Luminous flux in lumens: the integral of the intensity over all directions. */
+    double flux;
+    /** Rated flux of the lamps in lumens; 0 if the file does not state it (absolute photometry). */
+    double lamp_flux;
+    /** Electric power in watts; 0 if unknown. */
+    double watts;
+    /** Length, width and height of the luminous opening in metres; negative for round ones. */
+    double size[3];
+} luxfer_distribution_report;
+
+/** IES LM-63, type C. */
+#define LUXFER_DISTRIBUTION_IES 0
+
+/** EULUMDAT. */
+#define LUXFER_DISTRIBUTION_LDT 1
+
+/**
+ * Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is malformed: the message names the line,
+ * LUXFER_UNSUPPORTED for types A and B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+ */
+luxfer_status luxfer_distribution_load(luxfer_context *context,
+                                       const char *path,
+                                       luxfer_distribution **distribution);
+
+/**
+ * Loads a distribution from a file in memory of size bytes; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
+ * luxfer_distribution_load.
+ */
+luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
+                                              const void *data,
+                                              size_t size,
+                                              luxfer_distribution_format format,
+                                              luxfer_distribution **distribution);
+
+/**
+ * Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
+ * complete. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+ */
+luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
+                                       const char *path);
+
+/** Gets the summary of a distribution. size is sizeof *report. Any thread. */
+luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
+                                             luxfer_distribution_report *report,
+                                             size_t size);
+
+/**
+ * Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes. *needed, unless NULL,
+ * receives the capacity that the whole name needs. Any thread.
+ */
+luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
+                                           char *buffer,
+                                           size_t capacity,
+                                           size_t *needed);
+
+/**
+ * Gets the luminous intensity in candela in a direction. Angles are in degrees: c turns around the axis, gamma goes
+ * from straight down at 0 to straight up at 180. Any thread.
+ */
+luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
+                                                double c,
+                                                double gamma,
+                                                double *candela);
+
+/* ====================================================================================================================
+ * Lights of a scene
+ *
+ * Punctual lights: points, spots, directional lights (parallel light from far away) and luminaires with a measured
+ * intensity distribution. Area lights are surfaces whose material emits.
+ * ==================================================================================================================== */
+
+/** A kind of light: a LUXFER_LIGHT_ value. */
+typedef int32_t luxfer_light_kind;
+
+/** A punctual light. Fill it with luxfer_light_params_init. */
+typedef struct luxfer_light_params {
+    /** sizeof(luxfer_light_params), set by luxfer_light_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT. */
+    luxfer_light_kind kind;
+    /** Position of a point or a spot, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    float position[3];
+    /** Direction in which a spot or a directional light shines; any length but 0; default (0, -1, 0). */
+    float direction[3];
+    /**
+     * Luminous intensity per channel in cd, of a spot on its axis; for a directional light, the illuminance in lux on
+     * a surface that faces it. Each channel >= 0; default (1, 1, 1).
+     */
+    float intensity[3];
+    /** Half angle of the cone in which a spot has its full intensity, in radians, in [0, outer_angle]; default 0. */
+    float inner_angle;
+    /** Half angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4. */
+    float outer_angle;
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_light_params;
+
+/** Flux, position, orientation and colour of a luminaire. Fill it with luxfer_luminaire_params_init. */
+typedef struct luxfer_luminaire_params {
+    /** sizeof(luxfer_luminaire_params), set by luxfer_luminaire_params_init. */
+    uint32_t struct_size;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Luminous flux in lumens, finite and >= 0; default 0: the flux of the distribution. */
+    double flux;
+    /** Position in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    float position[3];
+    /** Direction of the axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
+    float axis[3];
+    /**
+     * Direction of the plane C = 0. Only its component perpendicular to axis counts, which must not be 0; default (1,
+     * 0, 0). Seen from above a luminaire that shines down, C grows anticlockwise.
+     */
+    float c0[3];
+    /**
+     * Linear colour of the light, each channel >= 0 and not all 0; only the ratio of the channels counts; default (1,
+     * 1, 1).
+     */
+    float colour[3];
+} luxfer_luminaire_params;
+
+/** A point light: equal intensity in every direction. */
+#define LUXFER_LIGHT_POINT 0
+
+/** A spot light: shines into a cone. */
+#define LUXFER_LIGHT_SPOT 1
+
+/** A directional light: shines from infinitely far away. */
+#define LUXFER_LIGHT_DIRECTIONAL 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_light_params_init(luxfer_light_params *params,
+                                       size_t size);
+
+/**
+ * Adds a light; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
+                                     const luxfer_light_params *params,
+                                     uint32_t *index);
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_luminaire_params_init(luxfer_luminaire_params *params,
+                                           size_t size);
+
+/**
+ * Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
+ * index among the lights. It is a good model only if the luminaire is at most a fifth as large as its distance from
+ * the surfaces that it lights. params may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
+                                         luxfer_distribution *distribution,
+                                         const luxfer_luminaire_params *params,
+                                         uint32_t *index);
+
+/* ====================================================================================================================
+ * Scene queries
+ *
+ * Traces rays through a scene and finds their nearest hits, with the same code as the renderer. These calls return
+ * when their work is done.
+ * ==================================================================================================================== */
+
+/** No index: no mesh, no triangle, no texture. */
+#define LUXFER_NONE 4294967295
+
+/** A ray. An element of arrays, so this struct never changes. */
+typedef struct luxfer_ray {
+    /** Start of the ray, in metres. */
+    float origin[3];
+    /** Direction; any length but 0. */
+    float direction[3];
+    /** Hits lie at distances in (0, t_max), in units of direction; may be infinite. */
+    float t_max;
+} luxfer_ray;
+
+/** The nearest hit of a ray. An element of arrays, so this struct never changes. */
+typedef struct luxfer_hit {
+    /** Distance in units of the ray's direction; infinite for a miss. */
+    float t;
+    /** Index of the mesh; LUXFER_NONE for a miss. */
+    uint32_t mesh;
+    /** Index of the triangle in its mesh; LUXFER_NONE for a miss. */
+    uint32_t triangle;
+    /** Barycentric coordinate of the triangle's second corner. */
+    float u;
+    /** Barycentric coordinate of the triangle's third corner. */
+    float v;
+} luxfer_hit;
+
+/**
+ * Finds the nearest hits of count rays; all surfaces count as opaque and two-sided. Of hits at equal distance, the hit
+ * with the lower index of mesh, then of triangle, is returned. Rays that are not finite or whose direction is 0 hit
+ * nothing. The first call after a scene is loaded or changed prepares it for tracing, which takes longer. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the place.
+ */
+luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
+                                     const luxfer_ray *rays,
+                                     size_t count,
+                                     luxfer_hit *hits);
+
+/* ====================================================================================================================
+ * Scene requirements
+ *
+ * The renderer analyses a scene before the first ray: which kinds of scattering and which lights can occur, and how
+ * much light can remain after a bounce. It skips the code for everything that cannot occur, which does not change any
+ * image. You need not call these functions: they only report what the renderer does by itself.
+ * ==================================================================================================================== */
+
+/** At least one surface scatters diffusely. */
+#define LUXFER_SCATTERING_DIFFUSE 1
+
+/** At least one surface has a rough specular reflection. */
+#define LUXFER_SCATTERING_GLOSSY 2
+
+/** At least one surface is a mirror. */
+#define LUXFER_SCATTERING_MIRROR 4
+
+/** At least one surface is a clear pane of glass. */
+#define LUXFER_SCATTERING_GLASS 8
+
+/** At least one surface is partly transparent by its alpha. */
+#define LUXFER_SCATTERING_ALPHA 16
+
+/** At least one surface emits. */
+#define LUXFER_LIGHTS_SURFACE 1
+
+/** At least one surface emits by a texture. */
+#define LUXFER_LIGHTS_TEXTURE 2
+
+/** At least one point light has an intensity above 0. */
+#define LUXFER_LIGHTS_POINT 4
+
+/** At least one spot light has an intensity above 0. */
+#define LUXFER_LIGHTS_SPOT 8
+
+/** At least one directional light has an illuminance above 0. */
+#define LUXFER_LIGHTS_DIRECTIONAL 16
+
+/** The environment emits. */
+#define LUXFER_LIGHTS_ENVIRONMENT 32
+
+/** Features that a scene requires of the renderer. */
+typedef struct luxfer_requirements {
+    /** sizeof(luxfer_requirements), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Kinds of scattering that can occur: LUXFER_SCATTERING_ flags. */
+    uint32_t scattering;
+    /** Kinds of lights that emit: LUXFER_LIGHTS_ flags. */
+    uint32_t lights;
+    /** Number of textures that change the scattering, the emission or the normals of surfaces. */
+    uint32_t textures;
+    /**
+     * Number of bounces that matter: light that is scattered more often is at most the share error, given in the call,
+     * of all light that surfaces scatter. 0 if the albedos give no bound. The renderer ends paths there only if
+     * luxfer_render_params.bounce_error is set.
+     */
+    uint32_t bounces;
+    /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */
+    uint32_t brightest_material;
+    /**
+     * Largest albedo of any surface, per channel, in [0, 1]: the share of the received light that it reflects and
+     * transmits.
+     */
+    float albedo[3];
+    /** Number of triangles with zero area, which are skipped. */
+    uint32_t flat_triangles;
+} luxfer_requirements;
+
+/**
+ * Gets the features that a scene requires of the renderer; error, in [0, 1), is the share of light for the field
+ * bounces. The first call after a change of the scene prepares it for tracing. size is sizeof *requirements. Any
+ * thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
+ */
+luxfer_status luxfer_scene_get_requirements(luxfer_scene *scene,
+                                            float error,
+                                            luxfer_requirements *requirements,
+                                            size_t size);
+
+/**
+ * Describes in words what the renderer skips in a scene, and each extension and feature of its file that is not
+ * rendered, with the objects that have it: one sentence per line, as zero-terminated UTF-8, truncated to capacity
+ * bytes. *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if
+ * capacity is 0. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid.
+ */
+luxfer_status luxfer_scene_get_requirements_text(luxfer_scene *scene,
+                                                 char *buffer,
+                                                 size_t capacity,
+                                                 size_t *needed);
+
+/* ====================================================================================================================
+ * Scene read-back
+ *
+ * Reads the meshes of a scene. With luxfer_scene_get_counts and the functions that read materials, textures and
+ * cameras, a host can copy a whole scene.
+ * ==================================================================================================================== */
+
+/** A mesh of a scene. */
+typedef struct luxfer_mesh_info {
+    /** sizeof(luxfer_mesh_info), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Index of the mesh's material. */
+    uint32_t material;
+    /** Number of vertices. */
+    size_t vertex_count;
+    /** Number of triangles. */
+    size_t triangle_count;
+    /** 1 if each vertex has a normal, 0 if the faces are flat. */
+    uint32_t has_normals;
+    /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second. */
+    uint32_t uv_sets;
+    /** 1 if each vertex has a colour, else 0. */
+    uint32_t has_colours;
+    /** 0. */
+    uint32_t reserved;
+} luxfer_mesh_info;
+
+/**
+ * Gets the sizes and attributes of a mesh. size is sizeof *info. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh.
+ */
+luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene,
+                                    uint32_t index,
+                                    luxfer_mesh_info *info,
+                                    size_t size);
+
+/**
+ * Copies the name of a mesh into buffer, as luxfer_context_get_last_error copies a message. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh.
+ */
+luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
+                                         uint32_t index,
+                                         char *buffer,
+                                         size_t capacity,
+                                         size_t *needed);
+
+/**
+ * Copies a mesh into packed arrays of the caller: positions and normals with three floats per vertex, and indices with
+ * three per triangle. Any of the arrays may be NULL. The capacities are numbers of vertices and of triangles. Any
+ * thread.
+ * LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none; LUXFER_INVALID_ARGUMENT if
+ * a capacity is too small.
+ */
+luxfer_status luxfer_scene_read_mesh(luxfer_scene *scene,
+                                     uint32_t index,
+                                     size_t vertex_capacity,
+                                     float *positions,
+                                     float *normals,
+                                     size_t triangle_capacity,
+                                     uint32_t *indices);
+
+/**
+ * Copies set uv_set, 0 or 1, of a mesh's texture coordinates into a packed array of the caller, two floats per vertex;
+ * capacity is a number of vertices. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too
+ * small.
+ */
+luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
+                                         uint32_t index,
+                                         uint32_t uv_set,
+                                         size_t capacity,
+                                         float *uvs);
+
+/**
+ * Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
+ * number of vertices. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too
+ * small.
+ */
+luxfer_status luxfer_scene_read_mesh_colours(luxfer_scene *scene,
+                                             uint32_t index,
+                                             size_t capacity,
+                                             float *colours);
+
+/* ====================================================================================================================
+ * Candidates for the ceiling
+ *
+ * The objects and materials of a scene with their area, height and direction, the likeliest ceilings first: for hosts
+ * that let the user choose the surface with the lights. luxfer_scene_find_surface and luxfer_transfer_set_target take
+ * the names. A list is a copy, which stays as it is when the scene changes.
+ * ==================================================================================================================== */
+
+/** A list of candidates. See luxfer_scene_get_candidates. */
+typedef struct luxfer_candidates luxfer_candidates;
+
+/** What a candidate is: a LUXFER_CANDIDATE_ value. */
+typedef int32_t luxfer_candidate_kind;
+
+/** An object or a material of a scene. */
+typedef struct luxfer_candidate {
+    /** sizeof(luxfer_candidate), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** LUXFER_CANDIDATE_ value. */
+    luxfer_candidate_kind kind;
+    /** Index of the object's first mesh, or of the material. */
+    uint32_t index;
+    /** Number of triangles with an area. */
+    uint32_t triangles;
+    /** Area in m². */
+    float area;
+    /** Area in m² of the triangles that are inclined by less than 15 degrees, on either side. */
+    float level_area;
+    /** Mean height of these triangles, or of all if there are none, in metres. */
+    float height;
+    /** Lowest point, in metres. */
+    float low;
+    /** Highest point, in metres. */
+    float high;
+    /** Mean direction of the front sides by area, a unit vector; 0 if they cancel, as for a box. */
+    float normal[3];
+    /**
+     * Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan that it
+     * covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts too.
+     */
+    float score;
+    /** 0. */
+    uint32_t reserved;
+    /** Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates. */
+    const char *name;
+    /** The reason for the score, in English and with its figures. */
+    const char *reason;
+} luxfer_candidate;
+
+/** All meshes of one name. */
+#define LUXFER_CANDIDATE_OBJECT 0
+
+/** All triangles of one material. */
+#define LUXFER_CANDIDATE_MATERIAL 1
+
+/**
+ * Lists the objects of a scene, and the materials in use, the likeliest ceilings first. It reads each triangle once.
+ * The caller releases *candidates. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid.
+ */
+luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,
+                                          luxfer_candidates **candidates);
+
+/** Counts the candidates of a list. Any thread. */
+luxfer_status luxfer_candidates_get_count(luxfer_candidates *candidates, uint32_t *count);
+
+/**
+ * Gets a candidate of a list. size is sizeof *candidate. Any thread.
+ * LUXFER_NOT_FOUND if there is no such candidate.
+ */
+luxfer_status luxfer_candidates_get(luxfer_candidates *candidates,
+                                    uint32_t index,
+                                    luxfer_candidate *candidate,
+                                    size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* LUXFER_SCENE_H */

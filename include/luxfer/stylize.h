@@ -1,0 +1,653 @@
+/* luxfer: stylisation by example.
+ *
+ * tests/abi_header.rs generates this file from src/ffi.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+#ifndef LUXFER_STYLIZE_H
+#define LUXFER_STYLIZE_H
+
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ====================================================================================================================
+ * Guides
+ *
+ * Renders the guide images of a stylisation, which show different kinds of light in a scene: once for the exemplar
+ * scene and once for the target scene. Guides from another renderer do not need this object: see
+ * luxfer_stylize_add_guide.
+ * ==================================================================================================================== */
+
+/** The guides of a scene. See luxfer_guides_create. */
+typedef struct luxfer_guides luxfer_guides;
+
+/** Settings of guides. Fill them with luxfer_guides_params_init. */
+typedef struct luxfer_guides_params {
+    /** sizeof(luxfer_guides_params), set by luxfer_guides_params_init. */
+    uint32_t struct_size;
+    /** Width of the images in pixels, in [1, 32768]; default 800. */
+    uint32_t width;
+    /** Height of the images in pixels, in [1, 32768]; default 608. */
+    uint32_t height;
+    /** Paths per pixel, in [1, 1048576]; default 64. */
+    uint32_t samples;
+    /** Index of the scene's camera; default 0. */
+    uint32_t camera;
+    /**
+     * 1, the default: smooth the light along surfaces, so that the stylisation does not match noise; 0: keep the
+     * noise.
+     */
+    uint32_t smooth;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_guides_params;
+
+/** An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m². */
+typedef int32_t luxfer_guides_image;
+
+/** All light, reflected any number of times. */
+#define LUXFER_GUIDES_FULL 0
+
+/** Light reflected once, by a diffuse surface (LDE). */
+#define LUXFER_GUIDES_DIRECT 1
+
+/** Light reflected once, by a glossy surface (LSE). */
+#define LUXFER_GUIDES_SPECULAR 2
+
+/** Light whose last two reflections were diffuse (L.*DDE): it shows colour bleeding. */
+#define LUXFER_GUIDES_INDIRECT 3
+
+/** Light reflected once or twice, by diffuse surfaces (LD{1,2}E): it shows shadows. */
+#define LUXFER_GUIDES_TWO_BOUNCES 4
+
+/** Normals in camera space: x right, y up, z towards the camera; 3 channels. */
+#define LUXFER_GUIDES_NORMALS 5
+
+/** Edges of shapes, in [0, 1]; 1 channel. */
+#define LUXFER_GUIDES_EDGES 6
+
+/** A colour code for each material, derived from its name; 3 channels. */
+#define LUXFER_GUIDES_MATERIALS 7
+
+/** Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE). */
+#define LUXFER_GUIDES_CAUSTICS 8
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_guides_params_init(luxfer_guides_params *params,
+                                        size_t size);
+
+/** Creates the stage. The caller releases *guides. Any thread. */
+luxfer_status luxfer_guides_create(luxfer_context *context, luxfer_guides **guides);
+
+/** Sets the scene; each job renders the scene as it is when the job starts. Any thread. */
+luxfer_status luxfer_guides_set_scene(luxfer_guides *guides, luxfer_scene *scene);
+
+/**
+ * Starts a job that renders the guides. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+ */
+luxfer_status luxfer_guides_start(luxfer_guides *guides,
+                                  const luxfer_guides_params *params,
+                                  luxfer_job **job);
+
+/**
+ * Gets a guide; which is a LUXFER_GUIDES_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
+                                      luxfer_guides_image which,
+                                      luxfer_image **image);
+
+/**
+ * Computes the motion between two frames of one scene under a moving camera, for luxfer_stylize_set_motion: for each
+ * pixel of this frame, the offset to its position in the frame before, x and y in pixels; NaN where it was not
+ * visible. The caller releases *motion. Any thread.
+ * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
+ */
+luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
+                                       luxfer_guides *before,
+                                       luxfer_image **motion);
+
+/* ====================================================================================================================
+ * Settings of a stylisation
+ *
+ * Presets and settings. The defaults were chosen on the curves of quality against time that benches/stylit.rs draws.
+ * ==================================================================================================================== */
+
+/** How exemplar patches are assigned to the target: a LUXFER_STYLIZE_MODE_ value. */
+typedef int32_t luxfer_stylize_mode;
+
+/** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
+typedef int32_t luxfer_stylize_search;
+
+/** How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value. */
+typedef int32_t luxfer_stylize_vote;
+
+/**
+ * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
+ * stated here are those of LUXFER_STYLIZE_FULL.
+ */
+typedef struct luxfer_stylize_params {
+    /** sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET. */
+    luxfer_stylize_mode mode;
+    /** LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
+    luxfer_stylize_search search;
+    /** Width of a patch in pixels, odd, in [1, 33]; default 5. */
+    uint32_t patch;
+    /** Weight of all guides together, relative to the artwork's colours together, in [0, 1e6]; default 2. */
+    float guide_weight;
+    /** Maximum number of resolution levels, each half as wide and high as the next, in [1, 16]; default 6. */
+    uint32_t levels;
+    /** Rounds of matching and painting on the second finest level, in [1, 100]; default 6. */
+    uint32_t iterations;
+    /** Rounds of matching and painting on the finest level, in [1, 100]; default 1. */
+    uint32_t finest_iterations;
+    /**
+     * Additional rounds on the finest level without the error budget, in which each target patch takes its nearest
+     * match, in [0, 100]; default 3; the paper has 0. In other modes than LUXFER_STYLIZE_MODE_BUDGET these are
+     * additional rounds of that mode.
+     */
+    uint32_t polish;
+    /** PatchMatch sweeps of a search, in [1, 100]; default 1. */
+    uint32_t sweeps;
+    /**
+     * Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
+     * default 0.9.
+     */
+    float coverage;
+    /** Maximum number of matching passes under the error budget in a round, in [1, 1000]; default 6. */
+    uint32_t passes;
+    /**
+     * Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100]; default 2;
+     * the paper has 0.
+     */
+    uint32_t settle;
+    /**
+     * Cost of a seam between neighbouring patches in those sweeps, as a share of the mean error, in [0, 100]; default
+     * 0.2.
+     */
+    float seam;
+    /** LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED. */
+    luxfer_stylize_vote vote;
+    /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST. */
+    luxfer_stylize_vote final_vote;
+    /**
+     * 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
+     * default: full resolution.
+     */
+    uint32_t preview;
+    /**
+     * 1: keep the data that luxfer_stylize_update needs, about as much memory as all guides; 0, the default: free it.
+     */
+    uint32_t keep_for_update;
+    /**
+     * Share of the previous frame's paint that is kept where it fits, in [0, 1]; default 1. Below 1 the paint changes
+     * from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. It needs
+     * luxfer_stylize_set_motion; without it, it has no effect.
+     */
+    float coherence;
+    /**
+     * How far the light guides of the exemplar are adapted to the brightness and contrast of the target's, in [0, 1];
+     * default 0.
+     */
+    float match_appearance;
+    /** Seed of the search; default 1. */
+    uint64_t seed;
+    /**
+     * Factor of guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. A larger factor
+     * follows the guides more closely, with smaller connected pieces of the artwork.
+     */
+    float coarse_guides;
+    /** Rounds on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6. */
+    uint32_t coarse_iterations;
+    /**
+     * Weight lambda of the usage of a patch in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10]; default 0.1, which Fiser et
+     * al. found best by hand (Fig. 10n). It is the cost, in addition to the distance, of a match to a patch of average
+     * usage. Both are in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
+     * LUXFER_STYLIZE_MODE_NEAREST.
+     */
+    float occurrence;
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_stylize_params;
+
+/** Presets between quality and speed: a LUXFER_STYLIZE_ preset. */
+typedef int32_t luxfer_stylize_preset;
+
+/** Full quality, the default. */
+#define LUXFER_STYLIZE_FULL 0
+
+/** Nearly the quality of LUXFER_STYLIZE_FULL in half the time. */
+#define LUXFER_STYLIZE_FAST 1
+
+/** Half resolution with compressed guides, for feedback while painting. */
+#define LUXFER_STYLIZE_PREVIEW 2
+
+/** The settings of the paper, for comparison. */
+#define LUXFER_STYLIZE_PAPER 3
+
+/** Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the default. */
+#define LUXFER_STYLIZE_MODE_BUDGET 0
+
+/** Every exemplar patch is used equally often (Jamriska et al. 2015). */
+#define LUXFER_STYLIZE_MODE_UNIFORM 1
+
+/** Each target patch takes its nearest exemplar patch (Wexler et al. 2007). */
+#define LUXFER_STYLIZE_MODE_NEAREST 2
+
+/** One pass in scan order (Hertzmann et al. 2001); runs on one thread. */
+#define LUXFER_STYLIZE_MODE_GREEDY 3
+
+/**
+ * Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan et
+ * al. 2001).
+ */
+#define LUXFER_STYLIZE_MODE_LIT_SPHERE 4
+
+/**
+ * Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar et al.
+ * 2015): see the field occurrence. Runs on one thread, and with LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
+ */
+#define LUXFER_STYLIZE_MODE_OCCURRENCE 5
+
+/** PatchMatch, the default. */
+#define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
+
+/** A k-d tree over the means of patches instead of PatchMatch. */
+#define LUXFER_STYLIZE_SEARCH_TABLE 1
+
+/** The mean of the overlapping patches. */
+#define LUXFER_STYLIZE_VOTE_PLAIN 0
+
+/** The mean of the overlapping patches, weighted so that closer matches count more. */
+#define LUXFER_STYLIZE_VOTE_WEIGHTED 1
+
+/** The colour of the patch that is nearest to the mean, so that every colour occurs in the artwork. */
+#define LUXFER_STYLIZE_VOTE_NEAREST 2
+
+/**
+ * The artwork pixel that most of the overlapping patches place there, so that pieces of the artwork stay whole up to
+ * their seams.
+ */
+#define LUXFER_STYLIZE_VOTE_MOST 3
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *params,
+                                         size_t size);
+
+/**
+ * Fills *params with a preset instead: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
+ * LUXFER_INVALID_ARGUMENT for another value.
+ */
+luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
+                                           luxfer_stylize_preset preset,
+                                           size_t size);
+
+/* ====================================================================================================================
+ * Stylisation
+ *
+ * Paints a target scene in the style in which an artist has painted an exemplar scene (StyLit). Set the artwork, add
+ * the guides (pairs of images that show the light in the exemplar and in the target) and start. Or set a half-painted
+ * picture and let the library paint the rest. While the job runs, and after a cancel, the picture of the finest
+ * finished level can be read.
+ *
+ * Patents cover some of the methods in some countries, so a build of the library may leave stylisation out. Its
+ * functions still exist in such a build, but luxfer_stylize_create returns LUXFER_UNSUPPORTED.
+ * ==================================================================================================================== */
+
+/** Flag of luxfer_stylize_add_guides: add the normals. */
+#define LUXFER_GUIDES_WITH_NORMALS 1
+
+/** Flag: add the edges, for shapes finer than the strokes. */
+#define LUXFER_GUIDES_WITH_EDGES 2
+
+/** Flag: add the colour code of materials, so that objects of a material are painted from objects of that material. */
+#define LUXFER_GUIDES_WITH_MATERIALS 4
+
+/** Flag: add the caustics, at the common exposure, for scenes in which glossy objects reflect light onto others. */
+#define LUXFER_GUIDES_WITH_CAUSTICS 8
+
+/** A stylisation. See luxfer_stylize_create. */
+typedef struct luxfer_stylize luxfer_stylize;
+
+/** Meaning of the values of a guide: a LUXFER_GUIDE_ value. */
+typedef int32_t luxfer_guide_range;
+
+/** Linear light >= 0, such as renderings; it is compared as it would look on a screen. */
+#define LUXFER_GUIDE_LIGHT 0
+
+/** Data, such as normals, object codes and edges; the common range of both images is scaled to [0, 1]. */
+#define LUXFER_GUIDE_DATA 1
+
+/**
+ * Creates the stage. The caller releases *stylize. Any thread.
+ * LUXFER_UNSUPPORTED if stylisation was left out of this build.
+ */
+luxfer_status luxfer_stylize_create(luxfer_context *context, luxfer_stylize **stylize);
+
+/**
+ * Sets the artwork: the exemplar scene as painted by the artist, in linear colour, 1, 3 or 4 channels, of the size of
+ * the guides' sources and aligned with them. Any thread.
+ */
+luxfer_status luxfer_stylize_set_artwork(luxfer_stylize *stylize,
+                                         luxfer_image *artwork);
+
+/**
+ * Adds a guide, or replaces the guide of that name. source shows the exemplar and target the scene to paint; both have
+ * the same number of channels, at most 60 in all guides together. target may be NULL to use source for both, for a
+ * half-painted picture (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a
+ * LUXFER_GUIDE_ value. All sources must have one size, and all targets one size. Values that are not finite count as 0
+ * in the target; pixels of the exemplar with such values are not used. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the channels differ, are too many, or a value is out of range.
+ */
+luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
+                                       const char *name,
+                                       luxfer_image *source,
+                                       luxfer_image *target,
+                                       float weight,
+                                       luxfer_guide_range range);
+
+/**
+ * Adds the rendered guides of two scenes. It adds the five light guides LUXFER_GUIDES_FULL to
+ * LUXFER_GUIDES_TWO_BOUNCES at a common exposure, under the names "full", "direct", "specular", "indirect" and "two
+ * bounces", each with weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the guide "caustics",
+ * "normals", "edges" or "materials" with weight extra_weight. Any thread.
+ * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
+ */
+luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
+                                        luxfer_guides *source,
+                                        luxfer_guides *target,
+                                        uint32_t extras,
+                                        float extra_weight);
+
+/** Removes all guides. Any thread. */
+luxfer_status luxfer_stylize_clear_guides(luxfer_stylize *stylize);
+
+/**
+ * Sets the pixels of the artwork that may be copied: those where mask is above 0.5; 1 channel, the artwork's size.
+ * mask may be NULL: all pixels. Any thread.
+ */
+luxfer_status luxfer_stylize_set_source_mask(luxfer_stylize *stylize,
+                                             luxfer_image *mask);
+
+/**
+ * Sets the pixels of the target to paint: those where mask is above 0.5; 1 channel, the size of the guides' targets.
+ * The other pixels are taken from known (linear, with the number of channels of the artwork), and the new paint is
+ * fitted to them; if known is NULL they are black. mask may be NULL: all pixels are painted. Any thread.
+ */
+luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
+                                             luxfer_image *mask,
+                                             luxfer_image *known);
+
+/**
+ * Makes each job start from the previous result, for the frames of an animation. motion (2 channels, the size of the
+ * guides' targets) holds for each pixel the offset to its position in the previous frame, x and y in pixels; NaN where
+ * it was not visible. The paint of the previous frame moves along and stays where it fits; see
+ * luxfer_stylize_params.coherence. motion may be NULL: each job starts from nothing. Any thread.
+ */
+luxfer_status luxfer_stylize_set_motion(luxfer_stylize *stylize,
+                                        luxfer_image *motion);
+
+/**
+ * Starts a job that stylises. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a
+ * setting is out of range; LUXFER_NOT_READY if motion is set and there is no previous result. The job may end with
+ * LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels, LUXFER_DEGENERATE if a mask is empty or
+ * leaves no exemplar patch.
+ */
+luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
+                                   const luxfer_stylize_params *params,
+                                   luxfer_job **job);
+
+/**
+ * Starts a job that updates the picture after a change of the artwork. artwork has the size and channels of the first
+ * artwork, and new paint where the 1-channel image changed is above 0.5; the pixels of the picture that were painted
+ * from there are painted again. Takes a fraction of the time of luxfer_stylize_start. The caller releases *job. Any
+ * thread.
+ * LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end with
+ * LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work too.
+ */
+luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
+                                    luxfer_image *artwork,
+                                    luxfer_image *changed,
+                                    luxfer_job **job);
+
+/**
+ * Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, its size)
+ * is above 0.5 where it is finished; the sources of the guides show its scene, and their targets are NULL. It is a
+ * shorthand for painted as the source mask, its inverse as the target mask, and the artwork as known. Any thread.
+ * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have its size or has
+ * more than 1 channel.
+ */
+luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
+                                         luxfer_image *painted);
+
+/* ====================================================================================================================
+ * Results of a stylisation
+ *
+ * The picture, the source of each pixel in the artwork, the error of the guides, and statistics of the run level by
+ * level.
+ * ==================================================================================================================== */
+
+/** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
+typedef int32_t luxfer_stylize_image;
+
+/** Quality of a stylisation. */
+typedef struct luxfer_stylize_report {
+    /** sizeof(luxfer_stylize_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** 1 if the run is complete; 0 if only `levels` levels are finished: then the fields from `used` on are 0. */
+    uint32_t is_complete;
+    /** Number of finished levels; see luxfer_stylize_get_level. */
+    uint32_t levels;
+    /** Number of times that the sides of the target were halved to get the size of the picture. */
+    uint32_t halvings;
+    /** Width of the patches, in pixels. */
+    uint32_t patch;
+    /** Largest number of uses of an exemplar patch. */
+    uint32_t max_uses;
+    /**
+     * Mean squared difference of the channels, in [0, 1], of matched patches after the last round (Eq. 3). The
+     * channels of the artwork have the weight 1 together, the guides guide_weight.
+     */
+    double energy;
+    /** Share of the exemplar patches that were used, in [0, 1]. */
+    double used;
+    /** Entropy of the usage of exemplar patches, in bits. */
+    double entropy;
+    /** Root mean square of LUXFER_STYLIZE_IMAGE_GUIDE_ERROR. */
+    double guide_error;
+    /** Number of exemplar pixels that were not used because a value is not finite. */
+    uint64_t broken_source;
+    /** Number of target pixels with a guide value that is not finite and was taken as 0. */
+    uint64_t broken_target;
+} luxfer_stylize_report;
+
+/** One round of matching and painting. */
+typedef struct luxfer_stylize_round {
+    /** sizeof(luxfer_stylize_round), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of matching passes under the error budget; see luxfer_stylize_get_pass. */
+    uint32_t passes;
+    /** Energy after this round, as luxfer_stylize_report.energy. */
+    double energy;
+} luxfer_stylize_round;
+
+/** One matching pass under the error budget. */
+typedef struct luxfer_stylize_pass {
+    /** sizeof(luxfer_stylize_pass), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /**
+     * Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
+     * the error curve.
+     */
+    double knee;
+    /** Share of the target with a match after this pass, in [0, 1]. */
+    double coverage;
+    /** Number of target patches that received a match in this pass. */
+    uint64_t new_matches;
+} luxfer_stylize_pass;
+
+/**
+ * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it is
+ * smaller: the sides of the target are halved luxfer_stylize_report.halvings times, rounded down.
+ */
+#define LUXFER_STYLIZE_IMAGE_PICTURE 0
+
+/**
+ * Difference between the guides at each pixel and at the place in the exemplar from which it was painted, in [0, 1]; 1
+ * channel. It is high where nothing in the exemplar fits.
+ */
+#define LUXFER_STYLIZE_IMAGE_GUIDE_ERROR 1
+
+/**
+ * Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was painted; 2
+ * channels.
+ */
+#define LUXFER_STYLIZE_IMAGE_SOURCES 2
+
+/**
+ * Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. luxfer_stylize_update changes the picture and
+ * the sources only; the guide error remains that of the last full run. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
+ * level is finished.
+ */
+luxfer_status luxfer_stylize_get_image(luxfer_stylize *stylize,
+                                       luxfer_stylize_image which,
+                                       luxfer_image **image);
+
+/**
+ * Gets the current quality of the result. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished.
+ */
+luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize,
+                                        luxfer_stylize_report *report,
+                                        size_t size);
+
+/**
+ * Gets the size of a level and the number of its rounds; level 0 is the coarsest. width, height and rounds may be
+ * NULL. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
+ */
+luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
+                                       uint32_t level,
+                                       uint32_t *width,
+                                       uint32_t *height,
+                                       uint32_t *rounds);
+
+/**
+ * Describes a round of a level. size is sizeof *round. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
+ */
+luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
+                                       uint32_t level,
+                                       uint32_t index,
+                                       luxfer_stylize_round *round,
+                                       size_t size);
+
+/**
+ * Describes a pass of a round. size is sizeof *pass. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
+ * pass.
+ */
+luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
+                                      uint32_t level,
+                                      uint32_t round,
+                                      uint32_t index,
+                                      luxfer_stylize_pass *pass,
+                                      size_t size);
+
+/* ====================================================================================================================
+ * Print sheets
+ *
+ * For artists who paint on paper: prints the exemplar in pale colours between alignment marks, and aligns a photo or
+ * scan of the painted sheet with the exemplar by these marks. These calls return when their work is done.
+ * ==================================================================================================================== */
+
+/** Settings of a print sheet. Fill them with luxfer_sheet_params_init; use equal settings for printing and aligning. */
+typedef struct luxfer_sheet_params {
+    /** sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init. */
+    uint32_t struct_size;
+    /**
+     * 1, the default: correct uneven lighting of the photo by the white of the marks, so that paper becomes 1; 0: no
+     * correction.
+     */
+    uint32_t even_light;
+    /** Width of the paper in millimetres, in [60, 2000]; default 297. */
+    double paper_width;
+    /** Height of the paper in millimetres, in [60, 2000]; default 210. */
+    double paper_height;
+    /** Dots per inch of the sheet, in [20, 1200]; default 300. */
+    double dpi;
+    /** Distance of the marks from the edge of the paper in millimetres, in [0, 50]; default 8. */
+    double margin;
+    /** Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints the picture unchanged. */
+    double contrast;
+} luxfer_sheet_params;
+
+/** Quality of the alignment of a photo. */
+typedef struct luxfer_sheet_report {
+    /** sizeof(luxfer_sheet_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of marks found, of 10; at least 6 are needed. */
+    uint32_t marks;
+    /**
+     * Root mean square distance between the marks and their positions by to_photo, in pixels of the photo. More than
+     * one or two pixels mean that the paper is not flat or that the lens distorts.
+     */
+    double residual;
+    /** Expected alignment error in pixels of the picture. */
+    double error;
+    /** Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row. */
+    double to_photo[9];
+} luxfer_sheet_report;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_sheet_params_init(luxfer_sheet_params *params,
+                                       size_t size);
+
+/**
+ * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): in pale colours, as large as the
+ * paper allows, with ten marks around it. Save it as PNG and print it at params->dpi without scaling. params may be
+ * NULL for the defaults. The caller releases *sheet. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper is too small; LUXFER_OUT_OF_MEMORY beyond the
+ * memory budget.
+ */
+luxfer_status luxfer_sheet_print(luxfer_image *picture,
+                                 const luxfer_sheet_params *params,
+                                 luxfer_image **sheet);
+
+/**
+ * Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with equal params for a picture of
+ * width x height pixels, and resamples it to that picture: the artwork, linear RGB. The photo may be rotated and in
+ * perspective. params may be NULL for the defaults. size is sizeof *report; report may be NULL, then size does not
+ * matter. Takes up to a few seconds. The caller releases *artwork. Any thread.
+ * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ */
+luxfer_status luxfer_sheet_align(luxfer_image *photo,
+                                 uint32_t width,
+                                 uint32_t height,
+                                 const luxfer_sheet_params *params,
+                                 luxfer_image **artwork,
+                                 luxfer_sheet_report *report,
+                                 size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* LUXFER_STYLIZE_H */
