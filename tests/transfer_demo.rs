@@ -9,7 +9,9 @@ use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight;
 use luxfer::render::World;
+use luxfer::segment::StrokeSet;
 use luxfer::transfer::{Input, Params, Pattern, Scale, Stage, Transfer};
+use luxfer::warning::Code;
 use std::sync::Arc;
 
 /// A small transfer with all inputs; and the room of the photo.
@@ -226,4 +228,29 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     lights.mask.data.fill(0.0);
     let dark = pool.run(|| transfer.run(Stage::Emission, Stage::Emission, monitor.job(), |_| {})).unwrap_err();
     assert_eq!(dark.kind, ErrorKind::Degenerate, "{dark}");
+}
+
+#[test]
+fn without_strokes_the_ceiling_and_its_lamps_are_proposed_with_a_warning() {
+    let pool = Pool::new(0).unwrap();
+    let (mut transfer, _) = prepared(&pool, 16, 3);
+    let monitor = Monitor::default();
+    pool.run(|| transfer.run(Stage::View, Stage::Lights, monitor.job(), |_| {})).unwrap();
+    let masks = |transfer: &Transfer| {
+        let results = &transfer.results;
+        [&results.plane, &results.lights].map(|mask| mask.as_ref().unwrap().mask.clone())
+    };
+    let painted = masks(&transfer);
+    transfer.input.strokes = StrokeSet::default();
+    pool.run(|| transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| {})).unwrap();
+    for ((painted, proposed), least) in painted.iter().zip(&masks(&transfer)).zip([0.85, 0.8]) {
+        let count = |is: &dyn Fn(bool, bool) -> bool| {
+            painted.data.iter().zip(&proposed.data).filter(|(a, b)| is(**a > 0.5, **b > 0.5)).count() as f64
+        };
+        let iou = count(&|a, b| a && b) / count(&|a, b| a || b);
+        assert!(iou > least, "intersection over union {iou}");
+    }
+    let warnings = transfer.results.warnings(&transfer.input.strokes);
+    let proposed = warnings.iter().filter(|(_, w)| w.code == Code::Proposed).map(|(stage, _)| *stage);
+    assert_eq!(proposed.collect::<Vec<_>>(), [Stage::Plane, Stage::Lights]);
 }

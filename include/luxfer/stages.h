@@ -563,9 +563,11 @@ luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
 
 /**
  * Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
- * if one class has no strokes, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out of
- * range.
+ * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. With the features of
+ * luxfer_features a mask whose strokes are missing is proposed, and LUXFER_WARNING_PROPOSED says so: the face of the room
+ * under the positive strokes, else the ceiling; lamps among the brightest things of the region. The job may end with
+ * LUXFER_DEGENERATE if strokes are missing and nothing can be proposed, LUXFER_INVALID_ARGUMENT if sizes differ, a feature
+ * is not finite or a setting is out of range.
  */
 luxfer_status luxfer_segment_start(luxfer_segment *segment,
                                    const luxfer_segment_params *params,

@@ -625,6 +625,24 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NOT_RENDERED 21
 
 /**
+ * The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability that
+ * a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest lamp.
+ */
+#define LUXFER_WARNING_DIM_LAMPS 22
+
+/**
+ * A texture without light would differ less from the photo, so that this one holds nothing of its pattern; the severity is
+ * the error of luxfer_emission_report. Raised in place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+ */
+#define LUXFER_WARNING_NO_PATTERN 23
+
+/**
+ * Strokes are missing, so that a mask is a proposal: the plane without a negative stroke, or the lights without a positive one;
+ * the severity is the share of the mask that is expected to be wrong.
+ */
+#define LUXFER_WARNING_PROPOSED 24
+
+/**
  * Gets the warnings about the result of an object. handle is one of:
  * - a luxfer_transfer: the warnings of all stages that have a result, in their order;
  * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;

@@ -6,7 +6,7 @@ use crate::image::Image;
 use glam::DVec2;
 use std::ops::RangeInclusive;
 
-/// Pixels of the unwarped photo that a texel may stand for. [convention]
+/// Pixels of the unwarped photo that a texel may stand for. \[convention\]
 pub const SCALES: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// The exemplar as it comes from unwarping.

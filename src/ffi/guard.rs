@@ -58,7 +58,11 @@ mod tests {
         assert_eq!(guard(|| in_pool().map(|_| ())), LUXFER_INTERNAL);
         let in_thread =
             || crate::exec::spawn("luxfer-job", || assert!(catch(|| worker(0)).is_err())).unwrap().join().unwrap();
-        assert_eq!(guard(|| Ok(in_thread())), LUXFER_OK);
+        let of_thread = guard(|| {
+            in_thread();
+            Ok(())
+        });
+        assert_eq!(of_thread, LUXFER_OK);
         // The host's own panics are as loud as before, also in a function that the library calls.
         assert_eq!(guard(|| crate::quiet::outside(|| panic!("of the host, within"))), LUXFER_INTERNAL);
         assert!(catch_unwind(|| panic!("of the host, after")).is_err());

@@ -220,9 +220,11 @@ pub unsafe extern "C" fn luxfer_segment_set_strokes(
 }
 
 /// Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
-/// if one class has no strokes, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out of
-/// range.
+/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. With the features of
+/// luxfer_features a mask whose strokes are missing is proposed, and LUXFER_WARNING_PROPOSED says so: the face of the room
+/// under the positive strokes, else the ceiling; lamps among the brightest things of the region. The job may end with
+/// LUXFER_DEGENERATE if strokes are missing and nothing can be proposed, LUXFER_INVALID_ARGUMENT if sizes differ, a feature
+/// is not finite or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_start(
     segment: *mut luxfer_segment,

@@ -2,10 +2,10 @@
 //! and floors of its colour, which no stroke has touched.
 
 use super::classify::Classified;
-use super::{Input, Segmentation};
+use super::{Input, Segmentation, Stroke};
 use crate::error::{Error, Result};
 use crate::features::CHANNELS;
-use crate::image::{Image, try_push, try_vec};
+use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
 /// Where the normals are in the features.
@@ -31,26 +31,53 @@ const MIN_CEILING: f64 = 0.02;
 /// Share of a proposed mask's pixels that is wrong. [bench photos:nostrokes]
 const PROPOSED_ERROR: f64 = 0.12;
 
+/// Pixels of the ceiling that stand for a stroke on it. [convention]
+const EXAMPLES: usize = 1000;
+
 /// The face of the room that the positive strokes lie on; without positive strokes, the ceiling. `None` where the strokes agree on
 /// no face. Errors: there is no stroke, and no ceiling (`Degenerate`).
 pub fn propose(input: &Input) -> Result<Option<Segmentation>> {
     let features = input.features;
     let count = features.width * features.height;
-    let is_painted = input.strokes.iter().any(|s| s.positive && s.pixels.iter().any(|&p| (p as usize) < count));
-    let normal = if is_painted { stroked_normal(input, SAME_FACE) } else { Some(CEILING) };
-    let Some(normal) = normal else { return Ok(None) };
-    let is_on = |i: usize| normal_at(features, i).dot(normal) >= SAME_FACE;
-    let mut mask = Image::new(features.width, features.height, 1)?;
-    mask.data.iter_mut().enumerate().for_each(|(i, m)| *m = f32::from(is_on(i)));
-    let covered = mask.data.iter().filter(|m| **m > 0.5).count();
-    if (covered as f64) < MIN_CEILING * count as f64 {
-        return Err(Error::degenerate(
-            "nothing is painted, and no ceiling was found in the photo: paint at least one positive stroke on the plane that holds \
-             the lights, and one negative stroke beside it",
-        ));
-    }
+    let off_image = |s: &Stroke| s.pixels.iter().filter(|p| (**p as usize) >= count).count();
+    let is_painted = input.strokes.iter().any(|s| s.positive && off_image(s) < s.pixels.len());
+    let mask = match stroked_normal(input, SAME_FACE) {
+        Some(normal) => face(features, normal)?,
+        None if is_painted => return Ok(None),
+        None => ceiling(features)?,
+    };
+    let off_image = input.strokes.iter().map(off_image).sum();
     let own = Segmentation::from_confidence(&mask)?;
-    Ok(Some(Segmentation { error: PROPOSED_ERROR, is_proposed: true, ..own }))
+    Ok(Some(Segmentation { error: PROPOSED_ERROR, is_proposed: true, off_image, ..own }))
+}
+
+/// A stroke of pixels all over the ceiling. Errors: there is none (`Degenerate`).
+pub fn ceiling_example(features: &Image) -> Result<Stroke> {
+    let ceiling = ceiling(features)?;
+    let pixels = try_collect((0..ceiling.data.len() as u32).filter(|&p| ceiling.data[p as usize] > 0.5))?;
+    let step = (pixels.len() / EXAMPLES).max(1);
+    Ok(Stroke { pixels: try_collect(pixels.iter().copied().step_by(step))?, positive: true })
+}
+
+/// The mask of the pixels with a normal.
+fn face(features: &Image, normal: Vec3) -> Result<Image> {
+    let mut mask = Image::new(features.width, features.height, 1)?;
+    let is_on = |i: usize| normal_at(features, i).dot(normal) >= SAME_FACE;
+    mask.data.iter_mut().enumerate().for_each(|(i, m)| *m = f32::from(is_on(i)));
+    Ok(mask)
+}
+
+/// The mask of the ceiling. Errors: it is hardly in view (`Degenerate`).
+fn ceiling(features: &Image) -> Result<Image> {
+    let mask = face(features, CEILING)?;
+    let covered = mask.data.iter().filter(|m| **m > 0.5).count();
+    if covered as f64 >= MIN_CEILING * mask.data.len() as f64 {
+        return Ok(mask);
+    }
+    Err(Error::degenerate(
+        "no positive stroke covers any pixel of the image, and no ceiling was found in it: paint at least one positive stroke on the \
+         plane that holds the lights, and one negative stroke beside it",
+    ))
 }
 
 /// Takes pixels out of the mask that lie on another face of the room than the positive strokes; where the strokes agree on no

@@ -229,9 +229,9 @@ fn not_finite(bad: usize) -> Error {
 /// Segments an image by examples.
 ///
 /// With the [`CHANNELS`] of the features, a mask whose examples are missing is proposed: without negative strokes the face of the
-/// room that the positive ones lie on, the ceiling without any; lamps without positive strokes, among the brightest things within
-/// the given mask. Errors: with other features, either class has no pixel in the image; nothing is painted, and no ceiling or no
-/// lamp was found (`Degenerate`).
+/// room that the positive ones lie on; without positive ones what looks like most of the ceiling; lamps without positive strokes,
+/// among the brightest things within the given mask. Errors: with other features, either class has no pixel in the image; strokes
+/// are missing, and no ceiling or no lamp was found (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
@@ -252,11 +252,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         return instances::run(input, job);
     }
 
-    let has_negative = input.strokes.iter().any(|s| !s.positive && s.pixels.iter().any(|&p| is_inside(features, p)));
     if input.within.is_none()
         && features.channels == CHANNELS
-        && !has_negative
-        && let Some(proposed) = face::propose(input)?
+        && let Some(proposed) = propose(input, params, job)?
     {
         return Ok(proposed);
     }
@@ -298,9 +296,22 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     })
 }
 
-/// Whether an image has a pixel.
-fn is_inside(image: &Image, pixel: u32) -> bool {
-    (pixel as usize) < image.width * image.height
+/// The mask of a plane whose examples are missing in part; `None` where both classes have some, or the strokes agree on no face.
+fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentation>> {
+    let count = input.features.width * input.features.height;
+    let is_seen = |s: &Stroke| s.pixels.iter().any(|&p| (p as usize) < count);
+    let has = |positive: bool| input.strokes.iter().any(|s| s.positive == positive && is_seen(s));
+    match (has(true), has(false)) {
+        (true, true) => Ok(None),
+        (_, false) => face::propose(input),
+        // Pixels of the ceiling stand for the positive strokes; the negative ones, which come later, count where both are.
+        (false, true) => {
+            let mut strokes = vec![face::ceiling_example(input.features)?];
+            strokes.extend(input.strokes.iter().cloned());
+            let proposed = run(&Input { strokes: &strokes, ..*input }, params, job)?;
+            Ok(Some(Segmentation { is_proposed: true, ..proposed }))
+        }
+    }
 }
 
 /// Draws examples of the given channels, and finds the model and the subset of channels that do best on strokes they have

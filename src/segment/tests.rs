@@ -163,7 +163,9 @@ fn what_no_stroke_has_shown_is_told() {
 
 #[test]
 fn one_class_or_none_is_an_error_that_says_what_to_paint() {
+    // With colours alone nothing can be proposed.
     let (features, _) = room();
+    let features = Image::from_fn(WIDTH, HEIGHT, |x, y| [features.pixel(x, y)[0], features.pixel(x, y)[1]]).unwrap();
     let strokes = plane_strokes();
     for (strokes, word) in [(&strokes[..2], "negative"), (&strokes[2..], "positive"), (&strokes[..0], "negative")] {
         let error = segment(&features, strokes, None, &Params::default()).unwrap_err();
@@ -177,6 +179,38 @@ fn one_class_or_none_is_an_error_that_says_what_to_paint() {
     let over = Stroke { positive: false, ..strokes[0].clone() };
     let error = segment(&features, &[strokes[0].clone(), over], None, &Params::default()).unwrap_err();
     assert!(error.message.contains("painted over"), "{error}");
+}
+
+#[test]
+fn without_strokes_the_ceiling_is_proposed_and_strokes_correct_it() {
+    let (features, faces) = room();
+    let propose = |strokes: &[Stroke]| segment(&features, strokes, None, &Params::default());
+    let strokes = plane_strokes();
+    // Nothing painted, or positive strokes alone: a whole face, lamps included.
+    for strokes in [&strokes[..0], &strokes[..1]] {
+        let ceiling = propose(strokes).unwrap();
+        assert!(ceiling.is_proposed && ceiling.error > 0.0);
+        assert_eq!(iou(&ceiling.mask, |i| matches!(faces[i], 0 | 5)), 1.0);
+    }
+    let wall = propose(&[Stroke { positive: true, ..strokes[3].clone() }]).unwrap();
+    assert_eq!(iou(&wall.mask, |i| faces[i] == 2), 1.0);
+    // A negative stroke on a part of another look takes this part out.
+    let without_lamps = propose(&[line(false, &[[60.0, 6.0], [60.0, 10.0]])]).unwrap();
+    assert!(without_lamps.is_proposed);
+    let off = Stroke { pixels: vec![(WIDTH * HEIGHT) as u32], positive: true };
+    assert_eq!(propose(&[off]).unwrap().off_image, 1);
+    // Both classes painted: nothing is proposed.
+    assert!(!propose(&strokes).unwrap().is_proposed);
+}
+
+#[test]
+fn without_strokes_and_without_a_ceiling_the_error_asks_for_strokes() {
+    let wall = Image::from_fn(WIDTH, HEIGHT, |_, _| [50.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0]).unwrap();
+    for strokes in [&[][..], &[line(false, &[[20.0, 60.0], [25.0, 180.0]])]] {
+        let error = segment(&wall, strokes, None, &Params::default()).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Degenerate);
+        assert!(error.message.contains("no ceiling") && error.message.contains("paint"), "{error}");
+    }
 }
 
 #[test]

@@ -538,6 +538,16 @@ class WarningCode(IntEnum):
     NOT_RENDERED = 21
     """The file of a scene has a feature or an extension that is not rendered, which the message names with the
     first objects that have it; the severity is their number."""
+    DIM_LAMPS = 22
+    """The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the
+    probability that a pixel painted as light is brighter than one painted as plane, below the limit. The place
+    is on the darkest lamp."""
+    NO_PATTERN = 23
+    """A texture without light would differ less from the photo, so that this one holds nothing of its pattern;
+    the severity is the error of EmissionReport. Raised in place of WarningCode.PATTERN_UNCERTAIN."""
+    PROPOSED = 24
+    """Strokes are missing, so that a mask is a proposal: the plane without a negative stroke, or the lights
+    without a positive one; the severity is the share of the mask that is expected to be wrong."""
 
 
 class IlluminanceImage(IntEnum):

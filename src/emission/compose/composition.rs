@@ -35,7 +35,7 @@ pub struct Composition {
 }
 
 impl Composition {
-    /// Plans the texture that [`super::blend`] makes. Errors as there.
+    /// Plans the texture that [`crate::emission::blend`] makes. Errors as there.
     pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
         Self::of(None, input, styles, params, job)
     }
@@ -81,7 +81,7 @@ impl Composition {
         self.layers.iter().map(|layer| layer.instances.len()).sum()
     }
 
-    /// How regular the lights of the first exemplar are, as in [`super::Emission::regularity`].
+    /// How regular the lights of the first exemplar are, as in [`crate::emission::Emission::regularity`].
     pub fn regularity(&self) -> f64 {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }

@@ -215,11 +215,55 @@ fn lamps_much_smaller_on_the_plane_than_the_painted_ones_are_not_like_them() {
     for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
         let (x, y) = ((i % WIDTH) as f32, (i / WIDTH) as f32);
         let scale = if x < 170.0 { 1.0 } else { 0.1 };
-        (pixel[4], pixel[5], pixel[6]) = (170.0 + scale * (x - 170.0), 0.0, scale * y);
+        (pixel[4], pixel[5], pixel[6]) = (170.0 + scale * (x - 170.0), 2.0, scale * y);
     }
     let ceiling = ceiling();
     let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
     let input = Input { features: &features, strokes: &strokes, within: Some(&ceiling) };
     let segmented = run(&input, &Params { subject: Subject::Lamps, ..Params::default() }, Monitor::default().job());
     assert_eq!(found(&segmented.unwrap().mask).0[..4], [true, true, false, true]);
+}
+
+#[test]
+fn without_strokes_the_brightest_compact_regions_of_the_plane_are_lamps() {
+    let ceiling = ceiling();
+    let lamps = segment(&[], Some(&ceiling));
+    assert!(lamps.is_proposed);
+    assert_eq!(found(&lamps.mask), (vec![true; LAMPS.len()], 0));
+    // A negative stroke takes one out.
+    let not = stroke(false, &[[40.0, 22.0], [40.0, 30.0]]);
+    let corrected = segment(std::slice::from_ref(&not), Some(&ceiling));
+    assert_eq!(found(&corrected.mask), (vec![false, true, true, true, true], 0));
+    // With a stroke on a lamp nothing is proposed.
+    assert!(!segment(&[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&ceiling)).is_proposed);
+}
+
+#[test]
+fn without_strokes_and_without_lamps_the_error_asks_for_strokes() {
+    let refused = |features: &Image, plane: &Image| {
+        let input = Input { features, strokes: &[], within: Some(plane) };
+        run(&input, &Params::for_lights(), Monitor::default().job()).unwrap_err()
+    };
+    for (features, plane) in [(features_with(&[]), ceiling()), (features(), Image::new(WIDTH, HEIGHT, 1).unwrap())] {
+        let error = refused(&features, &plane);
+        assert_eq!(error.kind, ErrorKind::Degenerate);
+        assert!(error.to_string().contains("paint"), "{error}");
+    }
+}
+
+#[test]
+fn a_lamp_in_a_row_with_others_beyond_the_plane_is_told_apart_from_a_window() {
+    // The plane is cut off short of the second row, as by a wall that is laid out too near.
+    let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
+    let rows = [[20, 20, 60, 32], [120, 20, 160, 32], [22, 70, 60, 81], [200, 66, 206, 106]];
+    let lamps = segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&cut));
+    let columns = |s: &Stroke| s.pixels.iter().map(|p| *p as usize % WIDTH).collect::<Vec<_>>();
+    assert_eq!(lamps.beyond.len(), 1, "{:?}", lamps.beyond.iter().map(columns).collect::<Vec<_>>());
+    assert!(columns(&lamps.beyond[0]).iter().all(|x| (20..63).contains(x)));
+    // On the whole plane it is a lamp as the others.
+    assert!(
+        segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&ceiling()))
+            .beyond
+            .is_empty()
+    );
 }
