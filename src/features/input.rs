@@ -1,6 +1,6 @@
 //! The inputs and the settings of the features.
 
-use super::layout::Layout;
+use super::box_room::Layout;
 use crate::error::{Result, check_range};
 use crate::geometry::{Perspective, Segment};
 use crate::image::Image;

@@ -1,138 +1,24 @@
 //! The built-in depth: the room as a single box aligned with its axes, seen from inside (after Hedau, Hoiem and
 //! Forsyth 2009).
 //!
-//! In room axes the box is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall at distance one fixes
+//! In room axes the [box](Layout) is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall at distance one fixes
 //! the scale, which a single image cannot determine (a camera 1.6 m above the floor makes it `1.6 / bottom` metres).
 //! The four numbers are thus the sides of the back wall in its central projection. Their candidates are the detected
 //! segments that could be these sides, and the search covers all boxes that the candidates form (see `search`).
 //! `score` rates a box.
 
+use super::box_room::{Face, Layout, facing_axes};
 use super::depth::Surface;
 use super::frustum::Frustum;
 use super::input::RoomView;
 use super::score::MAX_SEGMENTS;
 use crate::error::Result;
 use crate::exec;
-use crate::geometry::Perspective;
-use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::image::Image;
 use crate::job::Job;
-use glam::{DMat3, DVec2, DVec3, Vec3};
-
-/// The faces of the box, in the order of [`Layout::sides`], the back wall last.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Face {
-    Left,
-    Right,
-    Ceiling,
-    Floor,
-    Back,
-}
-
-impl Face {
-    pub const COUNT: usize = 5;
-
-    /// The room axis along the face's normal.
-    pub fn axis(self) -> usize {
-        match self {
-            Self::Left | Self::Right => HORIZONTAL_A,
-            Self::Ceiling | Self::Floor => VERTICAL,
-            Self::Back => HORIZONTAL_B,
-        }
-    }
-
-    /// The unit normal into the room, in room axes.
-    fn normal(self) -> DVec3 {
-        match self {
-            Self::Left => DVec3::X,
-            Self::Right => DVec3::NEG_X,
-            Self::Ceiling => DVec3::Y,
-            Self::Floor => DVec3::NEG_Y,
-            Self::Back => DVec3::NEG_Z,
-        }
-    }
-}
-
-/// A box room around the camera, in units of the distance to its back wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layout {
-    /// Distances, all > 0, to the left wall, the right wall, the ceiling and the floor.
-    pub sides: [f64; 4],
-    /// Agreement of the segments with the box; at most 1 for an empty room.
-    pub score: f64,
-    /// Confidence in the box as a whole, in `[0, 1]`: depends on its lead in score over every clearly different box
-    /// and on the number of segments.
-    pub trust: f64,
-}
-
-/// The room's axes with z along the viewing direction and x to its right; the vertical is unchanged.
-pub fn facing_axes(perspective: &Perspective) -> DMat3 {
-    let axes = perspective.axes;
-    if axes.z_axis.z >= 0.0 { axes } else { DMat3::from_cols(-axes.x_axis, axes.y_axis, -axes.z_axis) }
-}
-
-/// The two faces that a ray meets first, each with the inverse of the ray parameter at the face.
-pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
-    let x = if ray.x < 0.0 { (Face::Left, -ray.x / sides[0]) } else { (Face::Right, ray.x / sides[1]) };
-    let y = if ray.y < 0.0 { (Face::Ceiling, -ray.y / sides[2]) } else { (Face::Floor, ray.y / sides[3]) };
-    let z = (Face::Back, ray.z.max(0.0));
-    // Inside a convex room, the ray hits the face with the largest inverse parameter.
-    let (high, low) = if x.1 >= y.1 { (x, y) } else { (y, x) };
-    if z.1 >= high.1 {
-        [z, high]
-    } else if z.1 >= low.1 {
-        [high, z]
-    } else {
-        [high, low]
-    }
-}
-
-/// By how much an enlarged room exceeds what it must hold, so that lamps there have plane around them. [convention]
-const MARGIN: f64 = 1.05;
+use glam::{DVec2, Vec3};
 
 impl Layout {
-    /// The face on which most of some pixels lie.
-    pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
-        let to_room = facing_axes(perspective).transpose();
-        let mut counts = [0usize; Face::COUNT];
-        pixels.for_each(|p| counts[self.hit(to_room * perspective.ray(p)).0 as usize] += 1);
-        let most = (0..Face::COUNT).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
-        [Face::Left, Face::Right, Face::Ceiling, Face::Floor, Face::Back][most]
-    }
-
-    /// The smallest room around this one that shows some pixels on one of its faces, which keeps its place. Pixels whose rays do
-    /// not meet the face are left out.
-    pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Self {
-        let to_room = facing_axes(perspective).transpose();
-        let [mut left, mut right, mut top, mut bottom] = self.sides;
-        let mut back = 1.0f64;
-        let distance = if face == Face::Back { 1.0 } else { self.sides[face as usize] };
-        for pixel in pixels {
-            let ray = to_room * perspective.ray(pixel);
-            let at = ray * (distance / -ray.dot(face.normal()));
-            if !(at.is_finite() && at.dot(ray) > 0.0) {
-                continue;
-            }
-            let at = at * MARGIN;
-            if face.axis() != HORIZONTAL_A {
-                (left, right) = (left.max(-at.x), right.max(at.x));
-            }
-            if face.axis() != VERTICAL {
-                (top, bottom) = (top.max(-at.y), bottom.max(at.y));
-            }
-            if face.axis() != HORIZONTAL_B {
-                back = back.max(at.z);
-            }
-        }
-        // The back wall is at distance one.
-        Self { sides: [left, right, top, bottom].map(|side| side / back), ..*self }
-    }
-
-    /// The face seen along a direction in (facing) room axes, and the inverse of the ray parameter at the face.
-    pub fn hit(&self, ray: DVec3) -> (Face, f64) {
-        faces(&self.sides, ray)[0]
-    }
-
     /// Inverse depth, normals and confidence of every pixel.
     pub fn surface(
         &self,

@@ -26,6 +26,7 @@
 //! two-part rooms).
 
 mod assemble;
+mod box_room;
 mod clean;
 mod depth;
 mod frustum;
@@ -42,9 +43,9 @@ mod strokes;
 mod tests;
 mod warnings;
 
+pub use box_room::{Face, Layout};
 pub use frustum::Frustum;
 pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, Params, PlaneStroke, RoomView};
-pub use layout::{Face, Layout};
 #[cfg(feature = "onnx")]
 pub use monocular::{DepthNetwork, Normalisation, run_with_network};
 
@@ -106,7 +107,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
     let mut image = image?;
 
     // Write all channels, in room axes.
-    let to_room = perspective.map_or(glam::Mat3::IDENTITY, |p| layout::facing_axes(p).transpose().as_mat3());
+    let to_room = perspective.map_or(glam::Mat3::IDENTITY, |p| box_room::facing_axes(p).transpose().as_mat3());
     let is_finite = AtomicBool::new(true);
     exec::for_rows(&mut image.data, width * CHANNELS, job.part(0.7, 1.0), |y, row| {
         assemble::row(&photo, &surface, &frustum, to_room, y, row);

@@ -6,8 +6,8 @@
 //! the best ceiling and the best floor are found independently. The best, clearly different boxes are then refined on
 //! finer grids of values.
 
+use super::box_room::{Face, Layout, faces, facing_axes};
 use super::input::RoomView;
-use super::layout::{Face, Layout, faces, facing_axes};
 use super::score::Evidence;
 use crate::error::{Error, Result};
 use crate::exec;

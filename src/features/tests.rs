@@ -2,7 +2,7 @@
 
 mod strokes;
 
-use super::layout::faces;
+use super::box_room::faces;
 use super::*;
 use crate::exec::Pool;
 use crate::geometry::perspective::VERTICAL;
@@ -347,7 +347,7 @@ fn a_cancelled_job_ends_with_an_error() {
 fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
     let camera = camera(0.2, -0.3, 0.05, 640, 480);
     let small = Layout { sides: [0.8, 0.7, 0.4, 0.5], score: 0.0, trust: 0.0 };
-    let axes = super::layout::facing_axes(&camera);
+    let axes = super::box_room::facing_axes(&camera);
     // Points of the ceiling beyond the far wall and beyond the right one.
     let points = [DVec3::new(0.3, -0.4, 1.6), DVec3::new(0.9, -0.4, 0.9)];
     let pixels = || points.iter().map(|p| axes * *p).map(|c| camera.principal + c.truncate() * (camera.focal / c.z));

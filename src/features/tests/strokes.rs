@@ -1,7 +1,7 @@
 //! Strokes on a plane of the room improve the layout found from lines alone.
 
 use super::*;
-use crate::features::layout::Face;
+use crate::features::Face;
 
 /// Pixels of a thick line.
 fn painted(a: DVec2, b: DVec2, [width, height]: [usize; 2]) -> Vec<u32> {
