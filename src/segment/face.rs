@@ -8,10 +8,11 @@ use crate::features::CHANNELS;
 use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
-/// Where the normals are in the features.
-pub const NORMAL: usize = 7;
+/// Where the positions and the normals are in the features.
+const POSITION: usize = 4;
+const NORMAL: usize = 7;
 /// Cosine of the angle between normals of one face at most: half of a right angle. [convention]
-pub const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
+const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Share of the positive strokes' pixels that must lie on one face before the room is believed. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
@@ -96,6 +97,16 @@ pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The distance of a face from the camera along its normal: the mean over the pixels with this normal.
+pub fn offset(features: &Image, normal: Vec3) -> f32 {
+    let pixels = features.data.chunks_exact(features.channels);
+    let on_face = pixels.filter(|pixel| Vec3::from_slice(&pixel[NORMAL..]).dot(normal) >= SAME_FACE);
+    let (sum, count) = on_face.fold((0.0, 0usize), |(sum, count), pixel| {
+        (sum + f64::from(Vec3::from_slice(&pixel[POSITION..]).dot(normal)), count + 1)
+    });
+    (sum / count.max(1) as f64) as f32
 }
 
 /// The pixels beside one along its row and column.

@@ -1,7 +1,6 @@
 //! The part of the room's surface that each pixel shows: lamps of one kind cover equal areas of it, in equal shapes, at
 //! any distance.
 
-use super::super::face::{NORMAL, SAME_FACE};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_collect, try_vec};
@@ -25,10 +24,9 @@ const MIN_SINE: f32 = 1e-3;
 
 impl Footprint {
     /// Areas by the cross product of the differences of positions along rows and columns; coordinates along the two
-    /// room axes that are farthest from the normal of the face.
-    pub fn new(features: &Image, normal: Vec3, job: Job) -> Result<Self> {
+    /// room axes that are farthest from the normal of the face, which lies at `offset` along its normal.
+    pub fn new(features: &Image, (normal, offset): (Vec3, f32), job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);
-        let offset = offset(features, normal);
         // The point where the ray through a pixel meets the face.
         let position = |x: usize, y: usize| {
             let p = Vec3::from_slice(&features.pixel(x, y)[POSITION..]);
@@ -56,34 +54,23 @@ impl Footprint {
     }
 }
 
-/// The distance of a face from the camera along its normal: the mean over the pixels with this normal.
-fn offset(features: &Image, normal: Vec3) -> f32 {
-    let pixels = features.data.chunks_exact(features.channels);
-    let on_face = pixels.filter(|pixel| Vec3::from_slice(&pixel[NORMAL..]).dot(normal) >= SAME_FACE);
-    let (sum, count) = on_face.fold((0.0, 0usize), |(sum, count), pixel| {
-        (sum + f64::from(Vec3::from_slice(&pixel[POSITION..]).dot(normal)), count + 1)
-    });
-    (sum / count.max(1) as f64) as f32
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::features::CHANNELS;
     use crate::job::Monitor;
 
-    /// Features of a plane with a normal, where pixels right of a column have another one and lie half as far away.
-    fn inclined(across: Vec3, down: Vec3, column: usize) -> (Image, Vec3) {
+    /// A plane, whose pixels right of a column are hidden by things half as far away.
+    fn inclined(across: Vec3, down: Vec3, column: usize) -> (Image, (Vec3, f32)) {
         let normal = down.cross(across).normalize();
         let features = Image::from_fn(6, 5, |x, y| {
             let at = Vec3::new(-1.0, -2.0, 4.0) + x as f32 * across + y as f32 * down;
-            let (at, normal) = if x < column { (at, normal) } else { (0.5 * at, Vec3::X) };
+            let at = if x < column { at } else { 0.5 * at };
             let mut pixel = [0.0; CHANNELS];
             pixel[POSITION..POSITION + 3].copy_from_slice(&at.to_array());
-            pixel[NORMAL..NORMAL + 3].copy_from_slice(&normal.to_array());
             pixel
         });
-        (features.unwrap(), normal)
+        (features.unwrap(), (normal, Vec3::new(-1.0, -2.0, 4.0).dot(normal)))
     }
 
     #[test]
@@ -91,18 +78,18 @@ mod tests {
         let (across, down) = (Vec3::new(0.5, 0.0, 0.25), Vec3::new(0.0, 0.25, -0.5));
         let expected = across.cross(down).length();
         for column in [6, 3] {
-            let (features, normal) = inclined(across, down, column);
-            let areas = Footprint::new(&features, normal, Monitor::default().job()).unwrap().area;
+            let (features, face) = inclined(across, down, column);
+            let areas = Footprint::new(&features, face, Monitor::default().job()).unwrap().area;
             assert!(areas.iter().all(|area| (area - expected).abs() < 1e-4 * expected), "{expected} {areas:?}");
         }
     }
 
     #[test]
     fn a_pixel_that_does_not_see_the_plane_shows_an_infinite_area() {
-        let (mut features, normal) = inclined(Vec3::new(0.5, 0.0, 0.25), Vec3::new(0.0, 0.25, -0.5), 3);
+        let (mut features, face) = inclined(Vec3::new(0.5, 0.0, 0.25), Vec3::new(0.0, 0.25, -0.5), 3);
         let behind = features.pixel(5, 2)[POSITION..POSITION + 3].to_vec();
         features.data[(2 * 6 + 5) * CHANNELS + POSITION..][..3].iter_mut().zip(behind).for_each(|(v, p)| *v = -p);
-        let areas = Footprint::new(&features, normal, Monitor::default().job()).unwrap().area;
+        let areas = Footprint::new(&features, face, Monitor::default().job()).unwrap().area;
         assert_eq!(areas[2 * 6 + 5], f32::INFINITY);
         assert!(areas[2 * 6 + 1].is_finite());
     }

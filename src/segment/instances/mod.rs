@@ -85,7 +85,10 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     // In a room laid out as a box, the features tell how large things are.
     let normal = if is_proposed { Some(face::CEILING) } else { face::laid_out(input) };
     let footprint = match normal {
-        Some(normal) => Some(Footprint::new(input.features, normal, job.part(0.6, 0.65))?),
+        Some(normal) => {
+            let face = (normal, face::offset(input.features, normal));
+            Some(Footprint::new(input.features, face, job.part(0.6, 0.65))?)
+        }
         None => None,
     };
     let regions = Regions::new(&tree, &photo, footprint.as_ref(), job.part(0.65, 0.8))?;
