@@ -85,9 +85,9 @@ impl Layout {
         [Face::Left, Face::Right, Face::Ceiling, Face::Floor, Face::Back][most]
     }
 
-    /// The smallest room around this one that shows some pixels on one of its faces, which keeps its place. Pixels whose rays do
-    /// not meet the face are left out.
-    pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Self {
+    /// The smallest room around this one that shows some pixels on one of its faces, which keeps its place; and the largest factor
+    /// by which another face has moved away. Pixels whose rays do not meet the face are left out.
+    pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Self, f64) {
         let to_room = facing_axes(perspective).transpose();
         let [mut left, mut right, mut top, mut bottom] = self.sides;
         let mut back = 1.0f64;
@@ -109,8 +109,10 @@ impl Layout {
                 back = back.max(at.z);
             }
         }
+        let sides = [left, right, top, bottom];
+        let growth = sides.iter().zip(self.sides).map(|(new, old)| new / old).fold(back, f64::max);
         // The back wall is at distance one.
-        Self { sides: [left, right, top, bottom].map(|side| side / back), ..*self }
+        (Self { sides: sides.map(|side| side / back), ..*self }, growth)
     }
 
     /// The face seen along a direction in (facing) room axes, and the inverse of the ray parameter at the face.
