@@ -297,8 +297,8 @@ luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
 
 /**
  * Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
- * count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group one of the levels,
- * so that together they are best for the goals; the half-widths remain those of powers without steps. Any thread.
+ * count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group the level
+ * that is best for the goals, all groups together. Half-widths are computed for powers without steps. Any thread.
  * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
@@ -359,8 +359,8 @@ typedef struct luxfer_lamps_goal {
     /** Mean radiance from all other light, in cd/m². */
     double background[3];
     /**
-     * For goals of illuminance, which are those of grids and of LUXFER_QUANTITY_INCIDENT: target in lux, pi times the
-     * luminance of target; 0 for other goals, and likewise for the fields below.
+     * Target in lux, pi times the luminance of target, for goals of illuminance: grids, and meshes with
+     * LUXFER_QUANTITY_INCIDENT. This field and the fields below are 0 for other goals.
      */
     double target_lux;
     /** Illuminance with the powers found, in lux. */
@@ -527,9 +527,9 @@ luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
                                           luxfer_image **image);
 
 /**
- * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps the
- * surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the
- * identity. Takes a few milliseconds. size is sizeof *report. Any thread.
+ * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps
+ * texture coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL
+ * for the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
  */
 luxfer_status luxfer_importance_respond(luxfer_importance *importance,
@@ -601,7 +601,7 @@ typedef struct luxfer_placement {
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
-    /** The map from the surface's texture coordinates to those of the texture, as for luxfer_importance_respond. */
+    /** The placement of the texture on the surface, as for luxfer_importance_respond. */
     double placement[9];
     /** Offset along u and v. */
     double offset[2];

@@ -69,8 +69,8 @@ typedef struct luxfer_surface {
     /** Area of the triangles in m². */
     float area;
     /**
-     * Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, as
-     * those of a vault; they receive no emission.
+     * Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, such
+     * as the sides of a vault; they receive no emission.
      */
     float sloped_area;
 } luxfer_surface;
@@ -918,7 +918,7 @@ typedef struct luxfer_candidate {
     float area;
     /** Area in m² of the triangles that are inclined by less than 15 degrees, on either side. */
     float level_area;
-    /** Mean height of these triangles, or of all if there are none, in metres. */
+    /** Mean height in metres of the triangles of level_area; of all triangles if level_area is 0. */
     float height;
     /** Lowest point, in metres. */
     float low;

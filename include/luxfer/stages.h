@@ -516,7 +516,10 @@ typedef struct luxfer_segment_report {
  */
 #define LUXFER_SEGMENT_UNSEEN 2
 
-/** Lamps if luxfer_segment_set_region gave a mask and the features are those of luxfer_features; else a surface. */
+/**
+ * Lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as luxfer_features makes them;
+ * else a surface.
+ */
 #define LUXFER_SUBJECT_AUTO 0
 
 /** A surface, such as the plane that carries the lamps: each pixel is judged by its features. */
@@ -564,10 +567,10 @@ luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
 /**
  * Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. With the features of
- * luxfer_features a mask whose strokes are missing is proposed, and LUXFER_WARNING_PROPOSED says so: the face of the room
+ * luxfer_features the job proposes a mask if strokes are missing, with LUXFER_WARNING_PROPOSED: the face of the room
  * under the positive strokes, else the ceiling; lamps among the brightest things of the region. The job may end with
- * LUXFER_DEGENERATE if strokes are missing and nothing can be proposed, LUXFER_INVALID_ARGUMENT if sizes differ, a feature
- * is not finite or a setting is out of range.
+ * LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a
+ * feature is not finite or a setting is out of range.
  */
 luxfer_status luxfer_segment_start(luxfer_segment *segment,
                                    const luxfer_segment_params *params,
@@ -869,7 +872,7 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
  * ==================================================================================================================== */
 
 /**
- * Adds an exemplar whose lights replace those of the first exemplar according to weights. unwarped, light and valid
+ * Adds an exemplar whose lights replace lights of the first exemplar according to weights. unwarped, light and valid
  * are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
  * luxfer_emission_set_photo. scale is the number of its unwarped pixels per texel, in [1e-3, 1e3]. weights has 1
  * channel with values in [0, 1] and is stretched over the texture. The weights of several added exemplars are images

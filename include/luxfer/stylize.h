@@ -131,7 +131,7 @@ typedef int32_t luxfer_stylize_vote;
 
 /**
  * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
- * stated here are those of LUXFER_STYLIZE_FULL.
+ * stated here belong to LUXFER_STYLIZE_FULL.
  */
 typedef struct luxfer_stylize_params {
     /** sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init. */

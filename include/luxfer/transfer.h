@@ -24,7 +24,7 @@ extern "C" {
 typedef int32_t luxfer_pattern_scale;
 
 /**
- * Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of luxfer_surface.
+ * Layout of the pattern on the surface. luxfer_surface has the corner and the axes u and v of the surface.
  * Fill it with luxfer_pattern_params_init.
  */
 typedef struct luxfer_pattern_params {
@@ -625,19 +625,20 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NOT_RENDERED 21
 
 /**
- * The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability that
- * a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest lamp.
+ * The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
+ * that a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest
+ * lamp.
  */
 #define LUXFER_WARNING_DIM_LAMPS 22
 
 /**
- * A texture without light would differ less from the photo, so that this one holds nothing of its pattern; the severity is
- * the error of luxfer_emission_report. Raised in place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+ * A texture without light would differ less from the photo than this one; the severity is the error of
+ * luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
  */
 #define LUXFER_WARNING_NO_PATTERN 23
 
 /**
- * Strokes are missing, so that a mask is a proposal: the plane without a negative stroke, or the lights without a positive one;
+ * A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes on lights;
  * the severity is the share of the mask that is expected to be wrong.
  */
 #define LUXFER_WARNING_PROPOSED 24

@@ -44,7 +44,7 @@ pub struct luxfer_candidate {
     pub area: f32,
     /// Area in m² of the triangles that are inclined by less than 15 degrees, on either side.
     pub level_area: f32,
-    /// Mean height of these triangles, or of all if there are none, in metres.
+    /// Mean height in metres of the triangles of level_area; of all triangles if level_area is 0.
     pub height: f32,
     /// Lowest point, in metres.
     pub low: f32,

@@ -19,7 +19,7 @@ use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 use crate::job::Monitor;
 
-/// Adds an exemplar whose lights replace those of the first exemplar according to weights. unwarped, light and valid
+/// Adds an exemplar whose lights replace lights of the first exemplar according to weights. unwarped, light and valid
 /// are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
 /// luxfer_emission_set_photo. scale is the number of its unwarped pixels per texel, in [1e-3, 1e3]. weights has 1
 /// channel with values in [0, 1] and is stretched over the texture. The weights of several added exemplars are images

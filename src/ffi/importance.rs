@@ -207,9 +207,9 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
     })
 }
 
-/// Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps the
-/// surface's texture coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for the
-/// identity. Takes a few milliseconds. size is sizeof *report. Any thread.
+/// Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps
+/// texture coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL
+/// for the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_respond(

@@ -101,8 +101,8 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
 }
 
 /// Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
-/// count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group one of the levels,
-/// so that together they are best for the goals; the half-widths remain those of powers without steps. Any thread.
+/// count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group the level
+/// that is best for the goals, all groups together. Half-widths are computed for powers without steps. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_levels(

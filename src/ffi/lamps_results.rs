@@ -76,8 +76,8 @@ pub struct luxfer_lamps_goal {
     pub half_width: [f64; 3],
     /// Mean radiance from all other light, in cd/m².
     pub background: [f64; 3],
-    /// For goals of illuminance, which are those of grids and of LUXFER_QUANTITY_INCIDENT: target in lux, pi times the
-    /// luminance of target; 0 for other goals, and likewise for the fields below.
+    /// Target in lux, pi times the luminance of target, for goals of illuminance: grids, and meshes with
+    /// LUXFER_QUANTITY_INCIDENT. This field and the fields below are 0 for other goals.
     pub target_lux: f64,
     /// Illuminance with the powers found, in lux.
     pub achieved_lux: f64,

@@ -22,7 +22,7 @@ pub const LUXFER_PATTERN_SPACING: luxfer_pattern_scale = 2;
 /// The width of the surface: it shows as many lamps across as the plane in the photo.
 pub const LUXFER_PATTERN_ACROSS: luxfer_pattern_scale = 3;
 
-/// Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of luxfer_surface.
+/// Layout of the pattern on the surface. luxfer_surface has the corner and the axes u and v of the surface.
 /// Fill it with luxfer_pattern_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]

@@ -100,7 +100,7 @@ pub struct luxfer_placement {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// The map from the surface's texture coordinates to those of the texture, as for luxfer_importance_respond.
+    /// The placement of the texture on the surface, as for luxfer_importance_respond.
     pub placement: [f64; 9],
     /// Offset along u and v.
     pub offset: [f64; 2],

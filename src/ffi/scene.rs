@@ -78,8 +78,8 @@ pub struct luxfer_surface {
     pub size: [f32; 2],
     /// Area of the triangles in m².
     pub area: f32,
-    /// Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, as
-    /// those of a vault; they receive no emission.
+    /// Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75 degrees, such
+    /// as the sides of a vault; they receive no emission.
     pub sloped_area: f32,
 }
 

@@ -34,7 +34,8 @@ pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
 
 /// The subject of a segmentation: a LUXFER_SUBJECT_ value.
 pub type luxfer_subject = i32;
-/// Lamps if luxfer_segment_set_region gave a mask and the features are those of luxfer_features; else a surface.
+/// Lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as luxfer_features makes them;
+/// else a surface.
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is judged by its features.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
@@ -221,10 +222,10 @@ pub unsafe extern "C" fn luxfer_segment_set_strokes(
 
 /// Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. With the features of
-/// luxfer_features a mask whose strokes are missing is proposed, and LUXFER_WARNING_PROPOSED says so: the face of the room
+/// luxfer_features the job proposes a mask if strokes are missing, with LUXFER_WARNING_PROPOSED: the face of the room
 /// under the positive strokes, else the ceiling; lamps among the brightest things of the region. The job may end with
-/// LUXFER_DEGENERATE if strokes are missing and nothing can be proposed, LUXFER_INVALID_ARGUMENT if sizes differ, a feature
-/// is not finite or a setting is out of range.
+/// LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a
+/// feature is not finite or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_start(
     segment: *mut luxfer_segment,

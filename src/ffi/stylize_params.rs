@@ -57,7 +57,7 @@ pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
-/// stated here are those of LUXFER_STYLIZE_FULL.
+/// stated here belong to LUXFER_STYLIZE_FULL.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_params {

@@ -81,13 +81,14 @@ pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// The file of a scene has a feature or an extension that is not rendered, which the message names with the first
 /// objects that have it; the severity is their number.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
-/// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability that
-/// a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest lamp.
+/// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
+/// that a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest
+/// lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without light would differ less from the photo, so that this one holds nothing of its pattern; the severity is
-/// the error of luxfer_emission_report. Raised in place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without light would differ less from the photo than this one; the severity is the error of
+/// luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
-/// Strokes are missing, so that a mask is a proposal: the plane without a negative stroke, or the lights without a positive one;
+/// A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes on lights;
 /// the severity is the share of the mask that is expected to be wrong.
 pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 

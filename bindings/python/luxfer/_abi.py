@@ -873,8 +873,7 @@ class luxfer_relight_report(Structure):
 
 
 class luxfer_pattern_params(Structure):
-    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
-    Surface."""
+    """Layout of the pattern on the surface. Surface has the corner and the axes u and v of the surface."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1243,7 +1242,7 @@ class luxfer_guides_params(Structure):
 
 
 class luxfer_stylize_params(Structure):
-    """Settings of a stylisation. The defaults stated here are those of StylizePreset.FULL."""
+    """Settings of a stylisation. The defaults stated here belong to StylizePreset.FULL."""
 
     _fields_ = [
         ("struct_size", c_uint32),

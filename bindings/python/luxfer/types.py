@@ -292,8 +292,8 @@ class Subject(IntEnum):
     """The subject of a segmentation."""
 
     AUTO = 0
-    """Lamps if luxfer_segment_set_region gave a mask and the features are those of luxfer_features; else a
-    surface."""
+    """Lamps if luxfer_segment_set_region gave a mask and the features have ten channels, as luxfer_features
+    makes them; else a surface."""
     SURFACE = 1
     """A surface, such as the plane that carries the lamps: each pixel is judged by its features."""
     LAMPS = 2
@@ -543,11 +543,11 @@ class WarningCode(IntEnum):
     probability that a pixel painted as light is brighter than one painted as plane, below the limit. The place
     is on the darkest lamp."""
     NO_PATTERN = 23
-    """A texture without light would differ less from the photo, so that this one holds nothing of its pattern;
-    the severity is the error of EmissionReport. Raised in place of WarningCode.PATTERN_UNCERTAIN."""
+    """A texture without light would differ less from the photo than this one; the severity is the error of
+    EmissionReport. It takes the place of WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
-    """Strokes are missing, so that a mask is a proposal: the plane without a negative stroke, or the lights
-    without a positive one; the severity is the share of the mask that is expected to be wrong."""
+    """A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes
+    on lights; the severity is the share of the mask that is expected to be wrong."""
 
 
 class IlluminanceImage(IntEnum):
@@ -935,7 +935,7 @@ class Surface:
     """Area of the triangles in m²."""
     sloped_area: float
     """Area in m² of the other triangles of that name whose planes are inclined to this plane by 5 to 75
-    degrees, as those of a vault; they receive no emission."""
+    degrees, such as the sides of a vault; they receive no emission."""
 
 
 class SceneLoadParams(TypedDict, total=False):
@@ -1183,7 +1183,7 @@ class Candidate:
     level_area: float
     """Area in m² of the triangles that are inclined by less than 15 degrees, on either side."""
     height: float
-    """Mean height of these triangles, or of all if there are none, in metres."""
+    """Mean height in metres of the triangles of level_area; of all triangles if level_area is 0."""
     low: float
     """Lowest point, in metres."""
     high: float
@@ -1550,8 +1550,7 @@ class RelightReport:
 
 
 class PatternParams(TypedDict, total=False):
-    """Layout of the pattern on the surface; the corner and the axes u and v of the surface are those of
-    Surface."""
+    """Layout of the pattern on the surface. Surface has the corner and the axes u and v of the surface."""
 
     scale: PatternScale | str | int
     """PatternScale; default PatternScale.DISTANCE."""
@@ -1819,8 +1818,8 @@ class LampsGoal:
     background: tuple[float, float, float]
     """Mean radiance from all other light, in cd/m²."""
     target_lux: float
-    """For goals of illuminance, which are those of grids and of Quantity.INCIDENT: target in lux, pi times the
-    luminance of target; 0 for other goals, and likewise for the fields below."""
+    """Target in lux, pi times the luminance of target, for goals of illuminance: grids, and meshes with
+    Quantity.INCIDENT. This field and the fields below are 0 for other goals."""
     achieved_lux: float
     """Illuminance with the powers found, in lux."""
     half_width_lux: float
@@ -1906,8 +1905,7 @@ class Placement:
     """The best placement, and the light that the target then receives."""
 
     placement: tuple[float, ...]
-    """The map from the surface's texture coordinates to those of the texture, as for
-    luxfer_importance_respond."""
+    """The placement of the texture on the surface, as for luxfer_importance_respond."""
     offset: tuple[float, float]
     """Offset along u and v."""
     scale: tuple[float, float]
@@ -2026,7 +2024,7 @@ class GuidesParams(TypedDict, total=False):
 
 
 class StylizeParams(TypedDict, total=False):
-    """Settings of a stylisation. The defaults stated here are those of StylizePreset.FULL."""
+    """Settings of a stylisation. The defaults stated here belong to StylizePreset.FULL."""
 
     mode: StylizeMode | str | int
     """StylizeMode; default StylizeMode.BUDGET."""

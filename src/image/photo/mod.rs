@@ -62,8 +62,8 @@ pub struct Luminance {
 }
 
 impl PhotoMetadata {
-    /// Converts the metadata of a file to those of its photo, whose sides may be given before or after turning it
-    /// upright.
+    /// Converts the metadata of a file to the metadata of its photo. Width and height may be given before or after the
+    /// photo is turned upright.
     pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {
             orientation: exif.orientation,
