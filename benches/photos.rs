@@ -28,8 +28,8 @@
 //! - *Usable*: precision above 0.5, found at least 70 %, and factors of 2, 1.6, 1.3 and 2.
 //! - *Wrong*: everything else, also a run that ends in an error. *Wrong, unwarned* where neither an error nor a warning says so.
 //! - A trap, a photo that holds no pattern of lamps, is right where the run declines or warns, else judged as the others are.
-//! - A photo whose lamps lie on no plane, or shine away from the camera, is right where the run ends in an error or says by
-//!   `DIM_LAMPS` or `NO_PATTERN` that its texture is not to be used, else judged as the others are.
+//! - A photo whose lamps lie on no plane, or shine away from the camera, is right where the run ends in an error, or
+//!   warns by `DIM_LAMPS` or `NO_PATTERN` that its texture is not to be used; else it is judged as the others are.
 //! - Where nothing is known of a photo's lamps there is no verdict; where the camera is not known the masks alone decide.
 
 #[path = "photos/camera.rs"]

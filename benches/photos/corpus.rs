@@ -32,8 +32,8 @@ pub const HELD: [&str; 10] = [
 /// the photo leaves a corner or an end.
 const TRAPS: [&str; 4] = ["alma_glassroom", "alma_racks", "cmtc_discs", "foyer_sconces"];
 
-/// Photos whose lamps lie on no plane, or shine away from the camera, by the words of the corpus ("no plane", "no clean plane",
-/// "hanging" chandeliers, "uplight brighter than the lamps").
+/// Photos whose lamps lie on no plane, or shine away from the camera, by the words of the corpus ("no plane", "no clean
+/// plane", "hanging" chandeliers, "uplight brighter than the lamps").
 const WITHOUT_PLANE: [&str; 10] = [
     "aero_workshop",
     "chester_dining",

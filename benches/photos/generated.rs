@@ -5,9 +5,10 @@ use super::made::{EVALUATION, TUNING, made, picture_of};
 use super::outcome::Outcome;
 use super::sheet::{self, Sheets};
 use super::tally::{Line, Tally};
+use super::truth::remove_strokes;
 use crate::harness::{figure, median, quantile};
 use luxfer::image::Image;
-use luxfer::segment::{StrokeSet, strokes};
+use luxfer::segment::strokes;
 use std::sync::Arc;
 
 /// Photos that figures are of, unless fewer or more are asked for.
@@ -62,7 +63,7 @@ pub fn tune_without_strokes(words: &[String]) {
     let (mut sheets, mut tally) = (Sheets::new("nostrokes_tune"), Tally::default());
     for seed in TUNING..TUNING + count {
         let mut photo = made(seed).photo;
-        photo.strokes = StrokeSet::default();
+        remove_strokes(&mut photo);
         let outcome = Outcome::of(&photo, &scene);
         let line = Line::of(&photo, &outcome);
         if seed % 3 == 0 {

@@ -8,7 +8,7 @@ use luxfer::emission::Emission;
 use luxfer::job::Monitor;
 use luxfer::scene::Scene;
 use luxfer::transfer::{Input, Params, Results, Stage, Transfer};
-use luxfer::warning::Code;
+use luxfer::warning::{Code, Warning};
 use std::sync::Arc;
 
 /// Size of the picture of the lit room, and its paths per pixel.
@@ -74,17 +74,19 @@ impl Outcome {
         self.results().emission.as_deref()
     }
 
-    /// Whether the run says that its texture is not to be used: it ended early, the painted lamps do not shine, or a texture
-    /// without light would be nearer to the photo.
+    fn raised(&self) -> Vec<(Stage, Warning)> {
+        self.results().warnings(&self.transfer.input.strokes)
+    }
+
+    /// Whether the run says that its texture is not to be used: it ended early, the painted lamps do not shine, or a
+    /// texture without light would be nearer to the photo.
     pub fn declines(&self) -> bool {
-        let raised = self.results().warnings(&self.transfer.input.strokes);
-        self.failure.is_some() || raised.iter().any(|(_, w)| matches!(w.code, Code::DimLamps | Code::NoPattern))
+        self.failure.is_some() || self.raised().iter().any(|(_, w)| matches!(w.code, Code::DimLamps | Code::NoPattern))
     }
 
     /// The run's own words that its texture may not be the photo's: its error, and its warnings up to the texture.
     pub fn warnings(&self) -> Vec<String> {
-        let raised = self.results().warnings(&self.transfer.input.strokes);
-        let of_texture = raised.into_iter().filter(|(stage, _)| *stage <= Stage::Emission);
+        let of_texture = self.raised().into_iter().filter(|(stage, _)| *stage <= Stage::Emission);
         let texts = of_texture.map(|(_, w)| format!("{:?} {:.3} (limit {:.3})", w.code, w.severity, w.limit));
         self.failure.iter().cloned().chain(texts).collect()
     }

@@ -5,14 +5,13 @@ use super::hall::hall;
 use super::outcome::Outcome;
 use super::sheet::Sheets;
 use super::tally::{Line, Tally};
-use super::truth::Photo;
+use super::truth::{Photo, remove_strokes};
 use crate::harness::{absent, figure, median};
-use luxfer::segment::StrokeSet;
 use std::sync::Arc;
 
 /// Photos of the development part, or those whose names contain one of some words.
 pub fn real(words: &[String]) {
-    let Some(tally) = run("real", words, |source| !HELD.contains(&source.name.as_str())) else { return };
+    let Some(tally) = run("real", words, is_development, |_| {}) else { return };
     if words.is_empty() {
         tally.verdicts("real");
         tally.lights("lights");
@@ -24,7 +23,7 @@ pub fn real(words: &[String]) {
 
 /// The quarter of the corpus that nothing is tuned on.
 pub fn held() {
-    if let Some(tally) = run("held", &[], |source| HELD.contains(&source.name.as_str())) {
+    if let Some(tally) = run("held", &[], |source| !is_development(source), |_| {}) {
         tally.verdicts("held");
         tally.lights("held.lights");
         tally.stated_errors("held");
@@ -33,25 +32,20 @@ pub fn held() {
 
 /// Photos of the development part without any stroke: plane and lamps are proposed.
 pub fn without_strokes(words: &[String]) {
-    let belongs = |source: &Source| !HELD.contains(&source.name.as_str());
-    let prepare = |photo: &mut Photo| photo.strokes = StrokeSet::default();
-    let Some(tally) = run_prepared("nostrokes", words, belongs, prepare) else { return };
+    let Some(tally) = run("nostrokes", words, is_development, remove_strokes) else { return };
     if words.is_empty() {
         tally.verdicts("nostrokes");
         tally.lights("nostrokes.lights");
     }
 }
 
-fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool) -> Option<Tally> {
-    run_prepared(section, words, belongs, |_| {})
+/// Whether a photo is not set aside.
+fn is_development(source: &Source) -> bool {
+    !HELD.contains(&source.name.as_str())
 }
 
-fn run_prepared(
-    section: &str,
-    words: &[String],
-    belongs: fn(&Source) -> bool,
-    prepare: fn(&mut Photo),
-) -> Option<Tally> {
+/// Runs the photos that belong to a section, each after a preparation.
+fn run(section: &str, words: &[String], belongs: fn(&Source) -> bool, prepare: fn(&mut Photo)) -> Option<Tally> {
     let sources = corpus::sources().map_err(|reason| absent(&format!("photos.{section}.right"), &reason)).ok()?;
     let is_wanted = |source: &&Source| words.is_empty() || words.iter().any(|word| source.name.contains(word.as_str()));
     let scene = Arc::new(hall());
