@@ -31,16 +31,11 @@ impl Emission {
             let parts = "the lit share, the size or the spacing of its lamps";
             format!("the texture differs from the photo by {} in {parts}", percent(self.error))
         };
-        let is_hopeless = self.error > UNLIT_ERROR;
-        if is_hopeless {
-            return Warning::above(
-                Code::NoPattern,
-                self.error,
-                UNLIT_ERROR,
-                || format!("{}, more than a texture without light does", difference()),
-                "do not use the texture: if the lamps hang or lie on several planes, the photo has no pattern to copy; \
-                 otherwise paint more strokes where the masks are wrong",
-            );
+        if self.error > UNLIT_ERROR {
+            let message = format!("{}, more than a texture without light does", difference());
+            let advice = "do not use the texture: if the lamps hang or lie on several planes, the photo has no pattern to copy; \
+                          otherwise paint more strokes where the masks are wrong";
+            return Some(Warning::new(Code::NoPattern, self.error, UNLIT_ERROR, message, advice));
         }
         Warning::above(
             Code::PatternUncertain,

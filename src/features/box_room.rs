@@ -16,6 +16,7 @@ pub enum Face {
 
 impl Face {
     pub const COUNT: usize = 5;
+    pub const ALL: [Self; Self::COUNT] = [Self::Left, Self::Right, Self::Ceiling, Self::Floor, Self::Back];
 
     /// The room axis along the face's normal.
     pub fn axis(self) -> usize {
@@ -82,11 +83,11 @@ impl Layout {
         let mut counts = [0usize; Face::COUNT];
         pixels.for_each(|p| counts[self.hit(to_room * perspective.ray(p)).0 as usize] += 1);
         let most = (0..Face::COUNT).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
-        [Face::Left, Face::Right, Face::Ceiling, Face::Floor, Face::Back][most]
+        Face::ALL[most]
     }
 
-    /// The smallest room around this one that shows some pixels on one of its faces, which keeps its place; and the largest factor
-    /// by which another face has moved away. Pixels whose rays do not meet the face are left out.
+    /// The smallest room around this one that shows some pixels on one of its faces, which keeps its place; and the
+    /// largest factor by which another face has moved away. Pixels whose rays do not meet the face are left out.
     pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Self, f64) {
         let to_room = facing_axes(perspective).transpose();
         let [mut left, mut right, mut top, mut bottom] = self.sides;

@@ -7,6 +7,9 @@ use crate::image::Image;
 
 /// Number of feature channels: L*, a*, b*, depth, x, y, z, and the normal's x, y, z.
 pub const CHANNELS: usize = 10;
+/// The first channel of the position, and the first of the normal.
+pub const POSITION: usize = 4;
+pub const NORMAL: usize = 7;
 
 /// The distance that a caller's depth map measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -45,7 +45,7 @@ mod warnings;
 
 pub use box_room::{Face, Layout};
 pub use frustum::Frustum;
-pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, Params, PlaneStroke, RoomView};
+pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, NORMAL, POSITION, Params, PlaneStroke, RoomView};
 #[cfg(feature = "onnx")]
 pub use monocular::{DepthNetwork, Normalisation, run_with_network};
 

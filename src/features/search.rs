@@ -114,9 +114,6 @@ fn differ(view: &[DVec3], a: &[f64; 4], b: &[f64; 4]) -> bool {
     view.iter().filter(is_other).count() as f64 > MIN_DIFFERENT_SHARE * view.len() as f64
 }
 
-/// The faces that may be the plane of the strokes; each is tried.
-const PLANES: [Face; Face::COUNT] = [Face::Left, Face::Right, Face::Ceiling, Face::Floor, Face::Back];
-
 /// The four parts of the score over the values of their two sides: rows for the wall, columns for the ceiling or
 /// floor; one set of tables for each face that may be the plane.
 struct Tables {
@@ -126,7 +123,8 @@ struct Tables {
 
 impl Tables {
     fn new(evidence: &Evidence, values: [Vec<f64>; 4], job: Job) -> Result<Self> {
-        let planes = if evidence.has_plane { &PLANES[..] } else { &PLANES[..1] };
+        // Each face may be the plane of the strokes.
+        let planes = if evidence.has_plane { &Face::ALL[..] } else { &Face::ALL[..1] };
         // Fill one row of one part per task.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
         let tasks: Vec<(usize, usize)> = (0..4).flat_map(|part| (0..rows[part]).map(move |row| (part, row))).collect();
@@ -147,7 +145,7 @@ impl Tables {
                     Face::Back => strokes[2],
                     _ => 0.0,
                 };
-                PLANES.map(|face| lines + here(face))
+                Face::ALL.map(|face| lines + here(face))
             };
             values[level].iter().map(entry).collect::<Vec<_>>()
         })?;

@@ -3,7 +3,7 @@
 use super::pages::{prefer_huge, zeros};
 use crate::error::{Error, ErrorKind, Result};
 use crate::reserve;
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
 /// Longest allowed side of any image, in pixels.
 pub const MAX_SIDE: usize = 65_536;
@@ -101,6 +101,11 @@ impl Image {
 
     pub fn row(&self, y: usize) -> &[f32] {
         &self.data[y * self.row_len()..(y + 1) * self.row_len()]
+    }
+
+    /// The centre of a pixel by its number, `y * width + x`.
+    pub fn centre_of(&self, pixel: usize) -> DVec2 {
+        DVec2::new((pixel % self.width) as f64 + 0.5, (pixel / self.width) as f64 + 0.5)
     }
 
     pub fn pixel(&self, x: usize, y: usize) -> &[f32] {

@@ -54,8 +54,7 @@ pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
         ));
     }
     let step = marked.len().div_ceil(MAX_PIXELS);
-    let centre = |i: u32| DVec2::new((i as usize % mask.width) as f64 + 0.5, (i as usize / mask.width) as f64 + 0.5);
-    try_collect(marked.into_iter().step_by(step).map(centre))
+    try_collect(marked.into_iter().step_by(step).map(|i| mask.centre_of(i as usize)))
 }
 
 /// The plane along the given axes, or along the two axes that fit the mask best.

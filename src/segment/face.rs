@@ -4,16 +4,13 @@
 use super::classify::Classified;
 use super::{Input, Segmentation, Stroke};
 use crate::error::{Error, Result};
-use crate::features::CHANNELS;
+use crate::features::{CHANNELS, NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
-/// Where the positions and the normals are in the features.
-const POSITION: usize = 4;
-const NORMAL: usize = 7;
 /// Cosine of the angle between normals of one face at most: half of a right angle. [convention]
 const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Share of the positive strokes' pixels that must lie on one face before the room is believed. [judged on 28 photos]
+/// Share of the pixels that must lie on one face before the room is believed. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
 /// Cosine between normals that are equal but for rounding: those of a room laid out as a box, and not of a depth map. [rounding]
@@ -25,40 +22,44 @@ pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
 }
 
+/// The normal of the face that a mask covers, in a room laid out as a box.
+pub fn laid_out_under(features: &Image, mask: &Image) -> Option<Vec3> {
+    agreed_normal(features, || marked(mask), EQUAL)
+}
+
 /// The normal of a ceiling: normals point into the room, and y points down. [convention]
-pub const CEILING: Vec3 = Vec3::Y;
+const CEILING: Vec3 = Vec3::Y;
 /// Share of the photo that a ceiling must cover to be proposed. [convention]
 const MIN_CEILING: f64 = 0.02;
-/// Share of a proposed plane that is wrong: one less the mean intersection over union with the true one, over generated rooms.
-/// [bench photos:nostrokes:tune:48]
+/// Share of a proposed plane that is wrong: one less the mean intersection over union with the true one, over generated
+/// rooms. [bench photos:nostrokes:tune:48]
 const PROPOSED_ERROR: f64 = 0.18;
 
 /// Pixels of the ceiling that stand for a stroke on it. [convention]
 const EXAMPLES: usize = 1000;
 
-/// The face that the positive strokes lie on, in a room laid out as a box; without positive strokes, its ceiling. `None` where the
-/// strokes agree on no face. Errors: there is no stroke, and no ceiling (`Degenerate`).
-pub fn propose(input: &Input) -> Result<Option<Segmentation>> {
-    let features = input.features;
-    let count = features.width * features.height;
-    let off_image = |s: &Stroke| s.pixels.iter().filter(|p| (**p as usize) >= count).count();
-    let is_painted = input.strokes.iter().any(|s| s.positive && off_image(s) < s.pixels.len());
-    let mask = match laid_out(input) {
-        Some(normal) => face(features, normal)?,
-        None if is_painted => return Ok(None),
-        None => ceiling(features)?,
-    };
-    let off_image = input.strokes.iter().map(off_image).sum();
-    let own = Segmentation::from_confidence(&mask)?;
-    Ok(Some(Segmentation { error: PROPOSED_ERROR, is_proposed: true, off_image, ..own }))
+/// The face that the positive strokes lie on, in a room laid out as a box. `None` if they agree on no face.
+pub fn of_strokes(input: &Input) -> Result<Option<Segmentation>> {
+    laid_out(input).map(|normal| proposed(input, &face(input.features, normal)?)).transpose()
+}
+
+/// The ceiling of a room laid out as a box. Errors: there is none (`Degenerate`).
+pub fn of_ceiling(input: &Input) -> Result<Segmentation> {
+    proposed(input, &ceiling(input.features)?)
+}
+
+fn proposed(input: &Input, mask: &Image) -> Result<Segmentation> {
+    let is_off = |p: &&u32| **p as usize >= mask.data.len();
+    let off_image = input.strokes.iter().flat_map(|s| &s.pixels).filter(is_off).count();
+    let own = Segmentation::from_confidence(mask)?;
+    Ok(Segmentation { error: PROPOSED_ERROR, is_proposed: true, off_image, ..own })
 }
 
 /// A stroke of pixels all over the ceiling. Errors: there is none (`Degenerate`).
 pub fn ceiling_example(features: &Image) -> Result<Stroke> {
     let ceiling = ceiling(features)?;
-    let pixels = try_collect((0..ceiling.data.len() as u32).filter(|&p| ceiling.data[p as usize] > 0.5))?;
-    let step = (pixels.len() / EXAMPLES).max(1);
-    Ok(Stroke { pixels: try_collect(pixels.iter().copied().step_by(step))?, positive: true })
+    let step = (marked(&ceiling).count() / EXAMPLES).max(1);
+    Ok(Stroke { pixels: try_collect(marked(&ceiling).step_by(step).map(|p| p as u32))?, positive: true })
 }
 
 /// The mask of the pixels with a normal.
@@ -69,21 +70,23 @@ fn face(features: &Image, normal: Vec3) -> Result<Image> {
     Ok(mask)
 }
 
-/// The mask of the ceiling of a room laid out as a box, whose normals are equal: those of a depth map, or of the prior for photos
-/// without lines, are not. Errors: there is no such room, or its ceiling is hardly in view (`Degenerate`).
+/// The mask of the ceiling of a room laid out as a box, whose normals are equal: those of a depth map, or of the prior
+/// for photos without lines, are not. Errors: there is no such room, or its ceiling is hardly in view (`Degenerate`).
 fn ceiling(features: &Image) -> Result<Image> {
     let mask = face(features, CEILING)?;
-    let normals = || (0..mask.data.len()).filter(|&i| mask.data[i] > 0.5).map(|i| normal_at(features, i));
-    let mean = normals().fold(Vec3::ZERO, |sum, n| sum + n).normalize_or_zero();
-    let covered = normals().filter(|n| n.dot(mean) >= EQUAL).count();
-    if covered as f64 >= MIN_CEILING * mask.data.len() as f64 && covered as f64 >= AGREEMENT * normals().count() as f64
-    {
+    let is_in_view = marked(&mask).count() as f64 >= MIN_CEILING * mask.data.len() as f64;
+    if is_in_view && laid_out_under(features, &mask).is_some() {
         return Ok(mask);
     }
     Err(Error::degenerate(
-        "no positive stroke covers any pixel of the image, and no ceiling was found in it: paint at least one positive stroke on the \
-         plane that holds the lights, and one negative stroke beside it",
+        "no positive stroke covers any pixel of the image, and no ceiling was found in it: paint at least one positive \
+         stroke on the plane that holds the lights, and one negative stroke beside it",
     ))
+}
+
+/// The pixels of a mask.
+fn marked(mask: &Image) -> impl Iterator<Item = usize> {
+    (0..mask.data.len()).filter(|&i| mask.data[i] > 0.5)
 }
 
 /// Takes pixels out of the mask that lie on another face of the room than the positive strokes; where the strokes agree on no
@@ -128,15 +131,19 @@ fn normal_at(features: &Image, pixel: usize) -> Vec3 {
 
 /// The normal that the positive strokes agree on, up to an angle with the given cosine.
 fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
-    if input.features.channels != CHANNELS {
+    let count = input.features.width * input.features.height;
+    let strokes = || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels);
+    agreed_normal(input.features, || strokes().map(|&p| p as usize).filter(|p| *p < count), cosine)
+}
+
+/// The normal that most of some pixels have, up to an angle with the given cosine.
+fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() -> I, cosine: f32) -> Option<Vec3> {
+    if features.channels != CHANNELS {
         return None;
     }
-    let count = input.features.width * input.features.height;
-    let pixels =
-        || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels).filter(|p| (**p as usize) < count);
-    let normals = || pixels().map(|&p| normal_at(input.features, p as usize));
+    let normals = || pixels().map(|p| normal_at(features, p));
     let middle = normals().fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
-    // Without the strokes' pixels on other faces, which draw the mean aside.
+    // Without pixels on other faces, which draw the mean aside.
     let mean = normals().filter(|n| n.dot(middle) >= SAME_FACE).fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
     let (mut agree, mut total) = (0usize, 0usize);
     for normal in normals() {

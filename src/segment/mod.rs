@@ -173,11 +173,11 @@ pub struct Segmentation {
     pub contradictory: usize,
     /// Stroke pixels outside the image; they were ignored.
     pub off_image: usize,
-    /// Whether the mask was proposed because strokes were missing: of the plane without a negative stroke, of lamps without a
-    /// positive one.
+    /// Whether the mask was proposed because strokes were missing: of the plane strokes of one class, of lamps positive
+    /// strokes.
     pub is_proposed: bool,
-    /// Of lamps: regions off the mask to look within that are as large as a lamp, and of its shape, if the plane goes on there. They
-    /// tell that the room is larger than it was laid out.
+    /// Regions outside the given mask that have the size and the shape of a lamp if the plane goes on there: then the
+    /// room is larger than it was laid out. Of lamps only.
     pub beyond: Vec<Stroke>,
 }
 
@@ -228,10 +228,11 @@ fn not_finite(bad: usize) -> Error {
 
 /// Segments an image by examples.
 ///
-/// With the [`CHANNELS`] of the features, a mask whose examples are missing is proposed: without negative strokes the face of the
-/// room that the positive ones lie on; without positive ones what looks like most of the ceiling; lamps without positive strokes,
-/// among the brightest things within the given mask. Errors: with other features, either class has no pixel in the image; strokes
-/// are missing, and no ceiling or no lamp was found (`Degenerate`).
+/// With the [`CHANNELS`] of the features, a mask whose examples are missing is proposed: without negative strokes the
+/// face of the room that the positive ones lie on; without positive ones the ceiling, less the parts that resemble the
+/// negative ones; lamps without positive strokes, among the brightest things within the given mask. Errors: with other
+/// features, either class has no pixel in the image; strokes are missing, and no ceiling or no lamp was found
+/// (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
@@ -296,15 +297,17 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     })
 }
 
-/// The mask of a plane whose examples are missing in part; `None` where both classes have some, or the strokes agree on no face.
+/// The mask of a plane whose examples are missing in part; `None` where both classes have some, or the strokes agree on
+/// no face.
 fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentation>> {
     let count = input.features.width * input.features.height;
     let is_seen = |s: &Stroke| s.pixels.iter().any(|&p| (p as usize) < count);
     let has = |positive: bool| input.strokes.iter().any(|s| s.positive == positive && is_seen(s));
     match (has(true), has(false)) {
         (true, true) => Ok(None),
-        (_, false) => face::propose(input),
-        // Pixels of the ceiling stand for the positive strokes; the negative ones, which come later, count where both are.
+        (true, false) => face::of_strokes(input),
+        (false, false) => face::of_ceiling(input).map(Some),
+        // Pixels of the ceiling stand for the positive strokes. The negative ones come later, and count where both are.
         (false, true) => {
             let mut strokes = vec![face::ceiling_example(input.features)?];
             strokes.extend(input.strokes.iter().cloned());

@@ -204,6 +204,19 @@ fn without_strokes_the_ceiling_is_proposed_and_strokes_correct_it() {
 }
 
 #[test]
+fn a_mask_has_the_normal_of_the_face_that_it_covers_and_none_over_two_faces() {
+    let (features, faces) = room();
+    let normal = |has: &dyn Fn(u8) -> bool| {
+        let mask = Image::from_fn(WIDTH, HEIGHT, |x, y| [f32::from(has(faces[y * WIDTH + x]))]).unwrap();
+        super::face::laid_out_under(&features, &mask)
+    };
+    assert!(normal(&|face| face == 2).is_some_and(|n| n.distance(Vec3::X) < 1e-5));
+    assert!(normal(&|face| face == 0).is_some_and(|n| n.distance(Vec3::Y) < 1e-5));
+    assert_eq!(normal(&|face| face == 2 || face == 3), None);
+    assert_eq!(normal(&|_| false), None);
+}
+
+#[test]
 fn without_strokes_and_without_a_ceiling_the_error_asks_for_strokes() {
     let wall = Image::from_fn(WIDTH, HEIGHT, |_, _| [50.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0]).unwrap();
     // The normals of the prior for photos without lines turn from row to row.

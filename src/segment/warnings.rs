@@ -17,8 +17,8 @@ const MAX_OFF_IMAGE: f64 = 0.05;
 const MAX_ERROR: f64 = 0.1;
 /// Share of the painted pixels that the mask may contradict. [judged on 38 photos]
 const MAX_MISSED: f64 = 0.1;
-/// Probability that a pixel painted as light is brighter than one of the plane: below 0.83 on the three of 44 photos whose lamps
-/// are off or shine away from the camera, above 0.85 on the others. [judged on 44 photos]
+/// Probability that a pixel painted as light is brighter than one of the plane: below 0.83 on the three of 44 photos
+/// whose lamps are off or shine away from the camera, above 0.85 on the others. [judged on 44 photos]
 const MIN_BRIGHTER: f64 = 0.85;
 /// Share of the plane that lamps may cover. [judged on 38 photos]
 const MAX_LIT: f64 = 0.4;
@@ -150,7 +150,7 @@ impl Segmentation {
         let message = || format!("the mask contradicts {} of the painted pixels", percent(share));
         let advice = "run the segmentation again if strokes have changed since; otherwise the classes look alike: paint \
                       more strokes on both, or give a mask of your own";
-        let place = largest.1.map(|p| self.centre_of(p as usize));
+        let place = largest.1.map(|p| self.mask.centre_of(p as usize));
         let raised = self.is_learnt().then(|| Warning::above(Code::MissedStrokes, share, MAX_MISSED, message, advice));
         raised.flatten().map(|warning| warning.at(place))
     }
@@ -182,12 +182,7 @@ impl Segmentation {
         let pixels =
             (top..(top + side).min(height)).flat_map(|y| (left..(left + side).min(width)).map(move |x| y * width + x));
         let strangest = pixels.max_by(|&p, &q| self.doubt(p).total_cmp(&self.doubt(q)))?;
-        Some(self.centre_of(strangest))
-    }
-
-    fn centre_of(&self, pixel: usize) -> DVec2 {
-        let width = self.mask.width.max(1);
-        DVec2::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5)
+        Some(self.mask.centre_of(strangest))
     }
 }
 
@@ -208,42 +203,45 @@ pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     )
 }
 
-/// Whether lamps are painted that are hardly brighter than the plane. Strokes of the plane may run over lamps, so that those beside
-/// lamps, the negative ones of the lights, are also compared alone. The first channel of the features is L*.
+/// Whether lamps are painted that are hardly brighter than the plane. Strokes of the plane may run over lamps, so that
+/// the negative strokes of the lights, which lie beside lamps, are also compared alone. The first channel of the
+/// features is L*.
 pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Option<Warning> {
     let lamps: Vec<&Stroke> = lights.iter().filter(|s| s.positive).collect();
     let beside = || lights.iter().filter(|s| !s.positive);
-    let painted = |s: &&Stroke| s.positive;
-    let planes = [plane.iter().filter(painted).chain(beside()).collect(), beside().collect()];
+    let planes = [plane.iter().filter(|s| s.positive).chain(beside()).collect(), beside().collect()];
     let compared = planes.map(|plane: Vec<&Stroke>| brighter(features, &lamps, &plane));
     let (share, darkest) = compared.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let width = features.width.max(1);
-    let place = DVec2::new((darkest as usize % width) as f64 + 0.5, (darkest as usize / width) as f64 + 0.5);
     let message = || format!("{} of the plane is as bright as what is painted as light", percent(1.0 - share));
     let advice =
         "paint the lamps where they shine; lamps that are off, or shine away from the camera, give no light to copy";
-    Warning::below(Code::DimLamps, share, MIN_BRIGHTER, message, advice).map(|warning| warning.at(Some(place)))
+    let warning = Warning::below(Code::DimLamps, share, MIN_BRIGHTER, message, advice);
+    warning.map(|warning| warning.at(Some(features.centre_of(darkest as usize))))
 }
 
-/// The probability that a pixel of the lamps is brighter than one of the plane, which is the area under the receiver operating
-/// characteristic of L* (Hanley and McNeil 1982), and a pixel of the lamp for which it is least. `None` without pixels of both.
+/// The probability that a pixel of the lamps is brighter than one of the plane, which is the area under the receiver
+/// operating characteristic of L* (Hanley and McNeil 1982), and a pixel of the lamp with the least probability. `None`
+/// without pixels of both.
 fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f64, u32)> {
     let lightness = |&p: &u32| features.data.get(p as usize * features.channels).copied();
     let mut plane: Vec<f32> = plane.iter().flat_map(|s| &s.pixels).filter_map(lightness).collect();
+    if plane.is_empty() {
+        return None;
+    }
     plane.sort_unstable_by(f32::total_cmp);
     // Pixels as bright as each other count half.
     let darker = |l: f32| (plane.partition_point(|p| *p < l) + plane.partition_point(|p| *p <= l)) as f64 / 2.0;
     let (mut count, mut sum) = (0, 0.0);
     let mut least = (f64::INFINITY, 0);
     for stroke in lamps {
-        let shares = || stroke.pixels.iter().filter_map(lightness).map(|l| darker(l) / plane.len() as f64);
-        let (own, pixels) = (shares().sum::<f64>(), shares().count());
+        let shares = stroke.pixels.iter().filter_map(lightness).map(|l| darker(l) / plane.len() as f64);
+        let (pixels, own) = shares.fold((0, 0.0), |(pixels, own), share| (pixels + 1, own + share));
         (count, sum) = (count + pixels, sum + own);
-        if pixels > 0 && own / (pixels as f64) < least.0 {
-            least = (own / pixels as f64, stroke.pixels[stroke.pixels.len() / 2]);
+        if pixels > 0 && own / f64::from(pixels) < least.0 {
+            least = (own / f64::from(pixels), stroke.pixels[stroke.pixels.len() / 2]);
         }
     }
-    (count > 0 && !plane.is_empty()).then(|| (sum / count as f64, least.1))
+    (count > 0).then(|| (sum / f64::from(count), least.1))
 }
 
 #[cfg(test)]

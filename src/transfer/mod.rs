@@ -157,7 +157,8 @@ pub struct LitScene {
 pub struct Results {
     pub view: Option<Arc<View>>,
     pub features: Option<Arc<Features>>,
-    /// Lamps that were found beyond the plane as it was laid out first: examples of the plane, by which it was laid out again.
+    /// Lamps that were found beyond the plane as it was laid out first. The room was enlarged to hold them, and they are
+    /// examples of the plane.
     pub beyond: Vec<Stroke>,
     pub plane: Option<Arc<Segmentation>>,
     pub lights: Option<Arc<Segmentation>>,

@@ -11,10 +11,10 @@ use crate::render::World;
 use crate::scene::Camera;
 use crate::scene::surface::{self, Surface};
 use crate::{emission, features, rectify, relight, render, segment};
-use glam::{DVec2, UVec2, Vec3};
+use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Factor by which a wall may move away to hold lamps beyond it: strokes hold a room that was laid out more firmly than lines alone.
+/// Factor by which a wall may move away to hold lamps beyond it: a layout by strokes is surer than one by lines alone.
 /// [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_PROPOSED: f64 = 4.0;
@@ -71,7 +71,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// Enlarges the room if lamps lie beyond their plane as it was laid out, and finds plane and lights in the larger room.
+    /// Enlarges the room if lamps lie beyond their plane as it was laid out, and finds plane and lights in the larger
+    /// room.
     pub(super) fn look_again(&mut self, job: Job) -> Result<()> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results
@@ -79,8 +80,7 @@ impl Transfer {
             return Ok(());
         };
         let Some(layout) = features.layout.filter(|_| !lights.beyond.is_empty()) else { return Ok(()) };
-        let width = lights.mask.width;
-        let centre = |p: usize| DVec2::new((p % width) as f64 + 0.5, (p / width) as f64 + 0.5);
+        let centre = |p: usize| lights.mask.centre_of(p);
         let lit = (0..lights.mask.data.len()).filter(|&p| lights.mask.data[p] > 0.5);
         let face = layout.face_of(&view.perspective, lit.map(centre));
         let beyond = lights.beyond.clone();

@@ -3,15 +3,13 @@
 
 use crate::error::Result;
 use crate::exec;
+use crate::features::POSITION;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use glam::Vec3;
 
-/// Where the positions are in the features.
-const POSITION: usize = 4;
-
-/// The part of a face of the room that each pixel shows, in the unit of the positions. The face goes on beyond its edges: pixels of
-/// other faces show what lies on its extension.
+/// The part of a face of the room that each pixel shows, in the unit of the positions. The face goes on beyond its
+/// edges: pixels of other faces show the part of its extension that lies on their rays.
 pub struct Footprint {
     /// Infinite where a pixel's ray does not meet the face.
     pub area: Vec<f32>,

@@ -8,7 +8,8 @@
 //! 1. [`tree`]: the connected regions above every level of brightness, each inside another.
 //! 2. [`regions`]: their size, in the photo and on the plane ([`footprint`]), shape, colour and the contrast along
 //!    their contour.
-//! 3. [`painted`]: for each positive stroke, the regions that cover it with the sharpest contours.
+//! 3. [`painted`]: for each positive stroke, the regions that cover it with the sharpest contours; without such strokes
+//!    the regions most like lamps ([`proposed`]).
 //! 4. [`similar`]: regions without a stroke that look like the painted ones and lie on the plane.
 //! 5. [`soft`]: confidence that falls to one half on each region's contour, between pixels.
 //!
@@ -30,7 +31,7 @@ use super::samples::{self, Ownership};
 use super::{Input, Segmentation, Stroke};
 use crate::error::{Error, Result};
 use crate::features::CHANNELS;
-use crate::image::{Image, try_collect, try_vec};
+use crate::image::{Image, try_collect, try_push, try_vec};
 use crate::job::Job;
 use footprint::Footprint;
 use painted::Paint;
@@ -75,15 +76,18 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     {
         return Err(Error::argument(format!("features holds a colour of {:?}; all must be finite", &bad[..3])));
     }
-    // What the lamps are as bright as: the pixels of the strokes, else the brightest ones of the plane.
-    let plane = input.within.filter(|_| is_proposed);
-    let brightest = plane.map(|plane| proposed::brightest(input.features, plane)).transpose()?;
+    // The lamps are as bright as the pixels of the strokes, or as the brightest ones of the plane.
+    let unpainted = input.within.filter(|_| is_proposed);
+    let brightest = unpainted.map(|plane| proposed::brightest(input.features, plane)).transpose()?;
     let examples = brightest.as_ref().map_or(&paint.positive[..], std::slice::from_ref);
     let photo = Brightness::new(input.features, white(input.features, examples)?, job.part(0.0, 0.2))?;
     let floor = floor(&photo, examples);
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
     // In a room laid out as a box, the features tell how large things are.
-    let normal = if is_proposed { Some(face::CEILING) } else { face::laid_out(input) };
+    let normal = match unpainted {
+        Some(plane) => face::laid_out_under(input.features, plane),
+        None => face::laid_out(input),
+    };
     let footprint = match normal {
         Some(normal) => {
             let face = (normal, face::offset(input.features, normal));
@@ -96,29 +100,30 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);
 
-    let mut painted = match plane {
-        Some(plane) => proposed::find(&Search {
-            tree: &tree,
-            regions: &regions,
-            photo: &photo,
-            plane: Some(plane),
-            negatives: &negatives,
-        })?,
-        None => painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?,
+    let search = Search { tree: &tree, regions: &regions, photo: &photo, plane: input.within, negatives: &negatives };
+    let painted = match is_proposed {
+        true => proposed::find(&search)?,
+        false => brighter_than_around(
+            &search,
+            painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?,
+        )?,
     };
-    let nobody = try_vec(width * height, false)?;
-    let mut is_brighter = try_vec(painted.len(), false)?;
-    for (is_brighter, &node) in is_brighter.iter_mut().zip(&painted) {
-        let ring = surroundings::around(node, &tree, &photo, None, &nobody)?;
-        *is_brighter = ring.is_some_and(|ring| ring.contrast >= MIN_CONTRAST);
-    }
-    let mut brighter = is_brighter.into_iter();
-    painted.retain(|_| brighter.next().unwrap_or(false));
-    let plane = input.within;
-    let search = Search { tree: &tree, regions: &regions, photo: &photo, plane, negatives: &negatives };
     let similar = search.run(&painted, job.part(0.8, 0.95))?;
     let found = segmentation(&search, &painted, &similar, &paint)?;
     Ok(Segmentation { is_proposed, ..found })
+}
+
+/// The nodes that stand out from the ring around them: others are noise on a surface.
+fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
+    let nobody = try_vec(search.tree.node_of.len(), false)?;
+    let mut kept = Vec::new();
+    for node in nodes {
+        let ring = surroundings::around(node, search.tree, search.photo, None, &nobody)?;
+        if ring.is_some_and(|ring| ring.contrast >= MIN_CONTRAST) {
+            try_push(&mut kept, node)?;
+        }
+    }
+    Ok(kept)
 }
 
 /// L* of the strokes' brightest pixels: a quantile, so that no sparkle sets it.

@@ -6,6 +6,7 @@
 use super::painted::MIN_AREA;
 use super::similar::Search;
 use super::surroundings;
+use super::tree::Disjoint;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect, try_vec};
 
@@ -54,17 +55,16 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         (1..tree.len()).filter(is_compact).map(|node| (node as u32, worth(node))).collect();
     candidates.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
 
-    // The best first; regions in or around one that was taken belong to it.
+    // The best first; regions in or around one that was chosen belong to it.
     let nobody = try_vec(tree.node_of.len(), false)?;
-    let mut is_closed = try_vec(tree.len(), false)?;
-    let mut is_taken = try_vec(tree.len(), false)?;
+    let mut chosen = Disjoint::new(tree)?;
     let mut lamps: Vec<u32> = Vec::new();
     let mut best = 0.0;
     for (node, worth) in candidates {
         if worth < NEARLY_BEST * best {
             break;
         }
-        if is_closed[node as usize] || tree.ancestors(node).any(|n| is_taken[n as usize]) {
+        if !chosen.admits(node) {
             continue;
         }
         let Some(ring) = surroundings::around(node, tree, photo, plane, &nobody)? else { continue };
@@ -72,8 +72,7 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
             continue;
         }
         best = worth.max(best);
-        tree.ancestors(node).for_each(|n| is_closed[n as usize] = true);
-        is_taken[node as usize] = true;
+        chosen.choose(node);
         lamps.push(node);
     }
     if lamps.is_empty() {

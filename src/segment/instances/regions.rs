@@ -127,7 +127,8 @@ impl OnSurface {
         Ok(sums)
     }
 
-    /// Whether two nodes lie in one row along a side of the face: their centres differ across it by less than a share of their width.
+    /// Whether two nodes lie in one row along a side of the face: across the row, their centres differ by less than a
+    /// share of their width.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         let moments = |node: usize, first: &[f64], second: &[f64]| {
             let area = self.area[node].max(f64::MIN_POSITIVE);

@@ -4,7 +4,7 @@
 use super::painted::MIN_AREA;
 use super::regions::{Brightness, Regions};
 use super::surroundings::{self, Bounds, Surroundings};
-use super::tree::Tree;
+use super::tree::{Disjoint, Tree};
 use crate::error::Result;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
@@ -41,14 +41,14 @@ const BROADER: f64 = 1.5;
 const CUT: f64 = 0.06;
 /// Share of the ring that must be plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
-/// Ratios to the area and to the aspect of a painted lamp within which a region off the plane is a lamp: blur spreads far ones.
-/// [bench photos:tune]
+/// Ratios to the area and to the aspect of a lamp within which a region off the plane is a lamp too: blur spreads far
+/// ones. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Share of a lamp's width by which lamps of one row may be off it. [bench photos:tune]
 const IN_ROW: f64 = 0.25;
-/// Difference of the colours of rings, in CIELAB, within which a region off the plane is surrounded by more of it. [bench
-/// photos:tune]
+/// Difference of the colours of rings, in CIELAB, within which a region off the plane is surrounded by more of it.
+/// [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
 /// Power of the area in the order of candidates: of nested regions with contours almost as sharp, the largest. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
@@ -124,15 +124,17 @@ impl Search<'_> {
         let Some(model) = self.model(painted)? else { return Ok(Similar::default()) };
 
         // Nodes around, in, and beside the painted ones.
-        let mut is_closed = try_vec(tree.len(), false)?;
-        is_closed[0] = true;
-        painted.iter().flat_map(|&n| tree.ancestors(n)).for_each(|n| is_closed[n as usize] = true);
+        let mut chosen = Disjoint::new(tree)?;
+        painted.iter().for_each(|&node| chosen.choose(node));
         let mut is_painted = try_vec(tree.len(), false)?;
         painted.iter().for_each(|&n| is_painted[n as usize] = true);
         let mut candidates = Vec::new();
         for node in 1..tree.len() {
             is_painted[node] |= is_painted[tree.parent[node] as usize];
-            let likeness = if is_painted[node] || is_closed[node] { 0.0 } else { self.likeness(&model, node) };
+            let likeness = match is_painted[node] || chosen.is_around(node as u32) {
+                true => 0.0,
+                false => self.likeness(&model, node),
+            };
             if likeness >= NEARLY {
                 candidates.push((node as u32, likeness, regions.contrast(node) * regions.area[node].powf(AREA_POWER)));
             }
@@ -141,12 +143,11 @@ impl Search<'_> {
         // The sharpest contour first. Regions in or around a region that was taken belong to it.
         candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
         let mut similar = Similar::default();
-        let mut is_taken = try_vec(tree.len(), false)?;
         for (k, &(node, likeness, _)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
                 job.check()?;
             }
-            if is_closed[node as usize] || tree.ancestors(node).any(|n| is_taken[n as usize]) {
+            if !chosen.admits(node) {
                 continue;
             }
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
@@ -164,8 +165,7 @@ impl Search<'_> {
                 () => continue,
             };
             list.push(node);
-            tree.ancestors(node).for_each(|n| is_closed[n as usize] = true);
-            is_taken[node as usize] = true;
+            chosen.choose(node);
         }
         Ok(similar)
     }
@@ -226,8 +226,8 @@ impl Search<'_> {
         area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
     }
 
-    /// Whether a node has nearly the size and shape, on the surface of a room that was laid out, of one of the lamps, and lies in a row
-    /// with it.
+    /// Whether a node has nearly the size and the shape of one of the lamps, and lies in a row with it. Both are measured
+    /// on the face of a room that was laid out.
     fn continues<'a>(&self, mut lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         let Some(surface) = &self.regions.surface else { return false };
         let ratio = |of: &dyn Fn(usize) -> f64, lamp: u32| of(node) / of(lamp as usize);

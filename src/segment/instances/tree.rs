@@ -126,6 +126,34 @@ impl Tree {
     }
 }
 
+/// Nodes that were chosen, none inside another.
+pub struct Disjoint<'a> {
+    tree: &'a Tree,
+    is_chosen: Vec<bool>,
+    /// Whether a node is chosen, or around a chosen one.
+    is_around: Vec<bool>,
+}
+
+impl<'a> Disjoint<'a> {
+    pub fn new(tree: &'a Tree) -> Result<Self> {
+        Ok(Self { tree, is_chosen: try_vec(tree.len(), false)?, is_around: try_vec(tree.len(), false)? })
+    }
+
+    pub fn is_around(&self, node: u32) -> bool {
+        self.is_around[node as usize]
+    }
+
+    /// Whether a node is neither around a chosen one nor inside one.
+    pub fn admits(&self, node: u32) -> bool {
+        !self.is_around(node) && !self.tree.ancestors(node).any(|n| self.is_chosen[n as usize])
+    }
+
+    pub fn choose(&mut self, node: u32) {
+        self.is_chosen[node as usize] = true;
+        self.tree.ancestors(node).for_each(|n| self.is_around[n as usize] = true);
+    }
+}
+
 /// The pixels above `floor` by level, then by place: a counting sort.
 fn sorted(levels: &[u16], floor: u16) -> Result<Vec<u32>> {
     let top = levels.iter().copied().max().unwrap_or(0) as usize;
