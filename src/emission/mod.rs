@@ -50,6 +50,7 @@ pub use params::{Input, Law, Params, SCALES};
 pub use reading::Choice;
 
 use crate::error::{Error, Result};
+use crate::geometry::Homography;
 use crate::image::Image;
 use crate::job::Job;
 use agreement::sampling;
@@ -58,6 +59,7 @@ use compose::layer::Layer;
 use compose::render;
 use exemplar::Exemplar;
 use exemplar::components::{Component, Components};
+use exemplar::{bars, panes};
 use glam::Vec3;
 use lamps::luminaires;
 use quilt::patch_map::PatchMap;
@@ -119,6 +121,12 @@ pub fn blend_measured(
 ) -> Result<Emission> {
     let composition = Composition::of(Some(measured.reading), input, styles, params, job.part(0.0, 0.85))?;
     make(composition, input, styles, params, job)
+}
+
+/// The unwarped light, with the panes of a luminous ceiling parted along the bars between them.
+pub fn part_panes(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography) -> Result<Image> {
+    let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
+    Ok(panes::part(&plane)?.unwrap_or(light))
 }
 
 fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {

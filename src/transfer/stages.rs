@@ -147,6 +147,7 @@ impl Transfer {
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
         let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.1))?;
+        let light = emission::part_panes(&unwarped.image, light, &unwarped.valid, unwarped.to_photo)?;
         let input = emission::Input {
             unwarped: &unwarped.image,
             light: &light,

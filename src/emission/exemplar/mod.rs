@@ -1,10 +1,12 @@
 //! The exemplar: the usable part of the unwarped image, its lamps, and its reduced size for the synthesis.
 
 pub mod area_sums;
+pub mod bars;
 pub mod components;
 pub mod evidence;
 pub mod foreshortening;
 pub mod fragments;
+pub mod panes;
 pub mod roles;
 pub mod working;
 
@@ -26,6 +28,9 @@ pub const LIT: f32 = 0.5;
 /// Pixels of the photo that a lamp covers at least, unless no light covers more: a disc three pixels across. [judged
 /// on 5 photos]
 const MIN_LAMP: f64 = 9.0;
+
+/// Lit share of the plane from which it is a luminous ceiling. [bench photos:tune]
+pub const LUMINOUS: f64 = 0.3;
 
 /// What the photo shows of the lit plane.
 pub struct Exemplar {
@@ -99,6 +104,11 @@ impl Exemplar {
             Some(true) if is_light || light.data[pixel] < LIT => light.data[pixel].clamp(0.0, 1.0),
             _ => 0.0,
         }
+    }
+
+    /// Whether the plane is a luminous ceiling or a skylight: light with bars, rather than lamps on a ceiling.
+    pub fn is_luminous_ceiling(&self) -> bool {
+        self.lit_share >= LUMINOUS
     }
 
     /// The whole lamps.

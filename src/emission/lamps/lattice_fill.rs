@@ -44,7 +44,7 @@ pub fn place(
     };
     let to_cells = DMat2::from_cols(a, b).inverse();
     let mut instances = Vec::new();
-    for (n, site) in kept.iter().enumerate().filter(|(_, site)| is_always_taken(site)) {
+    for (n, site) in kept.iter().enumerate().filter(|(_, site)| is_always_taken(site, exemplar)) {
         let half = site.lamps[0].size / 2.0;
         let choice = sharpest(site, exemplar);
         let (low, high) = (-half - site.at - offset, size + half - site.at - offset);
@@ -64,7 +64,7 @@ pub fn place(
         let off = |site: &&Site| sites.residual(at - site.at);
         let is_here = |site: &&Site| off(site).abs().cmple(site.lamps[0].size * OVERLAP).all();
         match kept.iter().find(|site| is_here(site)) {
-            Some(site) if is_always_taken(site) => {}
+            Some(site) if is_always_taken(site, exemplar) => {}
             Some(site) => instances.push(Instance { shift: instance.shift - off(site), ..instance }),
             None => instances.push(instance),
         }
@@ -72,8 +72,11 @@ pub fn place(
     instances
 }
 
-/// Whether a site has a lamp in every cell.
-fn is_always_taken(site: &Site) -> bool {
+/// Whether a site has a lamp in every cell: panes go on over all of a luminous ceiling.
+fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
+    if exemplar.is_luminous_ceiling() {
+        return true;
+    }
     site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
 }
 

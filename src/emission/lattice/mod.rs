@@ -13,6 +13,7 @@ pub mod continuation;
 pub mod correlation;
 pub mod extent;
 pub mod kind_check;
+pub mod neighbours;
 pub mod repeats;
 
 use super::exemplar::Exemplar;

@@ -11,7 +11,7 @@ use super::exemplar::Exemplar;
 use super::exemplar::evidence::Evidence;
 use super::exemplar::roles::Role;
 use super::lattice::continuation::Continuation;
-use super::lattice::{self, Correlated, basis, extent};
+use super::lattice::{self, Correlated, basis, extent, neighbours};
 use super::params::{Input, Law, Params, working_side};
 use crate::error::{Error, Result};
 use crate::job::Job;
@@ -153,17 +153,23 @@ impl Reading {
         if own.score.is_nan() {
             return Ok(());
         }
-        let mut proposals = self.propose(whole, job)?;
+        let mut proposals = self.propose(&evidence, whole, job)?;
         proposals.iter_mut().for_each(|p| p.score = score(p.continuation));
         proposals.retain(|p| p.score.is_finite());
         let lawless = Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar)));
 
         // The best, or of equals the first; it must be clearly better than what the settings ask for.
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
-        let chosen = match () {
-            () if best.score > own.score + CLEARLY && best.score > LAWLESS => best,
-            () if own.score < HOPELESS => lawless,
-            () => own,
+        let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
+        let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
+        // The panes of a luminous ceiling go on along both axes, unless their lattice predicts clearly less.
+        let panes = lattice
+            .filter(|p| exemplar.is_luminous_ceiling() && p.score > LAWLESS + CLEARLY && p.score > own.score - CLEARLY);
+        let chosen = match panes {
+            Some(panes) => panes,
+            None if best.score > own.score + CLEARLY && best.score > LAWLESS => best,
+            None if own.score < HOPELESS => lawless,
+            None => own,
         };
         proposals.extend([own, lawless]);
         let others = proposals.iter().filter(|p| !is_same(p.continuation, chosen.continuation));
@@ -179,7 +185,7 @@ impl Reading {
 
     /// Laws of the whole exemplar and of its sharper parts, by strict and by free thresholds; and of each lattice its
     /// rows.
-    fn propose(&self, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
+    fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
         for limit in MAGNIFICATIONS {
@@ -205,6 +211,11 @@ impl Reading {
             }
             job.check()?;
         }
+        let panes = if exemplar.is_luminous_ceiling() { neighbours::lattices(evidence) } else { Vec::new() };
+        for basis in panes {
+            let continuation = Continuation::Lattice(basis::refine(exemplar, basis, 2));
+            proposals.push(Proposal { continuation, regularity: 0.0, score: 0.0 });
+        }
         Ok(proposals)
     }
 
@@ -219,7 +230,7 @@ impl Reading {
         }
         let evidence = self.exemplar.evidence(Role::is_whole);
         let parts = self.exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
-        let mut proposals = self.propose(whole, job)?;
+        let mut proposals = self.propose(&evidence, whole, job)?;
         proposals.retain(|p| is_asked(&p.continuation));
         proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&evidence, &parts), p.continuation));
         let best = proposals.into_iter().filter(|p| p.score.is_finite()).max_by(|a, b| a.score.total_cmp(&b.score));

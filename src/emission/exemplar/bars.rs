@@ -1,0 +1,253 @@
+//! Bars of a luminous ceiling.
+//!
+//! The bars of a skylight or of a luminous ceiling run straight along the axes of the unwarped image. Far from the
+//! camera they are thinner than a photo pixel, or drown in the bloom of the panes. Yet a bar is darker than the panes on
+//! both sides of it over all of its length: the median over a whole line shows it where single pixels do not. Beyond
+//! the last bar that shows, bars go on by their period.
+
+use super::foreshortening::LocalMap;
+use crate::error::Result;
+use crate::geometry::Homography;
+use crate::image::{Image, try_vec};
+use std::collections::VecDeque;
+use std::ops::Range;
+
+/// Widest bar, as a share of the longer side of the unwarped image. [bench photos:tune]
+const WIDEST: f64 = 0.05;
+/// By what share of the panes' luminance a bar is darker than they are, at least, in the median along
+/// it. [bench photos:tune]
+const MIN_DEPTH: f32 = 0.03;
+/// Share of the lines across a bar that must show light on both sides of it. [bench photos:tune]
+const MIN_LENGTH: f64 = 0.1;
+/// Stretches along a bar that are judged one by one. [convention]
+const STRETCHES: usize = 24;
+/// Stretches that a bar across may cover: the widest one lies in as many. [convention]
+const CROSSING: usize = 2;
+/// Depth of a stretch, in the bar's own, below which a sharp view of it shows that there is no bar. [bench
+/// photos:tune]
+const ABSENT: f32 = 0.25;
+/// Relative difference of the distances between bars up to which they are a period. [bench photos:tune]
+const SAME_PERIOD: f64 = 0.12;
+
+/// The unwarped lights of a plane, and where the photo shows it.
+pub struct LitPlane<'a> {
+    pub unwarped: &'a Image,
+    /// Confidence that a pixel is light.
+    pub light: &'a Image,
+    pub valid: &'a Image,
+    pub to_photo: Option<Homography>,
+}
+
+impl LitPlane<'_> {
+    pub fn is_lit(&self, pixel: usize) -> bool {
+        self.light.data[pixel] >= super::LIT && self.is_valid(pixel)
+    }
+
+    pub fn is_valid(&self, pixel: usize) -> bool {
+        self.valid.data[pixel] >= 0.5
+    }
+}
+
+/// A bar: its first and last position across, and its depth, the share of the panes' luminance that it lacks.
+#[derive(Clone, Copy, Debug)]
+pub struct Bar {
+    pub first: usize,
+    pub last: usize,
+    pub depth: f32,
+}
+
+impl Bar {
+    fn centre(&self) -> f64 {
+        (self.first + self.last) as f64 / 2.0
+    }
+}
+
+/// The plane seen along one of its axes: `across` counts positions across the bars, `along` those along them.
+pub struct Lines<'a> {
+    plane: &'a LitPlane<'a>,
+    is_column: bool,
+    across: usize,
+    along: usize,
+    widest: usize,
+    /// Share that each pixel lacks of the luminance of the light on both sides of it; NaN where one side has none.
+    depth: Vec<f32>,
+}
+
+impl<'a> Lines<'a> {
+    pub fn new(plane: &'a LitPlane, luminances: &[f32], is_column: bool) -> Result<Self> {
+        let (width, height) = (plane.unwarped.width, plane.unwarped.height);
+        let (across, along) = if is_column { (width, height) } else { (height, width) };
+        let widest = ((width.max(height) as f64 * WIDEST) as usize).max(3);
+        let depth = try_vec(width * height, f32::NAN)?;
+        let mut lines = Self { plane, is_column, across, along, widest, depth };
+        let (mut light, mut before, mut after) =
+            (try_vec(across, 0f32)?, try_vec(across, 0f32)?, try_vec(across, 0f32)?);
+        for v in 0..along {
+            for (u, light) in light.iter_mut().enumerate() {
+                let i = lines.index(u, v);
+                *light = if plane.is_lit(i) { luminances[i] } else { 0.0 };
+            }
+            brightest_before(light.iter().copied(), widest, before.iter_mut());
+            brightest_before(light.iter().rev().copied(), widest, after.iter_mut().rev());
+            for u in 0..across {
+                let (i, sides) = (lines.index(u, v), before[u].min(after[u]));
+                if sides > 0.0 && plane.is_valid(i) {
+                    lines.depth[i] = (1.0 - luminances[i] / sides).max(0.0);
+                }
+            }
+        }
+        Ok(lines)
+    }
+
+    fn index(&self, u: usize, v: usize) -> usize {
+        let width = self.plane.unwarped.width;
+        if self.is_column { v * width + u } else { u * width + v }
+    }
+
+    /// Photo pixels per unwarped pixel across the bars.
+    fn sharpness(&self, u: usize, v: usize) -> f64 {
+        let i = self.index(u, v);
+        let pixel = LocalMap::new(self.plane.to_photo, self.plane.unwarped.centre_of(i)).photo_pixel();
+        1.0 / if self.is_column { pixel.x } else { pixel.y }
+    }
+
+    /// Median depth along a position, weighed by the sharpness of the photo; `None` where fewer than `least` pixels have
+    /// light on both sides. A bar is dark over all of its length; what crosses the position is dark in a few places.
+    fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
+        let mut depths: Vec<(f32, f64)> = Vec::new();
+        for start in along.clone().step_by(self.stretch()) {
+            let end = (start + self.stretch()).min(along.end);
+            let sharpness = self.sharpness(u, (start + end) / 2).min(1.0);
+            let known = (start..end).map(|v| self.depth[self.index(u, v)]).filter(|depth| depth.is_finite());
+            depths.extend(known.map(|depth| (depth, sharpness)));
+        }
+        if depths.len() < least.max(1) {
+            return None;
+        }
+        depths.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let half = depths.iter().map(|d| d.1).sum::<f64>() / 2.0;
+        let mut sum = 0.0;
+        depths
+            .iter()
+            .find(|d| {
+                sum += d.1;
+                sum >= half
+            })
+            .map(|d| d.0)
+    }
+
+    fn stretch(&self) -> usize {
+        self.along.div_ceil(STRETCHES)
+    }
+
+    /// The bars that show.
+    pub fn bars(&self) -> Vec<Bar> {
+        let least = (self.along as f64 * MIN_LENGTH) as usize;
+        let profile: Vec<Option<f32>> = (0..self.across).map(|u| self.median_depth(u, 0..self.along, least)).collect();
+        let mut known: Vec<f32> = profile.iter().flatten().copied().collect();
+        known.sort_by(f32::total_cmp);
+        let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };
+        let mut excess: Vec<f32> = profile.iter().map(|p| p.map_or(0.0, |p| p - level)).collect();
+
+        // The deepest position first; a bar reaches as far as half of its depth.
+        let mut bars = Vec::new();
+        while let Some((peak, &depth)) =
+            excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)
+        {
+            let first = (0..=peak).rev().take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
+            let last = (peak..self.across).take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
+            bars.push(Bar { first, last, depth });
+            // The flanks belong to it as well.
+            let falls = |a: usize, b: usize| excess[b] <= excess[a] && excess[b] > 0.0;
+            let start = (1..=first).rev().take_while(|&u| falls(u, u - 1)).last().map_or(first, |u| u - 1);
+            let end = (last..self.across - 1).take_while(|&u| falls(u, u + 1)).last().map_or(last, |u| u + 1);
+            excess[start..=end].fill(0.0);
+        }
+        bars.sort_by_key(|bar| bar.first);
+        bars.retain(|bar| bar.last - bar.first < self.widest);
+        bars
+    }
+
+    /// Bars beyond the last ones, by the period of those that show.
+    pub fn beyond(&self, bars: &[Bar]) -> Vec<Bar> {
+        let gaps: Vec<f64> = bars.windows(2).map(|pair| pair[1].centre() - pair[0].centre()).collect();
+        let Some(&first) = gaps.first().filter(|_| gaps.len() >= 2) else { return Vec::new() };
+        let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
+        let depth = bars.iter().map(|bar| bar.depth).fold(f32::INFINITY, f32::min);
+        if gaps.iter().any(|gap| (gap - mean).abs() > SAME_PERIOD * mean) || first < 4.0 {
+            return Vec::new();
+        }
+        let shifted = |bar: Bar, shift: f64| {
+            let first = bar.first.checked_add_signed(shift.round() as isize)?;
+            let last = bar.last.checked_add_signed(shift.round() as isize)?;
+            (last < self.across).then_some(Bar { first, last, depth })
+        };
+        let follow = |bar: Bar, step: f64| (1..).map_while(move |n| shifted(bar, step * f64::from(n)));
+        let mut beyond: Vec<Bar> = follow(bars[0], -mean).collect();
+        beyond.extend(follow(bars[bars.len() - 1], mean));
+        beyond
+    }
+
+    /// The stretches along a bar: where, how deep the bar is there, and how sharply the photo shows it.
+    fn stretches(&self, bar: &Bar) -> Vec<(Range<usize>, f32, f64)> {
+        let middle = (bar.first + bar.last) / 2;
+        let starts = (0..self.along).step_by(self.stretch());
+        let alongs = starts.map(|start| start..(start + self.stretch()).min(self.along));
+        alongs
+            .map(|along| {
+                let depths = (bar.first..=bar.last).filter_map(|u| self.median_depth(u, along.clone(), 1));
+                let depth = depths.fold(0.0, f32::max);
+                let sharpness = self.sharpness(middle, (along.start + along.end) / 2);
+                (along, depth, sharpness)
+            })
+            .collect()
+    }
+
+    /// The bluntest view in which a bar shows.
+    pub fn bluntest(&self, bar: &Bar) -> f64 {
+        let stretches = self.stretches(bar);
+        let evident = stretches.iter().filter(|(_, depth, _)| *depth >= bar.depth / 2.0);
+        evident.map(|(_, _, sharpness)| *sharpness).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Takes a bar out of the light, but where a view at least as sharp as `bluntest` shows none.
+    pub fn cut(&self, bar: &Bar, bluntest: f64, light: &mut Image) -> bool {
+        let stretches = self.stretches(bar);
+        let is_absent =
+            |(_, depth, sharpness): &(Range<usize>, f32, f64)| *sharpness >= bluntest && *depth < ABSENT * bar.depth;
+        let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
+        // Where another bar crosses, both are equally dark.
+        let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
+        let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
+        let mut is_changed = false;
+        for (n, (along, ..)) in stretches.into_iter().enumerate() {
+            if absent[n] && !crosses(n) {
+                continue;
+            }
+            for v in along {
+                for u in bar.first..=bar.last {
+                    let i = self.index(u, v);
+                    is_changed |= light.data[i] >= 0.5;
+                    light.data[i] = 0.0;
+                }
+            }
+        }
+        is_changed
+    }
+}
+
+/// For each position of a line the most light of the `count` positions before it, 0 without any.
+fn brightest_before<'a>(light: impl Iterator<Item = f32>, count: usize, brightest: impl Iterator<Item = &'a mut f32>) {
+    // Positions that may still be the brightest of a window, with falling light.
+    let mut window: VecDeque<(usize, f32)> = VecDeque::new();
+    for (u, (light, brightest)) in light.zip(brightest).enumerate() {
+        while window.front().is_some_and(|(first, _)| first + count < u) {
+            window.pop_front();
+        }
+        *brightest = window.front().map_or(0.0, |(_, light)| *light);
+        while window.back().is_some_and(|(_, last)| *last <= light) {
+            window.pop_back();
+        }
+        window.push_back((u, light));
+    }
+}

@@ -1,0 +1,207 @@
+//! Panes of a luminous ceiling: parted along the bars between them, and each made whole.
+//!
+//! The mask of lights joins panes where the bars between them drown in bloom, and cuts panes to pieces along their
+//! leading where the camera is near. The bars ([`super::bars`]) say what a pane is, near and far.
+
+use super::LUMINOUS;
+use super::bars::{Bar, Lines, LitPlane};
+use crate::error::Result;
+use crate::image::colour::luminance;
+use crate::image::{Image, try_collect};
+use glam::Vec3;
+use std::ops::Range;
+
+/// Share of a cell between bars that is light, from which it is a pane. [bench photos:real]
+const PANE: f64 = 0.35;
+/// Share of a pane's median luminance from which a pixel of its cell belongs to it, though the mask left it out.
+/// [bench photos:real]
+const BRIGHT: f32 = 0.5;
+/// Width of a dark line inside a pane up to which it is leading, in the side of the cell. [bench photos:real]
+const LEADING: f64 = 0.06;
+
+/// The light of the panes without the bars between them; `None` where the plane is no luminous ceiling, or the light
+/// covers no bar.
+pub fn part(plane: &LitPlane) -> Result<Option<Image>> {
+    let pixels = plane.light.data.len();
+    let valid = (0..pixels).filter(|&i| plane.is_valid(i)).count();
+    let lit = (0..pixels).filter(|&i| plane.is_lit(i)).count();
+    if lit == 0 || (lit as f64) < LUMINOUS * valid as f64 {
+        return Ok(None);
+    }
+    let colours = plane.unwarped.data.chunks_exact(plane.unwarped.channels);
+    let luminances = try_collect(colours.map(|c| luminance(Vec3::new(c[0], c[1], c[2])).max(0.0)))?;
+    let mut light = plane.light.try_clone()?;
+    let (columns, cut_columns) = cut_bars(&Lines::new(plane, &luminances, true)?, &mut light);
+    let (rows, cut_rows) = cut_bars(&Lines::new(plane, &luminances, false)?, &mut light);
+    if !(cut_columns || cut_rows) {
+        return Ok(None);
+    }
+    for rows in between(&rows, light.height) {
+        for columns in between(&columns, light.width) {
+            fill(&Cell { plane, luminances: &luminances, columns, rows: rows.clone() }, &mut light);
+        }
+    }
+    Ok(Some(light))
+}
+
+/// Takes the bars across one axis out of the light. The bars, in order, and whether any of them was light.
+fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
+    let mut bars = lines.bars();
+    let mut is_changed = false;
+    let mut bluntest = f64::INFINITY;
+    for bar in &bars {
+        let own = lines.bluntest(bar);
+        bluntest = bluntest.min(own);
+        is_changed |= lines.cut(bar, own, light);
+    }
+    // Where the photo is sharper than in any view of a bar, one that follows by its period would show.
+    let beyond = lines.beyond(&bars);
+    for bar in &beyond {
+        is_changed |= lines.cut(bar, bluntest, light);
+    }
+    bars.extend(beyond);
+    bars.sort_by_key(|bar| bar.first);
+    (bars, is_changed)
+}
+
+/// The positions between bars.
+fn between(bars: &[Bar], size: usize) -> Vec<Range<usize>> {
+    let starts = std::iter::once(0).chain(bars.iter().map(|bar| bar.last + 1));
+    let ends = bars.iter().map(|bar| bar.first).chain(std::iter::once(size));
+    starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| start..end).collect()
+}
+
+/// A cell between bars.
+struct Cell<'a> {
+    plane: &'a LitPlane<'a>,
+    luminances: &'a [f32],
+    columns: Range<usize>,
+    rows: Range<usize>,
+}
+
+impl Cell<'_> {
+    fn pixels(&self) -> impl Iterator<Item = usize> + '_ {
+        let width = self.plane.light.width;
+        let all = self.rows.clone().flat_map(move |y| self.columns.clone().map(move |x| y * width + x));
+        all.filter(|&i| self.plane.is_valid(i))
+    }
+}
+
+/// Makes one pane of a cell that is mostly light: with its leading, and with the parts that the mask left out.
+fn fill(cell: &Cell, light: &mut Image) {
+    let lit: Vec<usize> = cell.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
+    if lit.is_empty() || (lit.len() as f64) < PANE * cell.pixels().count() as f64 {
+        return;
+    }
+
+    // Close the leading along rows and columns.
+    let width = light.width;
+    let (columns, rows) = (cell.columns.clone(), cell.rows.clone());
+    rows.clone().for_each(|y| close(light, (y * width + columns.start, 1, columns.len())));
+    columns.clone().for_each(|x| close(light, (rows.start * width + x, width, rows.len())));
+
+    // Add the bright pixels of the pane's box.
+    let range = |of: fn(usize, usize) -> usize| {
+        let positions = || lit.iter().map(|&i| of(i, width));
+        positions().min().unwrap_or(0)..=positions().max().unwrap_or(0)
+    };
+    let (left, top) = (range(|i, width| i % width), range(|i, width| i / width));
+    let mut luminances: Vec<f32> = lit.iter().map(|&i| cell.luminances[i]).collect();
+    let middle = luminances.len() / 2;
+    let min_luminance = BRIGHT * *luminances.select_nth_unstable_by(middle, f32::total_cmp).1;
+    let is_bright = |&i: &usize| cell.luminances[i] >= min_luminance;
+    let is_inside = |&i: &usize| left.contains(&(i % width)) && top.contains(&(i / width));
+    cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
+}
+
+/// Closes the narrow gaps of a line of pixels: its first one, the step to the next, and their number.
+fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
+    let widest = (count as f64 * LEADING) as usize;
+    let mut last = None;
+    for n in (0..count).filter(|n| light.data[start + n * step] >= super::LIT).collect::<Vec<_>>() {
+        if let Some(last) = last.filter(|last| n - last <= widest + 1) {
+            (last + 1..n).for_each(|n| light.data[start + n * step] = 1.0);
+        }
+        last = Some(n);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::components;
+    use super::*;
+    use crate::geometry::Homography;
+
+    const SIDE: usize = 240;
+
+    /// Panes of 30 pixels with bars of 10 between them, as bright as given, and a mask that covers all of it but a
+    /// margin.
+    fn ceiling(bar: impl Fn(usize, usize) -> f32) -> [Image; 3] {
+        let is_inside = |n: usize| (5..SIDE - 5).contains(&n);
+        let is_bar = |n: usize| n % 40 < 5 || n % 40 >= 35;
+        let colour = |x: usize, y: usize| match is_inside(x) && is_inside(y) {
+            true if is_bar(x) || is_bar(y) => [bar(x, y); 3],
+            true => [1.0; 3],
+            false => [0.1; 3],
+        };
+        let light = |x: usize, y: usize| [f32::from(is_inside(x) && is_inside(y))];
+        let unwarped = Image::from_fn(SIDE, SIDE, colour).unwrap();
+        let light = Image::from_fn(SIDE, SIDE, light).unwrap();
+        let valid = Image::from_fn(SIDE, SIDE, |_, _| [1.0]).unwrap();
+        [unwarped, light, valid]
+    }
+
+    fn panes([unwarped, light, valid]: &[Image; 3]) -> Option<Vec<components::Component>> {
+        let plane = LitPlane { unwarped, light, valid, to_photo: None };
+        let light = part(&plane).unwrap()?;
+        Some(components::find(SIDE, SIDE, |i| light.data[i] >= 0.5).unwrap().list)
+    }
+
+    #[test]
+    fn joined_panes_are_parted_where_bars_are_hardly_darker() {
+        for bar in [0.2, 0.9] {
+            let panes = panes(&ceiling(|_, _| bar)).unwrap();
+            assert_eq!(panes.len(), 36, "{bar}");
+            assert!(panes.iter().all(|pane| pane.size().iter().all(|&side| (28..=32).contains(&side))), "{panes:?}");
+        }
+    }
+
+    #[test]
+    fn bars_that_no_longer_show_go_on_by_their_period() {
+        // Without a photo all is equally sharp, and a bar that does not show is none.
+        let fading = |_: usize, y: usize| if y < 150 { 0.5 } else { 1.0 };
+        assert_eq!(panes(&ceiling(fading)).unwrap().len(), 24);
+        // The photo shows the lower rows ever less sharply.
+        let [unwarped, light, valid] = ceiling(fading);
+        let towards = glam::DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.01, 0.0, 0.0, 1.0]);
+        let plane = LitPlane { unwarped: &unwarped, light: &light, valid: &valid, to_photo: Some(Homography(towards)) };
+        let light = part(&plane).unwrap().unwrap();
+        let panes = components::find(SIDE, SIDE, |i| light.data[i] >= 0.5).unwrap().list;
+        assert_eq!(panes.len(), 36);
+    }
+
+    #[test]
+    fn a_pane_keeps_its_leading_and_parts_that_the_mask_left_out() {
+        let [unwarped, mut light, valid] = ceiling(|_, _| 0.2);
+        let mut leaded = unwarped.try_clone().unwrap();
+        for y in 47..73 {
+            // A diagonal line of lead, and a corner without light.
+            leaded.pixel_mut(y, y).fill(0.3);
+            light.pixel_mut(y, y).fill(0.0);
+            (65..73).for_each(|x| light.pixel_mut(x, y.min(55)).fill(0.0));
+        }
+        let panes = panes(&[leaded, light, valid]).unwrap();
+        assert_eq!(panes.len(), 36);
+        assert!(panes.iter().all(|pane| pane.area >= 28 * 28), "{panes:?}");
+    }
+
+    #[test]
+    fn lamps_on_a_ceiling_are_no_panes() {
+        let is_lamp = |n: usize| n % 60 < 24;
+        let lit = |x: usize, y: usize| is_lamp(x) && is_lamp(y);
+        let unwarped = Image::from_fn(SIDE, SIDE, |x, y| [if lit(x, y) { 1.0 } else { 0.2 }; 3]).unwrap();
+        let light = Image::from_fn(SIDE, SIDE, |x, y| [f32::from(lit(x, y))]).unwrap();
+        let valid = Image::from_fn(SIDE, SIDE, |_, _| [1.0]).unwrap();
+        assert!(panes(&[unwarped, light, valid]).is_none());
+    }
+}
