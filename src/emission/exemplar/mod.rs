@@ -92,7 +92,13 @@ impl Exemplar {
         // Lamps are what the texture may show as such.
         let Self { width, height, components, .. } = self;
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
-        let colour = |i: usize| self.shown[i].then(|| unwarped.rgb(i % width, i / width));
+        // A luminous ceiling goes on without the dark ceiling around it.
+        let [low, high] = if self.is_luminous_ceiling() { self.box_of_lights() } else { [[0, 0], [*width, *height]] };
+        let is_inside = |x: usize, y: usize| x >= low[0] && y >= low[1] && x <= high[0] && y <= high[1];
+        let colour = |i: usize| {
+            let (x, y) = (i % width, i / width);
+            (self.shown[i] && is_inside(x, y)).then(|| unwarped.rgb(x, y))
+        };
         Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }
 
@@ -109,6 +115,15 @@ impl Exemplar {
     /// Whether the plane is a luminous ceiling or a skylight: light with bars, rather than lamps on a ceiling.
     pub fn is_luminous_ceiling(&self) -> bool {
         self.lit_share >= LUMINOUS
+    }
+
+    /// The first and the last column and row with light.
+    fn box_of_lights(&self) -> [[usize; 2]; 2] {
+        let corners =
+            |a: [usize; 2], b: [usize; 2], pick: fn(usize, usize) -> usize| [pick(a[0], b[0]), pick(a[1], b[1])];
+        let lights = &self.components.list;
+        let low = lights.iter().fold([usize::MAX; 2], |low, light| corners(low, light.min, usize::min));
+        [low, lights.iter().fold([0; 2], |high, light| corners(high, light.max, usize::max))]
     }
 
     /// The whole lamps.
