@@ -4,7 +4,7 @@
 //! luminaires.
 
 use super::context::{Context, luxfer_context};
-use super::emission_law::{self, LUXFER_LAW_BEST, luxfer_emission_law};
+use super::emission_law::{self, LUXFER_LAW_BEST, LUXFER_LAW_COPY, luxfer_emission_law};
 use super::geometry::numbers;
 use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};

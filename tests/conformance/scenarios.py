@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from script import FUNCTIONS, Argument, Call, Script, array, report, struct, view
+from script import SETTINGS, Argument, Call, Script, array, report, struct, view
 
 ROOM = ["room", 0x5A]
 
