@@ -142,7 +142,8 @@ def table() -> str:
     out = ["use luxfer::ffi::*;"]
     for name, members in script.STRUCTS.items():
         if is_record(name):
-            init = f"Some(|p| unsafe {{ {name}_init(p.cast(), size_of::<{name}>()) }})" if f"{name}_init" in NAMES else "None"
+            settings = script.HEADER.settings.get(name)
+            init = f"Some(|p| unsafe {{ luxfer_init({settings}, p, size_of::<{name}>()) }})" if settings else "None"
             places = ", ".join(f"(offset_of!({name}, {f.name}), {member(f)})" for f in members)
             out.append(f"static {name.upper()}: Record = Record {{ size: size_of::<{name}>(), init: {init}, members: &[{places}] }};")
     out.append("static CALLS: &[(&str, fn(&mut Arguments) -> luxfer_status)] = &[")

@@ -56,7 +56,7 @@ pub enum Code {
     DimLamps = 22,
     /// Emission: a texture without light would differ less from the photo.
     NoPattern = 23,
-    /// Mask: strokes were missing, and it is a proposal.
+    /// Mask: it is a proposal, since there were no strokes.
     Proposed = 24,
 }
 

@@ -165,33 +165,50 @@ fn pixels_round_trip_through_strides_and_misalignment() {
 #[test]
 fn every_params_struct_takes_its_own_size_and_no_other() {
     macro_rules! check {
-        ($($init:ident: $params:ident;)*) => {$(
+        ($($which:ident: $params:ident;)*) => {$(
             let mut room = [0xffu8; 4200];
             let own = size_of::<$params>();
             for size in 0..4200usize {
-                let status = unsafe { $init(room.as_mut_ptr().cast(), size) };
+                let status = unsafe { luxfer_init($which, room.as_mut_ptr().cast(), size) };
                 let want = if (own..=4096).contains(&size) { LUXFER_OK } else { LUXFER_INVALID_ARGUMENT };
-                assert_eq!(status, want, "{} with {size} bytes", stringify!($init));
+                assert_eq!(status, want, "{} with {size} bytes", stringify!($which));
             }
-            assert_eq!(unsafe { $init(null_mut(), own) }, LUXFER_INVALID_ARGUMENT);
+            assert_eq!(unsafe { luxfer_init($which, null_mut(), own) }, LUXFER_INVALID_ARGUMENT);
         )*};
     }
     check! {
-        luxfer_context_params_init: luxfer_context_params;
-        luxfer_image_view_init: luxfer_image_view;
-        luxfer_material_params_init: luxfer_material_params;
-        luxfer_mesh_params_init: luxfer_mesh_params;
-        luxfer_camera_params_init: luxfer_camera_params;
-        luxfer_features_params_init: luxfer_features_params;
-        luxfer_segment_params_init: luxfer_segment_params;
-        luxfer_rectify_params_init: luxfer_rectify_params;
-        luxfer_emission_params_init: luxfer_emission_params;
-        luxfer_render_params_init: luxfer_render_params;
-        luxfer_render_part_init: luxfer_render_part;
-        luxfer_illuminance_params_init: luxfer_illuminance_params;
-        luxfer_illuminance_grid_init: luxfer_illuminance_grid;
-        luxfer_relight_params_init: luxfer_relight_params;
-        luxfer_transfer_params_init: luxfer_transfer_params;
+        LUXFER_STRUCT_CONTEXT_PARAMS: luxfer_context_params;
+        LUXFER_STRUCT_IMAGE_VIEW: luxfer_image_view;
+        LUXFER_STRUCT_SCENE_LOAD_PARAMS: luxfer_scene_load_params;
+        LUXFER_STRUCT_MATERIAL_PARAMS: luxfer_material_params;
+        LUXFER_STRUCT_MESH_PARAMS: luxfer_mesh_params;
+        LUXFER_STRUCT_CAMERA_PARAMS: luxfer_camera_params;
+        LUXFER_STRUCT_LIGHT_PARAMS: luxfer_light_params;
+        LUXFER_STRUCT_LUMINAIRE_PARAMS: luxfer_luminaire_params;
+        LUXFER_STRUCT_RENDER_PARAMS: luxfer_render_params;
+        LUXFER_STRUCT_RECTIFY_PARAMS: luxfer_rectify_params;
+        LUXFER_STRUCT_FEATURES_PARAMS: luxfer_features_params;
+        LUXFER_STRUCT_SEGMENT_PARAMS: luxfer_segment_params;
+        LUXFER_STRUCT_EMISSION_PARAMS: luxfer_emission_params;
+        LUXFER_STRUCT_RELIGHT_PARAMS: luxfer_relight_params;
+        LUXFER_STRUCT_PATTERN_PARAMS: luxfer_pattern_params;
+        LUXFER_STRUCT_TRANSFER_PARAMS: luxfer_transfer_params;
+        LUXFER_STRUCT_ILLUMINANCE_PARAMS: luxfer_illuminance_params;
+        LUXFER_STRUCT_ILLUMINANCE_GRID: luxfer_illuminance_grid;
+        LUXFER_STRUCT_LAMPS_PARAMS: luxfer_lamps_params;
+        LUXFER_STRUCT_IMPORTANCE_PARAMS: luxfer_importance_params;
+        LUXFER_STRUCT_PLACEMENT_PARAMS: luxfer_placement_params;
+        LUXFER_STRUCT_FALSE_COLOUR_PARAMS: luxfer_false_colour_params;
+        LUXFER_STRUCT_GUIDES_PARAMS: luxfer_guides_params;
+        LUXFER_STRUCT_STYLIZE_PARAMS: luxfer_stylize_params;
+        LUXFER_STRUCT_SHEET_PARAMS: luxfer_sheet_params;
+        LUXFER_STRUCT_PLAN_PARAMS: luxfer_plan_params;
+        LUXFER_STRUCT_RENDER_PART: luxfer_render_part;
+        LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_demo_photo_params;
+    }
+    let mut room = [0xffu8; 4200];
+    for unknown in [-1, 28, i32::MAX] {
+        assert_eq!(unsafe { luxfer_init(unknown, room.as_mut_ptr().cast(), 4096) }, LUXFER_INVALID_ARGUMENT);
     }
 }
 
@@ -313,7 +330,7 @@ fn scenes_are_checked_as_they_are_described() {
     let (inside, outside) = ([[0u32, 1, 2]], [[0u32, 1, 3]]);
     unsafe {
         let mut mesh = std::mem::zeroed::<luxfer_mesh_params>();
-        assert_eq!(luxfer_mesh_params_init(&mut mesh, size_of_val(&mesh)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_MESH_PARAMS, (&raw mut mesh).cast(), size_of_val(&mesh)), LUXFER_OK);
         (mesh.vertex_count, mesh.positions) = (3, positions.as_ptr().cast());
         (mesh.triangle_count, mesh.indices) = (1, outside.as_ptr().cast());
         let add = |mesh: &luxfer_mesh_params| luxfer_scene_add_mesh(scene, mesh, null_mut());
@@ -405,21 +422,13 @@ fn stages_say_what_they_lack() {
 
 /// Strokes are copied by the stage, refused for another size, and gone with a photo of another size.
 #[test]
-fn a_stage_copies_strokes_of_its_size() {
+fn wrong_strokes_are_refused() {
     let context = context(1);
-    let (small, large) = (image(context, 8, 6, 0.5), image(context, 9, 6, 0.5));
-    let create = |width, height| made(|out| unsafe { luxfer_strokes_create(context, width, height, out) });
-    let (strokes, transposed) = (create(8, 6), create(6, 8));
-    let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
+    let large = image(context, 9, 6, 0.5);
+    let strokes = made(|out| unsafe { luxfer_strokes_create(context, 8, 6, out) });
     let points = [1.0f32, 1.0, 6.0, 1.0];
     let add = |phase, count, radius, positive| unsafe {
         luxfer_strokes_add(strokes, phase, points.as_ptr(), count, radius, positive)
-    };
-    let start = || unsafe {
-        let job = made(|out| luxfer_segment_start(segment, null(), out));
-        let status = luxfer_job_wait(job, -1, None, null_mut());
-        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
-        status
     };
     unsafe {
         let mut none = null_mut();
@@ -434,7 +443,26 @@ fn a_stage_copies_strokes_of_its_size() {
         assert_eq!(luxfer_strokes_add_image(strokes, large), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("drawing has 9 x 6"), "{}", message(context));
         assert_eq!(luxfer_strokes_add_text(strokes, c"plane one".as_ptr()), LUXFER_FORMAT);
+        for object in [strokes.cast(), large.cast(), context.cast()] {
+            assert_eq!(luxfer_release(object), LUXFER_OK);
+        }
+    }
+}
 
+#[test]
+fn a_stage_copies_strokes_of_its_size() {
+    let context = context(1);
+    let (small, large) = (image(context, 8, 6, 0.5), image(context, 9, 6, 0.5));
+    let create = |width, height| made(|out| unsafe { luxfer_strokes_create(context, width, height, out) });
+    let (strokes, transposed) = (create(8, 6), create(6, 8));
+    let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
+    let start = || unsafe {
+        let job = made(|out| luxfer_segment_start(segment, null(), out));
+        let status = luxfer_job_wait(job, -1, None, null_mut());
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
+        status
+    };
+    unsafe {
         assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, transposed, LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("strokes are for 6 x 8"), "{}", message(context));
@@ -442,7 +470,8 @@ fn a_stage_copies_strokes_of_its_size() {
         assert_eq!(luxfer_segment_set_strokes(segment, small.cast(), LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
 
         // What the caller adds later, the stage does not have.
-        assert_eq!(add(LUXFER_PHASE_PLANE, 2, 1.0, 1), LUXFER_OK);
+        let points = [1.0f32, 1.0, 6.0, 1.0];
+        assert_eq!(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 1.0, 1), LUXFER_OK);
         assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
         assert_eq!(luxfer_strokes_clear(strokes), LUXFER_OK);

@@ -253,7 +253,7 @@ fn quick_calls(context: *mut luxfer_context) {
         };
         made(&|out| luxfer_image_warp(image, same.as_ptr(), 300, 200, out));
         made(&|out| luxfer_image_false_colour(image, std::ptr::null(), out));
-        assert_eq!(luxfer_sheet_params_init(&mut sheet, size_of_val(&sheet)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_SHEET_PARAMS, (&raw mut sheet).cast(), size_of_val(&sheet)), LUXFER_OK);
         let sheet = luxfer_sheet_params { paper_width: 100.0, paper_height: 80.0, dpi: 50.0, ..sheet };
         let printed = host::made(|out| luxfer_sheet_print(image, &sheet, out));
         made(&|out| luxfer_sheet_align(printed, 32, 24, &sheet, out, null_mut(), 0));

@@ -50,7 +50,7 @@ fn start_render(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut
     let render = made(|out| unsafe { luxfer_render_create(context, out) });
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
     unsafe {
-        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
     }
     let params = luxfer_render_params { width: 64, height: 64, samples: 1 << 20, ..params };

@@ -29,9 +29,9 @@ struct Part {
 const PARTS: &[Part] = &[
     Part {
         name: "core",
-        title: "version, status, context, references, images, strokes and jobs",
+        title: "version, status, settings, context, references, images, strokes and jobs",
         includes: &[],
-        groups: &["version", "status", "context", "references", "image", "photo", "strokes", "job"],
+        groups: &["version", "status", "init", "context", "references", "image", "photo", "strokes", "job"],
     },
     Part {
         name: "scene",
@@ -60,13 +60,22 @@ const PARTS: &[Part] = &[
         name: "stages",
         title: "the stages of a lighting transfer, one by one",
         includes: &["scene"],
-        groups: &["geometry", "rectify", "features", "segment", "emission", "emission_tiles", "relight"],
+        groups: &[
+            "geometry",
+            "rectify",
+            "features",
+            "segment",
+            "emission_law",
+            "emission",
+            "emission_tiles",
+            "relight",
+        ],
     },
     Part {
         name: "transfer",
         title: "the lighting transfer from end to end, and warnings",
         includes: &["render", "stages"],
-        groups: &["pattern", "transfer", "transfer_results", "warning"],
+        groups: &["pattern", "transfer", "transfer_results", "warning", "warning_create"],
     },
     Part {
         name: "lighting",
@@ -113,6 +122,9 @@ const PARTS: &[Part] = &[
 /// The parts that the author of a plug-in for lighting transfers reads, and their maximum number of functions.
 const MAX_READ: (&[&str], usize) = (&["core", "scene", "transfer"], 110);
 
+/// Maximum number of functions in all parts.
+const MAX_FUNCTIONS: usize = 230;
+
 /// Structs that occur in arrays: they have no size field and never change.
 const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit"];
 
@@ -145,6 +157,8 @@ fn each_part_compiles_alone() {
     }
     let read: usize = MAX_READ.0.iter().map(|name| functions(&part(name)).len()).sum();
     assert!(read <= MAX_READ.1, "{read} functions");
+    let all = functions(&header()).len();
+    assert!(all <= MAX_FUNCTIONS, "{all} functions");
 }
 
 /// The C program in the README compiles, with warnings as errors.
@@ -173,6 +187,20 @@ fn check_syntax(compiler: &str, standard: &str, file: &Path) {
         .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", "-I"])
         .arg(root().join("include"))
         .arg(file));
+}
+
+/// Each struct of settings has its inline function, and the numbers of the types never change.
+#[test]
+fn every_type_of_luxfer_init_has_its_inline_function() {
+    let header = header();
+    let settings = settings(&header);
+    let inline: Vec<&str> = header.lines().filter_map(|l| l.strip_prefix("static inline luxfer_status ")).collect();
+    assert_eq!(inline.len(), settings.len());
+    for (number, name) in settings.iter().enumerate() {
+        assert!(inline.iter().any(|l| l.starts_with(&format!("{name}_init({name} *"))), "{name}");
+        let constant = name.replace("luxfer_", "LUXFER_STRUCT_").to_uppercase();
+        assert!(header.contains(&format!("#define {constant} {number}\n")), "{constant} is not {number}");
+    }
 }
 
 #[test]
@@ -302,6 +330,9 @@ fn generate() -> Vec<(String, String)> {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
     let umbrella = config.header.take().unwrap();
     let includes: String = PARTS.iter().map(|p| format!("#include \"luxfer/{}.h\"\n", p.name)).collect();
+    let settings = settings(&section(&config, "init"));
+    // Otherwise cbindgen leaves out structs that no function of their file takes.
+    config.export.include = settings.clone();
     let mut files = vec![("luxfer.h".to_string(), guarded(umbrella.trim_start(), "LUXFER_H", &includes))];
     for part in PARTS {
         let head = format!(
@@ -314,7 +345,7 @@ fn generate() -> Vec<(String, String)> {
             others => others.iter().map(|other| format!("#include \"{other}.h\"\n")).collect(),
         };
         body += "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
-        body.extend(part.groups.iter().map(|group| section(&config, group)));
+        body.extend(part.groups.iter().map(|group| with_initialisers(&section(&config, group), &settings)));
         body += "\n#ifdef __cplusplus\n}\n#endif\n";
         let guard = format!("LUXFER_{}_H", part.name.to_uppercase());
         files.push((format!("luxfer/{}.h", part.name), guarded(&head, &guard, &body)));
@@ -342,6 +373,31 @@ fn section(config: &cbindgen::Config, group: &str) -> String {
         .replace("struct luxfer_", "luxfer_")
         .replace("typedef luxfer_", "typedef struct luxfer_");
     out + &one_line_comments(items.trim())
+}
+
+/// Names of the structs that luxfer_init fills, from the constants of their types.
+fn settings(section: &str) -> Vec<String> {
+    let constants = section.lines().filter_map(|l| l.strip_prefix("#define LUXFER_STRUCT_"));
+    constants.map(|l| format!("luxfer_{}", l.split(' ').next().unwrap().to_lowercase())).collect()
+}
+
+/// Adds an inline function after each struct of settings that fills it: luxfer_init, with a checked argument.
+fn with_initialisers(section: &str, settings: &[String]) -> String {
+    let mut out = String::new();
+    for line in section.lines() {
+        writeln!(out, "{line}").unwrap();
+        let ended = line.strip_prefix("} ").and_then(|l| l.strip_suffix(';'));
+        let Some(name) = ended.filter(|name| settings.iter().any(|s| s == name)) else { continue };
+        let constant = name.replace("luxfer_", "LUXFER_STRUCT_").to_uppercase();
+        writeln!(
+            out,
+            "\n/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */\n\
+             static inline luxfer_status {name}_init({name} *place, size_t size) {{\n    \
+             return luxfer_init({constant}, place, size);\n}}"
+        )
+        .unwrap();
+    }
+    out
 }
 
 /// Puts each comment that fits onto one line.
@@ -387,6 +443,7 @@ fn version_macros() -> String {
 /// Names of the functions a header declares.
 fn functions(header: &str) -> Vec<&str> {
     let declarations = header.lines().filter(|l| !l.starts_with([' ', '#', '/']) && !l.starts_with("typedef"));
+    let declarations = declarations.filter(|l| !l.starts_with("static inline "));
     let names =
         declarations.filter_map(|l| l.split_once('(')).filter_map(|(before, _)| before.rsplit([' ', '*']).next());
     names.filter(|n| n.starts_with("luxfer_")).collect()

@@ -14,7 +14,10 @@ static ALONE: Mutex<()> = Mutex::new(());
 
 fn render_params(side: u32, samples: u32) -> luxfer_render_params {
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
-    assert_eq!(unsafe { luxfer_render_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
+    assert_eq!(
+        unsafe { luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)) },
+        LUXFER_OK
+    );
     luxfer_render_params { width: side, height: side, samples, ..params }
 }
 

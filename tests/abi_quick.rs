@@ -20,7 +20,7 @@ fn start_render(context: *mut luxfer_context, samples: u32) -> (*mut luxfer_rend
     let (render, scene) = (made(|out| unsafe { luxfer_render_create(context, out) }), scene(context));
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
     unsafe {
-        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
     }
@@ -70,7 +70,10 @@ impl Objects {
     fn new(context: *mut luxfer_context) -> Self {
         let image = image(context, 32, 24, 0.5);
         let mut params = unsafe { std::mem::zeroed::<luxfer_sheet_params>() };
-        assert_eq!(unsafe { luxfer_sheet_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
+        assert_eq!(
+            unsafe { luxfer_init(LUXFER_STRUCT_SHEET_PARAMS, (&raw mut params).cast(), size_of_val(&params)) },
+            LUXFER_OK
+        );
         let sheet_params = luxfer_sheet_params { paper_width: 100.0, paper_height: 80.0, dpi: 50.0, ..params };
         let sheet = made(|out| unsafe { luxfer_sheet_print(image, &sheet_params, out) });
         let (render, job) = start_render(context, 16);

@@ -38,10 +38,39 @@ fn layers_are_found_read_and_written() {
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
     let mut count = 7;
     unsafe {
-        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
         params = luxfer_render_params { width: 12, height: 8, samples: 8, ..params };
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
-        // Wrong calls are refused, and the message says where the error is.
+        refuse_layers(context, render, &params);
+        assert_eq!(add(c"LDE", c"LDE"), LUXFER_OK);
+        assert_eq!(add(c"LDE", c"LSE"), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(add(c"Lampe \xc3\xbc", c"C.*<L.'Lamp'>"), LUXFER_OK);
+        assert_eq!(luxfer_render_set_emitter_as(render, LUXFER_EMITTER_AS_BOTH), LUXFER_OK);
+        let aovs = LUXFER_AOV_DEPTH | LUXFER_AOV_NORMAL | LUXFER_AOV_ALPHA;
+        assert_eq!(luxfer_render_set_aovs(render, aovs), LUXFER_OK);
+        assert_eq!(finish(made(|out| luxfer_render_start(render, &params, out))), LUXFER_OK);
+        assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_OK);
+        assert_eq!(count, 5);
+        let names = layer_names(render, count);
+        assert_eq!(names, ["LDE", "Lampe ü", "Depth", "Normal", "Alpha"]);
+        let mut image = null_mut();
+        assert_eq!(luxfer_render_get_layer(render, 5, &mut image), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_render_find_layer(render, c"LSE".as_ptr(), &mut count), LUXFER_NOT_FOUND);
+        compare_layers(render);
+        write_layers(context, render);
+        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}
+
+/// Refuses wrong calls with a message that says where the error is, and a label that no object has at the end of the job.
+fn refuse_layers(context: *mut luxfer_context, render: *mut luxfer_render, params: &luxfer_render_params) {
+    let add = |name: &CStr, expression: &CStr| unsafe {
+        luxfer_render_add_expression(render, name.as_ptr(), expression.as_ptr())
+    };
+    let mut count = 7;
+    unsafe {
         assert_eq!(add(c"LDE", c"LDXE"), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("column 3"), "{}", message(context));
         assert_eq!(add(c"a.b", c"LDE"), LUXFER_INVALID_ARGUMENT);
@@ -53,19 +82,15 @@ fn layers_are_found_read_and_written() {
         assert_eq!(luxfer_render_write_exr(render, c"/tmp/never.exr".as_ptr()), LUXFER_NOT_READY);
         // A label that no object has ends the job with an error.
         assert_eq!(add(c"lost", c"C<RD'Nothing'>L"), LUXFER_OK);
-        assert_eq!(finish(made(|out| luxfer_render_start(render, &params, out))), LUXFER_NOT_FOUND);
+        assert_eq!(finish(made(|out| luxfer_render_start(render, params, out))), LUXFER_NOT_FOUND);
         assert!(message(context).contains("'Lamp'"), "{}", message(context));
         assert_eq!(luxfer_render_clear_expressions(render), LUXFER_OK);
+    }
+}
 
-        assert_eq!(add(c"LDE", c"LDE"), LUXFER_OK);
-        assert_eq!(add(c"LDE", c"LSE"), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(add(c"Lampe \xc3\xbc", c"C.*<L.'Lamp'>"), LUXFER_OK);
-        assert_eq!(luxfer_render_set_emitter_as(render, LUXFER_EMITTER_AS_BOTH), LUXFER_OK);
-        let aovs = LUXFER_AOV_DEPTH | LUXFER_AOV_NORMAL | LUXFER_AOV_ALPHA;
-        assert_eq!(luxfer_render_set_aovs(render, aovs), LUXFER_OK);
-        assert_eq!(finish(made(|out| luxfer_render_start(render, &params, out))), LUXFER_OK);
-        assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_OK);
-        assert_eq!(count, 5);
+/// The names of the layers, each of which is found under its name.
+fn layer_names(render: *mut luxfer_render, count: u32) -> Vec<String> {
+    unsafe {
         let mut names = Vec::new();
         for index in 0..count {
             let (mut buffer, mut found) = ([0 as c_char; 32], 99);
@@ -74,10 +99,13 @@ fn layers_are_found_read_and_written() {
             assert_eq!(found, index);
             names.push(CStr::from_ptr(buffer.as_ptr()).to_str().unwrap().to_string());
         }
-        assert_eq!(names, ["LDE", "Lampe ü", "Depth", "Normal", "Alpha"]);
-        let mut image = null_mut();
-        assert_eq!(luxfer_render_get_layer(render, 5, &mut image), LUXFER_NOT_FOUND);
-        assert_eq!(luxfer_render_find_layer(render, c"LSE".as_ptr(), &mut count), LUXFER_NOT_FOUND);
+        names
+    }
+}
+
+/// Compares the pixels of the layers with the image.
+fn compare_layers(render: *mut luxfer_render) {
+    unsafe {
         // The room is closed and its lamp is the only light, so this layer equals the image.
         let beauty = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out)));
         let by_lamp = pixels(made(|out| luxfer_render_get_layer(render, 1, out)));
@@ -87,6 +115,13 @@ fn layers_are_found_read_and_written() {
         let (channels, alpha) = pixels(made(|out| luxfer_render_get_layer(render, 4, out)));
         assert!(channels == 1 && alpha.iter().all(|&a| a == 1.0));
         assert_eq!(pixels(made(|out| luxfer_render_get_layer(render, 3, out))).0, 3);
+    }
+}
+
+/// Writes the layers and reads the file back.
+fn write_layers(context: *mut luxfer_context, render: *mut luxfer_render) {
+    unsafe {
+        let beauty = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out)));
         // Programs without layers find the image in the file's default channels.
         let path = CString::new(format!("{}/layers.exr", env!("CARGO_TARGET_TMPDIR"))).unwrap();
         assert_eq!(luxfer_render_write_exr(render, path.as_ptr()), LUXFER_OK, "{}", message(context));
@@ -101,9 +136,6 @@ fn layers_are_found_read_and_written() {
         assert!(!holds("Alpha.A"));
         let nowhere = c"/nonexistent/layers.exr".as_ptr();
         assert_eq!(luxfer_render_write_exr(render, nowhere), LUXFER_IO);
-        assert_eq!(luxfer_release(render.cast()), LUXFER_OK);
-        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
-        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 
@@ -115,8 +147,11 @@ fn illuminance_comes_with_its_error() {
     let mut grid = unsafe { std::mem::zeroed::<luxfer_illuminance_grid>() };
     let mut params = unsafe { std::mem::zeroed::<luxfer_illuminance_params>() };
     unsafe {
-        assert_eq!(luxfer_illuminance_grid_init(&mut grid, size_of_val(&grid)), LUXFER_OK);
-        assert_eq!(luxfer_illuminance_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_ILLUMINANCE_GRID, (&raw mut grid).cast(), size_of_val(&grid)), LUXFER_OK);
+        assert_eq!(
+            luxfer_init(LUXFER_STRUCT_ILLUMINANCE_PARAMS, (&raw mut params).cast(), size_of_val(&params)),
+            LUXFER_OK
+        );
         params = luxfer_illuminance_params { columns: 4, rows: 3, samples: 256, ..params };
         let mut job = null_mut();
         assert_eq!(luxfer_illuminance_start_grid(stage, &grid, &params, &mut job), LUXFER_INVALID_OPERATION);
@@ -174,7 +209,7 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
     let render = made(|out| unsafe { luxfer_render_create(context, out) });
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
     unsafe {
-        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
         assert_eq!((params.preview, params.bounce_error), (0.0, 0.0));
         params = luxfer_render_params { width: 32, height: 24, samples: 16, ..params };
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
@@ -242,7 +277,7 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
         let mut needed = std::mem::zeroed::<luxfer_requirements>();
         assert_eq!(luxfer_scene_get_requirements(scene, 0.0, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert_eq!(needed.lights, LUXFER_LIGHTS_ENVIRONMENT);
-        assert_eq!(luxfer_illuminance_grid_init(&mut grid, size_of_val(&grid)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_ILLUMINANCE_GRID, (&raw mut grid).cast(), size_of_val(&grid)), LUXFER_OK);
         assert_eq!(luxfer_illuminance_set_scene(stage, scene), LUXFER_OK);
         for (up, luminance) in [(1.0f32, 20.0), (-1.0, 10.0)] {
             let grid = luxfer_illuminance_grid { normal: [0.0, up, 0.0], ..grid };

@@ -48,7 +48,10 @@ impl Drop for Folder {
 
 fn params() -> luxfer_scene_load_params {
     let mut params = luxfer_scene_load_params { struct_size: 0, allow_external_files: 7, unit: 7.0 };
-    assert_eq!(unsafe { luxfer_scene_load_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
+    assert_eq!(
+        unsafe { luxfer_init(LUXFER_STRUCT_SCENE_LOAD_PARAMS, (&raw mut params).cast(), size_of_val(&params)) },
+        LUXFER_OK
+    );
     assert_eq!((params.allow_external_files, params.unit), (0, 1.0));
     params
 }
@@ -92,7 +95,7 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
     assert_eq!(warnings(scene).iter().map(|w| w.0).collect::<Vec<_>>(), [LUXFER_WARNING_NOT_RENDERED]);
     let (mut positions, mut text) = ([0.0f32; 9], [0 as c_char; 4096]);
     unsafe {
-        let status = luxfer_scene_read_mesh(scene, 0, 3, positions.as_mut_ptr(), null_mut(), 0, null_mut());
+        let status = luxfer_scene_read_vertices(scene, 0, LUXFER_VERTEX_POSITION, 3, positions.as_mut_ptr());
         assert_eq!((status, positions[3]), (LUXFER_OK, 2.7));
         let status = luxfer_scene_get_requirements_text(scene, text.as_mut_ptr(), text.len(), null_mut());
         assert_eq!(status, LUXFER_OK, "{}", message(context));

@@ -21,21 +21,24 @@ fn a_mesh_comes_back_as_it_was_described() {
         assert_eq!((info.material, info.vertex_count, info.triangle_count), (1, 4, 2));
         assert_eq!((info.has_normals, info.uv_sets), (0, 0));
         let (mut positions, mut indices) = ([0.0f32; 12], [0u32; 6]);
-        let read = |vertices, positions, normals, triangles, indices| {
-            luxfer_scene_read_mesh(scene, 1, vertices, positions, normals, triangles, indices)
-        };
-        assert_eq!(read(4, positions.as_mut_ptr(), null_mut(), 2, indices.as_mut_ptr()), LUXFER_OK);
+        let read = |attribute, capacity, values| luxfer_scene_read_vertices(scene, 1, attribute, capacity, values);
+        assert_eq!(read(LUXFER_VERTEX_POSITION, 4, positions.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, 2, indices.as_mut_ptr()), LUXFER_OK);
         assert_eq!(positions, [-0.5, 1.9, -0.5, 0.5, 1.9, -0.5, 0.5, 1.9, 0.5, -0.5, 1.9, 0.5]);
         assert_eq!(indices, [0, 1, 2, 0, 2, 3]);
         // Nothing is written if the array is too small.
         let (mut positions, mut indices) = ([7.0f32; 12], [7u32; 6]);
-        assert_eq!(read(4, positions.as_mut_ptr(), null_mut(), 1, indices.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
-        assert!(message(context).contains("room for 1 indices; 2"), "{}", message(context));
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, 1, indices.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("room for 1 triangles; 2"), "{}", message(context));
+        assert_eq!(read(LUXFER_VERTEX_POSITION, 3, positions.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
         assert_eq!((positions, indices), ([7.0; 12], [7; 6]));
-        assert_eq!(read(0, null_mut(), null_mut(), 0, null_mut()), LUXFER_OK);
-        assert_eq!(read(4, null_mut(), positions.as_mut_ptr(), 0, null_mut()), LUXFER_NOT_FOUND);
-        for set in [0, 1, 2, u32::MAX] {
-            assert_eq!(luxfer_scene_read_mesh_uvs(scene, 1, set, 4, positions.as_mut_ptr()), LUXFER_NOT_FOUND);
+        assert_eq!(read(LUXFER_VERTEX_POSITION, 4, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, 2, null_mut()), LUXFER_INVALID_ARGUMENT);
+        for lacking in [LUXFER_VERTEX_NORMAL, LUXFER_VERTEX_UV_0, LUXFER_VERTEX_UV_1, LUXFER_VERTEX_COLOUR] {
+            assert_eq!(read(lacking, 4, positions.as_mut_ptr()), LUXFER_NOT_FOUND);
+        }
+        for unknown in [-1, 5, i32::MAX] {
+            assert_eq!(read(unknown, 4, positions.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
         }
         let (mut name, mut needed) = ([0u8; 8], 0);
         assert_eq!(luxfer_scene_get_mesh_name(scene, 1, name.as_mut_ptr().cast(), 8, &mut needed), LUXFER_OK);
@@ -110,7 +113,7 @@ fn rays_hit_what_they_should_after_every_change() {
         // After the scene changes, a quad covers the lamp.
         let positions = [[-1.0f32, 1.5, -1.0], [1.0, 1.5, -1.0], [0.0, 1.5, 2.0]];
         let mut mesh: luxfer_mesh_params = zeroed();
-        assert_eq!(luxfer_mesh_params_init(&mut mesh, size_of_val(&mesh)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_MESH_PARAMS, (&raw mut mesh).cast(), size_of_val(&mesh)), LUXFER_OK);
         (mesh.vertex_count, mesh.positions) = (3, positions.as_ptr().cast());
         (mesh.triangle_count, mesh.indices) = (1, [0u32, 1, 2].as_ptr().cast());
         assert_eq!(luxfer_scene_add_mesh(scene, &mesh, null_mut()), LUXFER_OK);
@@ -184,9 +187,30 @@ fn materials_are_replaced_and_keep_their_textures() {
         assert_eq!(set(0, LUXFER_TEXTURE_NORMAL, texture, 0, null()), LUXFER_OK);
         assert_eq!(set(0, LUXFER_TEXTURE_NORMAL, LUXFER_NONE, 0, null()), LUXFER_OK);
 
-        // All values are returned as they were set; a refused call changes nothing.
+        replace_material(scene);
+        let mut used = std::mem::zeroed::<luxfer_texture_use>();
+        let role = LUXFER_TEXTURE_BASE_COLOR;
+        assert_eq!(luxfer_scene_get_material_texture(scene, 0, role, &mut used, size_of_val(&used)), LUXFER_OK);
+        assert_eq!((used.texture, used.uv_set, used.transform), (0, 1, transform));
+        assert_eq!((used.wrap_u, used.wrap_v), (LUXFER_WRAP_MIRROR, LUXFER_WRAP_CLAMP));
+        assert_eq!(
+            luxfer_scene_get_material_texture(scene, 0, LUXFER_TEXTURE_NORMAL, &mut used, size_of_val(&used)),
+            LUXFER_OK
+        );
+        assert_eq!(used.texture, LUXFER_NONE);
+        for image in [picture, dark] {
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+        }
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}
+
+/// Replaces material 0. All values are returned as they were set; a refused call changes nothing.
+fn replace_material(scene: *mut luxfer_scene) {
+    unsafe {
         let mut given: luxfer_material_params = zeroed();
-        assert_eq!(luxfer_material_params_init(&mut given, size_of_val(&given)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_MATERIAL_PARAMS, (&raw mut given).cast(), size_of_val(&given)), LUXFER_OK);
         given = luxfer_material_params {
             base_color: [0.1, 0.2, 0.3],
             metallic: 0.4,
@@ -219,20 +243,5 @@ fn materials_are_replaced_and_keep_their_textures() {
             (colours, rest, m.alpha_mode, m.double_sided)
         };
         assert_eq!(numbers(&back), numbers(&given));
-        let mut used = std::mem::zeroed::<luxfer_texture_use>();
-        let role = LUXFER_TEXTURE_BASE_COLOR;
-        assert_eq!(luxfer_scene_get_material_texture(scene, 0, role, &mut used, size_of_val(&used)), LUXFER_OK);
-        assert_eq!((used.texture, used.uv_set, used.transform), (0, 1, transform));
-        assert_eq!((used.wrap_u, used.wrap_v), (LUXFER_WRAP_MIRROR, LUXFER_WRAP_CLAMP));
-        assert_eq!(
-            luxfer_scene_get_material_texture(scene, 0, LUXFER_TEXTURE_NORMAL, &mut used, size_of_val(&used)),
-            LUXFER_OK
-        );
-        assert_eq!(used.texture, LUXFER_NONE);
-        for image in [picture, dark] {
-            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
-        }
-        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
-        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }

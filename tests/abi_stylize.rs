@@ -49,7 +49,10 @@ fn artwork(context: *mut luxfer_context, width: u32, height: u32) -> *mut luxfer
 
 fn params() -> luxfer_stylize_params {
     let mut params = unsafe { std::mem::zeroed::<luxfer_stylize_params>() };
-    assert_eq!(unsafe { luxfer_stylize_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
+    assert_eq!(
+        unsafe { luxfer_init(LUXFER_STRUCT_STYLIZE_PARAMS, (&raw mut params).cast(), size_of_val(&params)) },
+        LUXFER_OK
+    );
     params
 }
 
@@ -285,6 +288,31 @@ fn handles_and_settings_that_are_wrong_are_refused() {
         }
         assert_eq!(luxfer_release(null_mut()), LUXFER_OK);
         assert_eq!(luxfer_stylize_set_artwork(stylize, foreign), LUXFER_INVALID_ARGUMENT);
+        refuse_guides(stylize, three, two, foreign);
+        refuse_settings(context, stylize);
+        let good = params();
+        assert_eq!(luxfer_stylize_start(stylize, &good, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_stylize_clear_guides(stylize), LUXFER_OK);
+        assert_eq!(luxfer_stylize_start(stylize, &good, &mut job), LUXFER_INVALID_OPERATION, "no guides");
+        assert!(message(context).contains("luxfer_stylize_add_guide"));
+        for image in [two, three, foreign] {
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+        }
+        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(other.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}
+
+/// Each wrong argument of a guide is refused: `two` has another number of channels than `three`, and `foreign` belongs
+/// to another context.
+fn refuse_guides(
+    stylize: *mut luxfer_stylize,
+    three: *mut luxfer_image,
+    two: *mut luxfer_image,
+    foreign: *mut luxfer_image,
+) {
+    unsafe {
         let add = |name, a, b, weight, range| luxfer_stylize_add_guide(stylize, name, a, b, weight, range);
         for (name, a, b, weight, range, why) in [
             (null(), three, three, 1.0, 0, "no name"),
@@ -297,7 +325,13 @@ fn handles_and_settings_that_are_wrong_are_refused() {
         ] {
             assert_eq!(add(name, a, b, weight, range), LUXFER_INVALID_ARGUMENT, "{why}");
         }
-        let good = params();
+    }
+}
+
+/// Each setting out of range is refused, with a message.
+fn refuse_settings(context: *mut luxfer_context, stylize: *mut luxfer_stylize) {
+    let (good, mut job) = (params(), null_mut());
+    unsafe {
         for bad in [
             luxfer_stylize_params { mode: 6, ..good },
             luxfer_stylize_params { mode: -1, ..good },
@@ -321,16 +355,6 @@ fn handles_and_settings_that_are_wrong_are_refused() {
             assert_eq!(luxfer_stylize_start(stylize, &bad, &mut job), LUXFER_INVALID_ARGUMENT);
             assert!(job.is_null() && !message(context).is_empty());
         }
-        assert_eq!(luxfer_stylize_start(stylize, &good, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_stylize_clear_guides(stylize), LUXFER_OK);
-        assert_eq!(luxfer_stylize_start(stylize, &good, &mut job), LUXFER_INVALID_OPERATION, "no guides");
-        assert!(message(context).contains("luxfer_stylize_add_guide"));
-        for image in [two, three, foreign] {
-            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
-        }
-        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
-        assert_eq!(luxfer_release(other.cast()), LUXFER_OK);
-        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
 

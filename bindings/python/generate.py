@@ -53,6 +53,12 @@ class Header:
     structs: dict[str, list[Field]] = field(default_factory=dict)
     functions: dict[str, tuple[str, list[Field]]] = field(default_factory=dict)
 
+    @property
+    def settings(self) -> dict[str, str]:
+        """The structs that luxfer_init fills, and the constants of their types."""
+        types = [name for name in self.constants if name.startswith("LUXFER_STRUCT_")]
+        return {name.replace("LUXFER_STRUCT_", "luxfer_").lower(): name for name in types}
+
 
 # ---------------------------------------------------------------------------------------------------------- reading
 
@@ -98,8 +104,10 @@ ITEM = re.compile(
 
 
 def header_text() -> str:
-    """The text of luxfer.h with its parts."""
-    return re.sub(r'#include "(luxfer/\w+\.h)"', lambda m: (HEADER.parent / m[1]).read_text(), HEADER.read_text())
+    """The text of luxfer.h with its parts, without the inline functions, which the library does not export."""
+    text = re.sub(r'#include "(luxfer/\w+\.h)"', lambda m: (HEADER.parent / m[1]).read_text(), HEADER.read_text())
+    return re.sub(r"\n/\*\* [^\n]* \*/\nstatic inline [^}]*\}\n", "", text)
+
 
 
 def read(text: str) -> Header:
@@ -154,6 +162,8 @@ def enumerations(header: Header) -> dict[str, Enumeration]:
     """By C type, or by prefix for flags. A constant belongs to the longest prefix it begins with."""
     out = {"luxfer_status": Enumeration("Status", "LUXFER_", False, header.docs["luxfer_status"])}
     for name in header.integers[1:]:
+        if name == "luxfer_struct_type":
+            continue  # The package fills structs of settings itself.
         match = re.search(r"a (LUXFER_\w+_) (?:value|preset)", header.docs[name])
         if not match:
             raise SystemExit(f"the comment of {name} does not say which values it takes")
@@ -191,9 +201,7 @@ class Writer:
     def __init__(self, header: Header):
         self.header = header
         self.enums = enumerations(header)
-        self.is_output = {
-            s for s in header.structs if f"{s}_init" not in header.functions
-        }
+        self.is_output = set(header.structs) - set(header.settings)
 
     def prose(self, text: str) -> str:
         """A comment of the header in the terms of Python."""
@@ -256,6 +264,8 @@ class Writer:
                 out.append(f"    enumerations: dict[str, type] = {{{', '.join(enums)}}}\n")
             if name in self.is_output:
                 out.append(f"    result = types.{camel(name)}\n")
+            else:
+                out.append(f"    struct_type = {h.settings[name]}\n")
         out.append(
             "\n\n#: What each function returns, and takes: names and types.\nFUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {\n"
         )

@@ -177,7 +177,7 @@ unsafe fn wait(job: Option<*mut luxfer_job>) {
 fn small() -> luxfer_render_params {
     unsafe {
         let mut params: luxfer_render_params = std::mem::zeroed();
-        luxfer_render_params_init(&mut params, size_of::<luxfer_render_params>());
+        luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of::<luxfer_render_params>());
         luxfer_render_params { width: 9, height: 5, samples: 4, ..params }
     }
 }
@@ -186,7 +186,7 @@ fn photo() -> *mut luxfer_image {
     let mut pixels: Vec<f32> = (0..64 * 64 * 3).map(|i| (i % 7) as f32 / 7.0).collect();
     unsafe {
         let mut view: luxfer_image_view = std::mem::zeroed();
-        luxfer_image_view_init(&mut view, size_of::<luxfer_image_view>());
+        luxfer_init(LUXFER_STRUCT_IMAGE_VIEW, (&raw mut view).cast(), size_of::<luxfer_image_view>());
         let (byte_size, data) = (size_of_val(&pixels[..]), pixels.as_mut_ptr().cast());
         let view = luxfer_image_view { width: 64, height: 64, byte_size, data, ..view };
         made("luxfer_image_create", |out| luxfer_image_create(context(), &view, out)).expect("an image")

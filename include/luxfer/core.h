@@ -1,4 +1,4 @@
-/* luxfer: version, status, context, references, images, strokes and jobs.
+/* luxfer: version, status, settings, context, references, images, strokes and jobs.
  *
  * tests/abi_header.rs generates this file from src/ffi.
  *
@@ -103,6 +103,111 @@ typedef int32_t luxfer_status;
 const char *luxfer_status_get_name(luxfer_status status);
 
 /* ====================================================================================================================
+ * Settings
+ *
+ * A struct of settings starts with its size, and luxfer_init fills it with the defaults. C and C++ programs call the
+ * inline function that follows each struct, such as luxfer_render_params_init(&params, sizeof params), whose argument
+ * the compiler checks; programs in other languages call luxfer_init.
+ * ==================================================================================================================== */
+
+/** A struct of settings: a LUXFER_STRUCT_ value. */
+typedef int32_t luxfer_struct_type;
+
+/** luxfer_context_params. */
+#define LUXFER_STRUCT_CONTEXT_PARAMS 0
+
+/** luxfer_image_view. */
+#define LUXFER_STRUCT_IMAGE_VIEW 1
+
+/** luxfer_scene_load_params. */
+#define LUXFER_STRUCT_SCENE_LOAD_PARAMS 2
+
+/** luxfer_material_params. */
+#define LUXFER_STRUCT_MATERIAL_PARAMS 3
+
+/** luxfer_mesh_params. */
+#define LUXFER_STRUCT_MESH_PARAMS 4
+
+/** luxfer_camera_params. */
+#define LUXFER_STRUCT_CAMERA_PARAMS 5
+
+/** luxfer_light_params. */
+#define LUXFER_STRUCT_LIGHT_PARAMS 6
+
+/** luxfer_luminaire_params. */
+#define LUXFER_STRUCT_LUMINAIRE_PARAMS 7
+
+/** luxfer_render_params. */
+#define LUXFER_STRUCT_RENDER_PARAMS 8
+
+/** luxfer_rectify_params. */
+#define LUXFER_STRUCT_RECTIFY_PARAMS 9
+
+/** luxfer_features_params. */
+#define LUXFER_STRUCT_FEATURES_PARAMS 10
+
+/** luxfer_segment_params. */
+#define LUXFER_STRUCT_SEGMENT_PARAMS 11
+
+/** luxfer_emission_params. */
+#define LUXFER_STRUCT_EMISSION_PARAMS 12
+
+/** luxfer_relight_params. */
+#define LUXFER_STRUCT_RELIGHT_PARAMS 13
+
+/** luxfer_pattern_params. */
+#define LUXFER_STRUCT_PATTERN_PARAMS 14
+
+/** luxfer_transfer_params. */
+#define LUXFER_STRUCT_TRANSFER_PARAMS 15
+
+/** luxfer_illuminance_params. */
+#define LUXFER_STRUCT_ILLUMINANCE_PARAMS 16
+
+/** luxfer_illuminance_grid. */
+#define LUXFER_STRUCT_ILLUMINANCE_GRID 17
+
+/** luxfer_lamps_params. */
+#define LUXFER_STRUCT_LAMPS_PARAMS 18
+
+/** luxfer_importance_params. */
+#define LUXFER_STRUCT_IMPORTANCE_PARAMS 19
+
+/** luxfer_placement_params. */
+#define LUXFER_STRUCT_PLACEMENT_PARAMS 20
+
+/** luxfer_false_colour_params. */
+#define LUXFER_STRUCT_FALSE_COLOUR_PARAMS 21
+
+/** luxfer_guides_params. */
+#define LUXFER_STRUCT_GUIDES_PARAMS 22
+
+/** luxfer_stylize_params. */
+#define LUXFER_STRUCT_STYLIZE_PARAMS 23
+
+/** luxfer_sheet_params. */
+#define LUXFER_STRUCT_SHEET_PARAMS 24
+
+/** luxfer_plan_params. */
+#define LUXFER_STRUCT_PLAN_PARAMS 25
+
+/** luxfer_render_part. */
+#define LUXFER_STRUCT_RENDER_PART 26
+
+/** luxfer_demo_photo_params. */
+#define LUXFER_STRUCT_DEMO_PHOTO_PARAMS 27
+
+/**
+ * Fills the struct at place with the defaults of its type; size is its sizeof. A smaller size, from an older header,
+ * fills the fields of that version. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the type is unknown, if place is NULL, or if no version of the struct has this size;
+ * LUXFER_UNSUPPORTED for luxfer_stylize_params in a library without stylisation.
+ */
+luxfer_status luxfer_init(luxfer_struct_type which,
+                          void *place,
+                          size_t size);
+
+/* ====================================================================================================================
  * Context
  *
  * A context owns the worker threads, a memory budget and the error messages. All other objects are created in a
@@ -157,12 +262,10 @@ typedef struct luxfer_context_params {
     uint64_t memory_budget_mib;
 } luxfer_context_params;
 
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
- * the struct has this size.
- */
-luxfer_status luxfer_context_params_init(luxfer_context_params *params,
-                                         size_t size);
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_context_params_init(luxfer_context_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_CONTEXT_PARAMS, place, size);
+}
 
 /**
  * Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
@@ -256,6 +359,11 @@ typedef struct luxfer_image_view {
     void *data;
 } luxfer_image_view;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_image_view_init(luxfer_image_view *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_IMAGE_VIEW, place, size);
+}
+
 /** 8-bit unsigned integer that stands for [0, 1]. */
 #define LUXFER_SAMPLE_U8 0
 
@@ -273,13 +381,6 @@ typedef struct luxfer_image_view {
 
 /** Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear. */
 #define LUXFER_COLOUR_SRGB 1
-
-/**
- * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or no version of the
- * struct has this size.
- */
-luxfer_status luxfer_image_view_init(luxfer_image_view *view,
-                                     size_t size);
 
 /**
  * Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The

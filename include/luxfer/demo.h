@@ -89,6 +89,11 @@ typedef struct luxfer_demo_photo_params {
     uint64_t seed;
 } luxfer_demo_photo_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_demo_photo_params_init(luxfer_demo_photo_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_DEMO_PHOTO_PARAMS, place, size);
+}
+
 /** An image of the demonstration photo: a LUXFER_DEMO_PHOTO_ value. */
 typedef int32_t luxfer_demo_photo_image;
 
@@ -97,12 +102,6 @@ typedef int32_t luxfer_demo_photo_image;
 
 /** The strokes on it, in the colours of luxfer_strokes_add_image. */
 #define LUXFER_DEMO_PHOTO_STROKES 1
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_demo_photo_params_init(luxfer_demo_photo_params *params,
-                                            size_t size);
 
 /** Creates the stage. The caller releases *demo. Any thread. */
 luxfer_status luxfer_demo_photo_create(luxfer_context *context, luxfer_demo_photo **demo);

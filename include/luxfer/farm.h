@@ -48,12 +48,10 @@ typedef struct luxfer_render_part {
     uint32_t samples;
 } luxfer_render_part;
 
-/**
- * Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is
- * wrong.
- */
-luxfer_status luxfer_render_part_init(luxfer_render_part *part,
-                                      size_t size);
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_render_part_init(luxfer_render_part *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_RENDER_PART, place, size);
+}
 
 /**
  * Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of

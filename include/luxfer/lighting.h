@@ -23,20 +23,6 @@ extern "C" {
 /** A calculation of illuminance. See luxfer_illuminance_create. */
 typedef struct luxfer_illuminance luxfer_illuminance;
 
-/** Settings of the calculation. Fill them with luxfer_illuminance_params_init. */
-typedef struct luxfer_illuminance_params {
-    /** sizeof(luxfer_illuminance_params), set by luxfer_illuminance_params_init. */
-    uint32_t struct_size;
-    /** Points along the first edge or texture coordinate, in [1, 65536]; default 32. */
-    uint32_t columns;
-    /** Points along the second, in [1, 65536]; default 32. */
-    uint32_t rows;
-    /** Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024. */
-    uint32_t samples;
-    /** Seed of the paths; default 1. */
-    uint64_t seed;
-} luxfer_illuminance_params;
-
 /**
  * A calculation grid. Fill it with luxfer_illuminance_grid_init; the default is a square metre at the origin that
  * faces up.
@@ -58,6 +44,30 @@ typedef struct luxfer_illuminance_grid {
     /** Must be 0. */
     uint32_t reserved;
 } luxfer_illuminance_grid;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_illuminance_grid_init(luxfer_illuminance_grid *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_ILLUMINANCE_GRID, place, size);
+}
+
+/** Settings of the calculation. Fill them with luxfer_illuminance_params_init. */
+typedef struct luxfer_illuminance_params {
+    /** sizeof(luxfer_illuminance_params), set by luxfer_illuminance_params_init. */
+    uint32_t struct_size;
+    /** Points along the first edge or texture coordinate, in [1, 65536]; default 32. */
+    uint32_t columns;
+    /** Points along the second, in [1, 65536]; default 32. */
+    uint32_t rows;
+    /** Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024. */
+    uint32_t samples;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_illuminance_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_illuminance_params_init(luxfer_illuminance_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_ILLUMINANCE_PARAMS, place, size);
+}
 
 /** An image of the calculation: a LUXFER_ILLUMINANCE_ value. */
 typedef int32_t luxfer_illuminance_image;
@@ -83,16 +93,6 @@ typedef struct luxfer_illuminance_report {
 
 /** Standard error of each value, in lux; 1 channel. */
 #define LUXFER_ILLUMINANCE_ERROR 1
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_illuminance_params_init(luxfer_illuminance_params *params,
-                                             size_t size);
-
-/** Fills *grid with the defaults; size is sizeof *grid. LUXFER_INVALID_ARGUMENT if grid is NULL or size is wrong. */
-luxfer_status luxfer_illuminance_grid_init(luxfer_illuminance_grid *grid,
-                                           size_t size);
 
 /** Creates the stage. The caller releases *illuminance. Any thread. */
 luxfer_status luxfer_illuminance_create(luxfer_context *context, luxfer_illuminance **illuminance);
@@ -201,6 +201,11 @@ typedef struct luxfer_lamps_params {
     uint64_t seed;
 } luxfer_lamps_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_LAMPS_PARAMS, place, size);
+}
+
 /** All lamps form one group. */
 #define LUXFER_GROUP_ALL 0
 
@@ -221,12 +226,6 @@ typedef struct luxfer_lamps_params {
  * luminaires of one distribution.
  */
 #define LUXFER_GROUP_BY_TYPE 5
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
-                                       size_t size);
 
 /** Creates the stage. The caller releases *lamps. Any thread. */
 luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
@@ -472,13 +471,18 @@ typedef struct luxfer_importance_params {
     uint64_t seed;
 } luxfer_importance_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_importance_params_init(luxfer_importance_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_IMPORTANCE_PARAMS, place, size);
+}
+
 /** The light that the target receives from a texture. */
 typedef struct luxfer_importance_report {
     /** sizeof(luxfer_importance_report), set by the function that fills the struct. */
     uint32_t struct_size;
     /** Number of paths of the map. */
     uint32_t paths;
-    /** Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture. */
+    /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
     double response[3];
     /** Half-widths of the 95 % confidence intervals of response. */
     double half_width[3];
@@ -488,12 +492,6 @@ typedef struct luxfer_importance_report {
      */
     double band_error[3];
 } luxfer_importance_report;
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_importance_params_init(luxfer_importance_params *params,
-                                            size_t size);
 
 /** Creates the stage. The caller releases *importance. Any thread. */
 luxfer_status luxfer_importance_create(luxfer_context *context, luxfer_importance **importance);
@@ -595,6 +593,11 @@ typedef struct luxfer_placement_params {
     uint64_t seed;
 } luxfer_placement_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_placement_params_init(luxfer_placement_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_PLACEMENT_PARAMS, place, size);
+}
+
 /** The best placement, and the light that the target then receives. */
 typedef struct luxfer_placement {
     /** sizeof(luxfer_placement), set by the function that fills the struct. */
@@ -628,12 +631,6 @@ typedef struct luxfer_placement {
 
 /** The mean radiance of the target that is nearest to luxfer_placement_params.radiance, all other light included. */
 #define LUXFER_AIM_RADIANCE 2
-
-/**
- * Fills *params with the defaults: any offset, with fixed scale 1 and rotation 0; size is sizeof *params.
- * LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_placement_params_init(luxfer_placement_params *params, size_t size);
 
 /**
  * Starts a job that finds the best placement of a texture (linear, in cd/m²; it repeats) for the target. params may be
@@ -749,6 +746,11 @@ typedef struct luxfer_false_colour_params {
     double maximum;
 } luxfer_false_colour_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_FALSE_COLOUR_PARAMS, place, size);
+}
+
 /** Linear: equal differences of the value have equal width. */
 #define LUXFER_SCALE_LINEAR 0
 
@@ -760,12 +762,6 @@ typedef struct luxfer_false_colour_params {
 
 /** Illuminance in lux. */
 #define LUXFER_UNIT_ILLUMINANCE 1
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_params *params,
-                                              size_t size);
 
 /**
  * Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: linear RGB, grey where a

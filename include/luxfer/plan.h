@@ -45,6 +45,11 @@ typedef struct luxfer_plan_params {
     uint32_t reserved;
 } luxfer_plan_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_plan_params_init(luxfer_plan_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_PLAN_PARAMS, place, size);
+}
+
 /** Times and errors that a plan predicts. */
 typedef struct luxfer_plan_report {
     /** sizeof(luxfer_plan_report), set by the function that fills the struct. */
@@ -70,12 +75,6 @@ typedef struct luxfer_plan_report {
     /** Predicted field error of luxfer_render_report; 0 in a plan of a stylisation. */
     double render_error;
 } luxfer_plan_report;
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_plan_params_init(luxfer_plan_params *params,
-                                      size_t size);
 
 /** Creates a plan. The caller releases *plan. Any thread. */
 luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
@@ -147,11 +146,12 @@ luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
 
 /**
  * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize. The
- * plan chooses only the numbers of rounds and sweeps; all other values, also the resolution, come from settings, or
- * the defaults if it is NULL. params gives the goal; the error is the square root of luxfer_stylize_report.energy: the
- * root mean square difference of matched patches in colours and guides, whose values are in [0, 1]. If the goal cannot
- * be reached, the plan gives the settings that come nearest. The caller releases *job. Any thread.
- * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+ * plan chooses only the numbers of rounds and sweeps; the resolution and all other values come from settings (NULL:
+ * the defaults). params gives the goal, a time or an error. The error is the square root of
+ * luxfer_stylize_report.energy: the root mean square difference of matched patches in colours and guides, whose values
+ * are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to it. The caller
+ * releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or sets no goal or two, or if a setting is out of range;
  * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end with the statuses
  * of luxfer_stylize_start's job.
  */

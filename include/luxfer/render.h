@@ -69,6 +69,11 @@ typedef struct luxfer_render_params {
     float relative_error;
 } luxfer_render_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_render_params_init(luxfer_render_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, place, size);
+}
+
 /** An image of a rendering: a LUXFER_RENDER_ value. */
 typedef int32_t luxfer_render_image;
 
@@ -122,12 +127,6 @@ typedef struct luxfer_render_report {
  * not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_render_params_init(luxfer_render_params *params,
-                                        size_t size);
 
 /** Creates the stage. The caller releases *render. Any thread. */
 luxfer_status luxfer_render_create(luxfer_context *context, luxfer_render **render);

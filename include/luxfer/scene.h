@@ -173,12 +173,10 @@ typedef struct luxfer_scene_load_params {
     double unit;
 } luxfer_scene_load_params;
 
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
- * the struct has this size.
- */
-luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_params *params,
-                                            size_t size);
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_SCENE_LOAD_PARAMS, place, size);
+}
 
 /**
  * Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.
@@ -247,6 +245,11 @@ typedef struct luxfer_material_params {
     float normal_scale;
 } luxfer_material_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_material_params_init(luxfer_material_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_MATERIAL_PARAMS, place, size);
+}
+
 /** Continuation of a texture beyond its edges: a LUXFER_WRAP_ value. */
 typedef int32_t luxfer_wrap;
 
@@ -298,12 +301,6 @@ typedef struct luxfer_texture_use {
 
 /** The texture repeats, mirrored every second time. */
 #define LUXFER_WRAP_MIRROR 2
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_material_params_init(luxfer_material_params *params,
-                                          size_t size);
 
 /**
  * Adds a material; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
@@ -422,6 +419,11 @@ typedef struct luxfer_mesh_params {
     size_t colour_stride;
 } luxfer_mesh_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_mesh_params_init(luxfer_mesh_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_MESH_PARAMS, place, size);
+}
+
 /** A pinhole camera. Fill it with luxfer_camera_params_init. */
 typedef struct luxfer_camera_params {
     /** sizeof(luxfer_camera_params), set by luxfer_camera_params_init. */
@@ -438,17 +440,10 @@ typedef struct luxfer_camera_params {
     uint32_t reserved;
 } luxfer_camera_params;
 
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_mesh_params_init(luxfer_mesh_params *params,
-                                      size_t size);
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_camera_params_init(luxfer_camera_params *params,
-                                        size_t size);
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_camera_params_init(luxfer_camera_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_CAMERA_PARAMS, place, size);
+}
 
 /**
  * Adds a mesh and copies its arrays; *index, unless NULL, receives its index. Any thread.
@@ -606,6 +601,11 @@ typedef struct luxfer_light_params {
     uint32_t reserved;
 } luxfer_light_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_light_params_init(luxfer_light_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_LIGHT_PARAMS, place, size);
+}
+
 /** Flux, position, orientation and colour of a luminaire. Fill it with luxfer_luminaire_params_init. */
 typedef struct luxfer_luminaire_params {
     /** sizeof(luxfer_luminaire_params), set by luxfer_luminaire_params_init. */
@@ -630,6 +630,11 @@ typedef struct luxfer_luminaire_params {
     float colour[3];
 } luxfer_luminaire_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_luminaire_params_init(luxfer_luminaire_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_LUMINAIRE_PARAMS, place, size);
+}
+
 /** A point light: equal intensity in every direction. */
 #define LUXFER_LIGHT_POINT 0
 
@@ -640,24 +645,12 @@ typedef struct luxfer_luminaire_params {
 #define LUXFER_LIGHT_DIRECTIONAL 2
 
 /**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_light_params_init(luxfer_light_params *params,
-                                       size_t size);
-
-/**
  * Adds a light; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
                                      const luxfer_light_params *params,
                                      uint32_t *index);
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_luminaire_params_init(luxfer_luminaire_params *params,
-                                           size_t size);
 
 /**
  * Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
@@ -833,6 +826,24 @@ typedef struct luxfer_mesh_info {
     uint32_t reserved;
 } luxfer_mesh_info;
 
+/** An attribute of the vertices of a mesh: a LUXFER_VERTEX_ value. */
+typedef int32_t luxfer_vertex_attribute;
+
+/** Positions, three floats per vertex. */
+#define LUXFER_VERTEX_POSITION 0
+
+/** Normals, three floats per vertex. */
+#define LUXFER_VERTEX_NORMAL 1
+
+/** The first set of texture coordinates, two floats per vertex. */
+#define LUXFER_VERTEX_UV_0 2
+
+/** The second set of texture coordinates, two floats per vertex. */
+#define LUXFER_VERTEX_UV_1 3
+
+/** Colours, four floats per vertex. */
+#define LUXFER_VERTEX_COLOUR 4
+
 /**
  * Gets the sizes and attributes of a mesh. size is sizeof *info. Any thread.
  * LUXFER_NOT_FOUND if there is no such mesh.
@@ -853,42 +864,26 @@ luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
                                          size_t *needed);
 
 /**
- * Copies a mesh into packed arrays of the caller: positions and normals with three floats per vertex, and indices with
- * three per triangle. Any of the arrays may be NULL. The capacities are numbers of vertices and of triangles. Any
+ * Copies an attribute of a mesh's vertices into a packed array of the caller; capacity is a number of vertices. Any
  * thread.
- * LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none; LUXFER_INVALID_ARGUMENT if
- * a capacity is too small.
+ * LUXFER_NOT_FOUND if there is no such mesh or it lacks the attribute; LUXFER_INVALID_ARGUMENT if the attribute is
+ * unknown, values is NULL or the capacity is too small.
  */
-luxfer_status luxfer_scene_read_mesh(luxfer_scene *scene,
-                                     uint32_t index,
-                                     size_t vertex_capacity,
-                                     float *positions,
-                                     float *normals,
-                                     size_t triangle_capacity,
-                                     uint32_t *indices);
-
-/**
- * Copies set uv_set, 0 or 1, of a mesh's texture coordinates into a packed array of the caller, two floats per vertex;
- * capacity is a number of vertices. Any thread.
- * LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too
- * small.
- */
-luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
+luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
                                          uint32_t index,
-                                         uint32_t uv_set,
+                                         luxfer_vertex_attribute attribute,
                                          size_t capacity,
-                                         float *uvs);
+                                         float *values);
 
 /**
- * Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
- * number of vertices. Any thread.
- * LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too
- * small.
+ * Copies the triangles of a mesh into a packed array of the caller, three vertex indices per triangle; capacity is a
+ * number of triangles. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if indices is NULL or the capacity is too small.
  */
-luxfer_status luxfer_scene_read_mesh_colours(luxfer_scene *scene,
-                                             uint32_t index,
-                                             size_t capacity,
-                                             float *colours);
+luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
+                                          uint32_t index,
+                                          size_t capacity,
+                                          uint32_t *indices);
 
 /* ====================================================================================================================
  * Candidates for the ceiling

@@ -107,6 +107,11 @@ typedef struct luxfer_rectify_params {
     uint64_t seed;
 } luxfer_rectify_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_rectify_params_init(luxfer_rectify_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_RECTIFY_PARAMS, place, size);
+}
+
 /** An image of a rectification: a LUXFER_RECTIFY_ value. */
 typedef int32_t luxfer_rectify_image;
 
@@ -204,12 +209,6 @@ typedef struct luxfer_rectify_report {
 /** 1 where the photo shows the plane, else 0; 1 channel. */
 #define LUXFER_RECTIFY_VALID 1
 
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_rectify_params_init(luxfer_rectify_params *params,
-                                         size_t size);
-
 /** Creates the stage. The caller releases *rectify. Any thread. */
 luxfer_status luxfer_rectify_create(luxfer_context *context, luxfer_rectify **rectify);
 
@@ -273,6 +272,12 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
 /** The features of a photo. See luxfer_features_create. */
 typedef struct luxfer_features luxfer_features;
 
+/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
+typedef int32_t luxfer_depth_kind;
+
+/** Normalisation of the photo's colours for a network, which its file does not state: a LUXFER_NORMALISATION_ value. */
+typedef int32_t luxfer_normalisation;
+
 /** Settings of the features. Fill them with luxfer_features_params_init. */
 typedef struct luxfer_features_params {
     /** sizeof(luxfer_features_params), set by luxfer_features_params_init. */
@@ -288,11 +293,10 @@ typedef struct luxfer_features_params {
     uint32_t normal_radius;
 } luxfer_features_params;
 
-/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
-typedef int32_t luxfer_depth_kind;
-
-/** Normalisation of the photo's colours for a network, which its file does not state: a LUXFER_NORMALISATION_ value. */
-typedef int32_t luxfer_normalisation;
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_features_params_init(luxfer_features_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_FEATURES_PARAMS, place, size);
+}
 
 /** An image of the features: a LUXFER_FEATURES_ value. */
 typedef int32_t luxfer_features_image;
@@ -360,12 +364,6 @@ typedef struct luxfer_features_report {
 /** The caller's network. */
 #define LUXFER_DEPTH_FROM_NETWORK 3
 
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_features_params_init(luxfer_features_params *params,
-                                          size_t size);
-
 /** Creates the stage. The caller releases *features. Any thread. */
 luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **features);
 
@@ -402,11 +400,10 @@ luxfer_status luxfer_features_set_view(luxfer_features *features,
                                        luxfer_rectify *rectify);
 
 /**
- * Sets strokes on the photo, of which the fit of a room takes those for LUXFER_PHASE_PLANE and the positive strokes on
- * lights: on one plane of the room, such as the ceiling that carries the lights, or off this plane. They affect only a
- * room that is fitted to lines (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one
- * face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL:
- * no strokes. Any thread.
+ * Sets strokes that guide the fit of a room to lines (luxfer_features_set_view); other depths ignore them. The fit
+ * prefers boxes with one face, such as the ceiling that carries the lights, that has all positive strokes for
+ * LUXFER_PHASE_PLANE and all positive strokes on lights, and no negative stroke for LUXFER_PHASE_PLANE. The stage
+ * copies the strokes, which replace earlier strokes; NULL removes them. Any thread.
  * LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
  */
 luxfer_status luxfer_features_set_strokes(luxfer_features *features,
@@ -486,6 +483,11 @@ typedef struct luxfer_segment_params {
     uint32_t reserved;
 } luxfer_segment_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_segment_params_init(luxfer_segment_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_SEGMENT_PARAMS, place, size);
+}
+
 /** An image of a segmentation: a LUXFER_SEGMENT_ value. */
 typedef int32_t luxfer_segment_image;
 
@@ -531,12 +533,6 @@ typedef struct luxfer_segment_report {
  * well. Negative strokes are not needed. The first three channels of the features must be CIELAB.
  */
 #define LUXFER_SUBJECT_LAMPS 2
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_segment_params_init(luxfer_segment_params *params,
-                                         size_t size);
 
 /** Creates the stage. The caller releases *segment. Any thread. */
 luxfer_status luxfer_segment_create(luxfer_context *context, luxfer_segment **segment);
@@ -593,6 +589,36 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
                                         size_t size);
 
 /* ====================================================================================================================
+ * Laws of an emission
+ *
+ * How an emissive texture continues the lights of its exemplar.
+ * ==================================================================================================================== */
+
+/** How the lights of an exemplar go on: a LUXFER_LAW_ value. */
+typedef int32_t luxfer_emission_law;
+
+/** The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better. */
+#define LUXFER_LAW_BEST 0
+
+/** The law that the correlation of the lights shows, by min_regularity. */
+#define LUXFER_LAW_CORRELATION 1
+
+/** A lattice of two periods. */
+#define LUXFER_LAW_LATTICE 2
+
+/** A row of one period; the extent of the exemplar serves as the other. */
+#define LUXFER_LAW_ROW 3
+
+/** The exemplar repeats as a whole. */
+#define LUXFER_LAW_WHOLE 4
+
+/** Patches go anywhere. */
+#define LUXFER_LAW_FREE 5
+
+/** Of results only: the texture is a part of the exemplar, or was given. */
+#define LUXFER_LAW_COPY 6
+
+/* ====================================================================================================================
  * Emission
  *
  * Synthesises an emissive texture of any size that continues the light pattern of an unwarped photo, and lists its
@@ -601,9 +627,6 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
 
 /** A synthesis of an emissive texture. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
-
-/** How the lights of an exemplar go on: a LUXFER_LAW_ value. */
-typedef int32_t luxfer_emission_law;
 
 /** Settings of the emission. Fill them with luxfer_emission_params_init. */
 typedef struct luxfer_emission_params {
@@ -674,6 +697,11 @@ typedef struct luxfer_emission_params {
      */
     double max_magnification;
 } luxfer_emission_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_emission_params_init(luxfer_emission_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_EMISSION_PARAMS, place, size);
+}
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */
 typedef int32_t luxfer_emission_image;
@@ -760,34 +788,6 @@ typedef struct luxfer_luminaire {
 
 /** Metadata of the result, with these channels. */
 #define LUXFER_EMISSION_METADATA 3
-
-/** The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better. */
-#define LUXFER_LAW_BEST 0
-
-/** The law that the correlation of the lights tells, by min_regularity. */
-#define LUXFER_LAW_CORRELATION 1
-
-/** A lattice of two periods. */
-#define LUXFER_LAW_LATTICE 2
-
-/** A row of one period; the extent of the exemplar serves as the other. */
-#define LUXFER_LAW_ROW 3
-
-/** The exemplar repeats as a whole. */
-#define LUXFER_LAW_WHOLE 4
-
-/** Patches go anywhere. */
-#define LUXFER_LAW_FREE 5
-
-/** Of results only: the texture is a part of the exemplar, or was given. */
-#define LUXFER_LAW_COPY 6
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is
- * wrong.
- */
-luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
-                                          size_t size);
 
 /** Creates the stage. The caller releases *emission. Any thread. */
 luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **emission);
@@ -928,6 +928,9 @@ luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
 /** A relighting of a scene. See luxfer_relight_create. */
 typedef struct luxfer_relight luxfer_relight;
 
+/** Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value. */
+typedef int32_t luxfer_constraint;
+
 /** Quantity that should match the photo: a LUXFER_QUANTITY_ value. */
 typedef int32_t luxfer_quantity;
 
@@ -955,8 +958,10 @@ typedef struct luxfer_relight_params {
     uint64_t seed;
 } luxfer_relight_params;
 
-/** Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value. */
-typedef int32_t luxfer_constraint;
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_relight_params_init(luxfer_relight_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_RELIGHT_PARAMS, place, size);
+}
 
 /** Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value. */
 typedef int32_t luxfer_outcome;
@@ -1026,12 +1031,6 @@ typedef struct luxfer_relight_report {
 
 /** All lamps at their largest power are too weak, or two goals contradict each other. */
 #define LUXFER_OUTCOME_TOO_DIM 3
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_relight_params_init(luxfer_relight_params *params,
-                                         size_t size);
 
 /** Creates the stage. The caller releases *relight. Any thread. */
 luxfer_status luxfer_relight_create(luxfer_context *context, luxfer_relight **relight);

@@ -45,6 +45,11 @@ typedef struct luxfer_guides_params {
     uint64_t seed;
 } luxfer_guides_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_guides_params_init(luxfer_guides_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_GUIDES_PARAMS, place, size);
+}
+
 /** An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m². */
 typedef int32_t luxfer_guides_image;
 
@@ -74,12 +79,6 @@ typedef int32_t luxfer_guides_image;
 
 /** Caustics: light that glossy surfaces reflect onto diffuse surfaces (LS+DE). */
 #define LUXFER_GUIDES_CAUSTICS 8
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_guides_params_init(luxfer_guides_params *params,
-                                        size_t size);
 
 /** Creates the stage. The caller releases *guides. Any thread. */
 luxfer_status luxfer_guides_create(luxfer_context *context, luxfer_guides **guides);
@@ -219,6 +218,11 @@ typedef struct luxfer_stylize_params {
     uint32_t reserved;
 } luxfer_stylize_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_STYLIZE_PARAMS, place, size);
+}
+
 /** Presets between quality and speed: a LUXFER_STYLIZE_ preset. */
 typedef int32_t luxfer_stylize_preset;
 
@@ -278,12 +282,6 @@ typedef int32_t luxfer_stylize_preset;
  * their seams.
  */
 #define LUXFER_STYLIZE_VOTE_MOST 3
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *params,
-                                         size_t size);
 
 /**
  * Fills *params with a preset instead: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
@@ -597,6 +595,11 @@ typedef struct luxfer_sheet_params {
     double contrast;
 } luxfer_sheet_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_sheet_params_init(luxfer_sheet_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_SHEET_PARAMS, place, size);
+}
+
 /** Quality of the alignment of a photo. */
 typedef struct luxfer_sheet_report {
     /** sizeof(luxfer_sheet_report), set by the function that fills the struct. */
@@ -613,12 +616,6 @@ typedef struct luxfer_sheet_report {
     /** Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row. */
     double to_photo[9];
 } luxfer_sheet_report;
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_sheet_params_init(luxfer_sheet_params *params,
-                                       size_t size);
 
 /**
  * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): in pale colours, as large as the

@@ -57,6 +57,11 @@ typedef struct luxfer_pattern_params {
     double margin;
 } luxfer_pattern_params;
 
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_PATTERN_PARAMS, place, size);
+}
+
 /**
  * The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or the
  * estimate from the lamps where that is 0.
@@ -75,12 +80,6 @@ typedef struct luxfer_pattern_params {
 /** The width of the surface: it shows as many lamps across as the plane in the photo. */
 #define LUXFER_PATTERN_ACROSS 3
 
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *params,
-                                         size_t size);
-
 /* ====================================================================================================================
  * Transfer
  *
@@ -91,6 +90,9 @@ luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *params,
 
 /** A lighting transfer. See luxfer_transfer_create. */
 typedef struct luxfer_transfer luxfer_transfer;
+
+/** A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run. */
+typedef int32_t luxfer_stage;
 
 /** The part of the photo that gives the colour to match: a LUXFER_TARGET_ value. */
 typedef int32_t luxfer_target;
@@ -139,8 +141,10 @@ typedef struct luxfer_transfer_params {
     const luxfer_pattern_params *pattern;
 } luxfer_transfer_params;
 
-/** A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run. */
-typedef int32_t luxfer_stage;
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_TRANSFER_PARAMS, place, size);
+}
 
 /** No stage, but a scene that was loaded: only in warnings. */
 #define LUXFER_STAGE_SCENE -1
@@ -175,12 +179,6 @@ typedef int32_t luxfer_stage;
 /** The whole photo. */
 #define LUXFER_TARGET_WHOLE_IMAGE 1
 
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *params,
-                                          size_t size);
-
 /** Creates a transfer. The caller releases *transfer. Any thread. */
 luxfer_status luxfer_transfer_create(luxfer_context *context, luxfer_transfer **transfer);
 
@@ -205,8 +203,9 @@ luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
 
 /**
  * Sets the triangles of the scene that receive the lights, mesh index and triangle index of each, instead of the named
- * surface. Among them, too, the transfer takes the plane that faces most of the room. They replace earlier triangles,
- * and luxfer_transfer_set_scene removes them. triangles may be NULL if count is 0: the name counts again. Any thread.
+ * surface. If they lie in several planes, the transfer takes the plane that faces most of the room, as for a named
+ * surface. They replace earlier triangles, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be
+ * NULL, and the named surface receives the lights again. Any thread.
  * A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
  */
 luxfer_status luxfer_transfer_set_triangles(luxfer_transfer *transfer,
@@ -381,7 +380,7 @@ typedef struct luxfer_fixture {
     double flux;
     /** Correlated colour temperature in kelvin; 0 for a lamp that is off. */
     double cct;
-    /** Distance from the blackbody in the CIE 1960 diagram. */
+    /** Distance from the blackbody locus in the CIE 1960 diagram. */
     double duv;
 } luxfer_fixture;
 
@@ -643,22 +642,6 @@ typedef struct luxfer_warning {
  */
 #define LUXFER_WARNING_PROPOSED 24
 
-/**
- * Gets the warnings about the result of an object. handle is one of:
- * - a luxfer_transfer: the warnings of all stages that have a result, in their order;
- * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
- * - a luxfer_features;
- * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
- * - a luxfer_emission: about the texture; a plan has no warnings;
- * - a luxfer_relight;
- * - a luxfer_scene: an implausible size, and features of its file that are not rendered.
- *
- * The caller releases *warnings. Any thread.
- * LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);
- * LUXFER_INVALID_ARGUMENT if handle is of another kind.
- */
-luxfer_status luxfer_get_warnings(void *handle, luxfer_warnings **warnings);
-
 /** Counts the warnings of a list. Any thread. */
 luxfer_status luxfer_warnings_get_count(luxfer_warnings *warnings, uint32_t *count);
 
@@ -676,6 +659,28 @@ luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
  * string is static: never free it. Any thread.
  */
 const char *luxfer_warning_get_name(luxfer_warning_code code);
+
+/* ====================================================================================================================
+ * Warnings of an object
+ *
+ * Stages, transfers and scenes have warnings.
+ * ==================================================================================================================== */
+
+/**
+ * Gets the warnings about the result of an object. handle is one of:
+ * - a luxfer_transfer: the warnings of all stages that have a result, in their order;
+ * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
+ * - a luxfer_features;
+ * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
+ * - a luxfer_emission: about the texture; a plan has no warnings;
+ * - a luxfer_relight;
+ * - a luxfer_scene: an implausible size, and features of its file that are not rendered.
+ *
+ * The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);
+ * LUXFER_INVALID_ARGUMENT if handle is of another kind.
+ */
+luxfer_status luxfer_get_warnings(void *handle, luxfer_warnings **warnings);
 
 #ifdef __cplusplus
 }

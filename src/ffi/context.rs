@@ -79,13 +79,6 @@ impl Handle for luxfer_context {
     const NAME: &'static str = "luxfer_context";
 }
 
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
-/// the struct has this size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_context_params_init(params: *mut luxfer_context_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
-
 /// Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
 /// LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY
 /// if the threads cannot be started.

@@ -4,7 +4,7 @@
 //! of a lighting transfer without files.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -60,15 +60,6 @@ impl Handle for luxfer_demo_photo {
     type Object = Stage<(), Taken>;
     const TAG: u64 = tag(b"lux.demo");
     const NAME: &'static str = "luxfer_demo_photo";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_demo_photo_params_init(
-    params: *mut luxfer_demo_photo_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *demo. Any thread.

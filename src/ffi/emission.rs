@@ -4,9 +4,9 @@
 //! luminaires.
 
 use super::context::{Context, luxfer_context};
-use super::emission_law;
+use super::emission_law::{self, LUXFER_LAW_BEST, LUXFER_LAW_COPY, luxfer_emission_law};
 use super::geometry::numbers;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -38,23 +38,6 @@ pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
 /// Metadata of the result, with these channels.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
-
-/// How the lights of an exemplar go on: a LUXFER_LAW_ value.
-pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better.
-pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that the correlation of the lights tells, by min_regularity.
-pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
-/// A lattice of two periods.
-pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
-/// A row of one period; the extent of the exemplar serves as the other.
-pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
-/// The exemplar repeats as a whole.
-pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
-/// Patches go anywhere.
-pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
-/// Of results only: the texture is a part of the exemplar, or was given.
-pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;
 
 /// Settings of the emission. Fill them with luxfer_emission_params_init.
 #[repr(C)]
@@ -368,16 +351,6 @@ impl Handle for luxfer_emission {
     type Object = Stage<Inputs, Made>;
     const TAG: u64 = tag(b"lux.emis");
     const NAME: &'static str = "luxfer_emission";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is
-/// wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_params_init(
-    params: *mut luxfer_emission_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *emission. Any thread.

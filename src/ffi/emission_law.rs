@@ -1,10 +1,28 @@
-//! The numbers of laws: how the lights of an exemplar go on.
+//! Laws of an emission
+//!
+//! How an emissive texture continues the lights of its exemplar.
 
-use super::emission::*;
 use crate::emission::{Continuation, Law};
 use crate::error::{Error, Result};
 
-/// The law that a number asks for.
+/// How the lights of an exemplar go on: a LUXFER_LAW_ value.
+pub type luxfer_emission_law = i32;
+/// The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better.
+pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
+/// The law that the correlation of the lights shows, by min_regularity.
+pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
+/// A lattice of two periods.
+pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
+/// A row of one period; the extent of the exemplar serves as the other.
+pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
+/// The exemplar repeats as a whole.
+pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
+/// Patches go anywhere.
+pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
+/// Of results only: the texture is a part of the exemplar, or was given.
+pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;
+
+/// The law of settings with this number.
 pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
     Ok(match number {
         LUXFER_LAW_BEST => Law::Best,
@@ -20,7 +38,7 @@ pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
     })
 }
 
-/// The number of a law that was found.
+/// The number of a law in results.
 pub(super) fn number(continuation: Continuation) -> luxfer_emission_law {
     match continuation {
         Continuation::Copy => LUXFER_LAW_COPY,

@@ -2,7 +2,7 @@
 //!
 //! Shows a luminance or illuminance image in false colours of rising brightness, with a scale bar.
 
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::params::{self, versioned};
@@ -73,15 +73,6 @@ impl luxfer_false_colour_params {
         }
         Ok(Params { scale, unit, minimum: self.minimum, maximum: self.maximum, bar: self.bar == 1 })
     }
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_false_colour_params_init(
-    params: *mut luxfer_false_colour_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Converts an image (1 channel, or linear RGB, whose luminance is used) to false colours: linear RGB, grey where a

@@ -6,7 +6,7 @@
 //! planes, or a neutral guess.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -153,15 +153,6 @@ pub(super) fn depth_kind(value: luxfer_depth_kind) -> Result<DepthKind> {
     }
 }
 
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_params_init(
-    params: *mut luxfer_features_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
-
 /// Creates the stage. The caller releases *features. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_create(
@@ -299,11 +290,10 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
-/// Sets strokes on the photo, of which the fit of a room takes those for LUXFER_PHASE_PLANE and the positive strokes on
-/// lights: on one plane of the room, such as the ceiling that carries the lights, or off this plane. They affect only a
-/// room that is fitted to lines (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one
-/// face and all others off this face. The stage copies the strokes; they replace earlier strokes; strokes may be NULL:
-/// no strokes. Any thread.
+/// Sets strokes that guide the fit of a room to lines (luxfer_features_set_view); other depths ignore them. The fit
+/// prefers boxes with one face, such as the ceiling that carries the lights, that has all positive strokes for
+/// LUXFER_PHASE_PLANE and all positive strokes on lights, and no negative stroke for LUXFER_PHASE_PLANE. The stage
+/// copies the strokes, which replace earlier strokes; NULL removes them. Any thread.
 /// LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(

@@ -5,7 +5,7 @@
 //! luxfer_stylize_add_guide.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -88,12 +88,6 @@ impl Handle for luxfer_guides {
     type Object = Stage<Inputs, Guides>;
     const TAG: u64 = tag(b"lux.guid");
     const NAME: &'static str = "luxfer_guides";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_guides_params_init(params: *mut luxfer_guides_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *guides. Any thread.

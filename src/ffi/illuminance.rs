@@ -4,7 +4,7 @@
 //! error of every point, and with mean and extremes for reports.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -124,24 +124,6 @@ impl Handle for luxfer_illuminance {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_illuminance_params_init(
-    params: *mut luxfer_illuminance_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
-
-/// Fills *grid with the defaults; size is sizeof *grid. LUXFER_INVALID_ARGUMENT if grid is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_illuminance_grid_init(
-    grid: *mut luxfer_illuminance_grid,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(grid, size))
 }
 
 /// Creates the stage. The caller releases *illuminance. Any thread.

@@ -5,7 +5,7 @@
 //! the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
 
 use super::context::{Charge, Context, luxfer_context};
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::params::{self, versioned};
 use super::pointer::{Out, bytes, bytes_mut, set_optional, text};
@@ -239,13 +239,6 @@ impl Handle for luxfer_image {
 /// Bytes of an image of the library.
 fn cost(width: usize, height: usize, channels: usize) -> u64 {
     (width as u64) * (height as u64) * (channels as u64) * size_of::<f32>() as u64
-}
-
-/// Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or no version of the
-/// struct has this size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_image_view_init(view: *mut luxfer_image_view, size: usize) -> luxfer_status {
-    guard(|| params::init(view, size))
 }
 
 /// Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The

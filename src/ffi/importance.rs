@@ -6,7 +6,7 @@
 
 use super::context::luxfer_context;
 use super::geometry::numbers;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -76,7 +76,7 @@ pub struct luxfer_importance_report {
     pub struct_size: u32,
     /// Number of paths of the map.
     pub paths: u32,
-    /// Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture.
+    /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
@@ -104,15 +104,6 @@ impl Handle for luxfer_importance {
     type Object = Stage<Inputs, Traced>;
     const TAG: u64 = tag(b"lux.impo");
     const NAME: &'static str = "luxfer_importance";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_importance_params_init(
-    params: *mut luxfer_importance_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *importance. Any thread.

@@ -5,7 +5,7 @@
 //! once, even to thousands.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
 use super::lamp_goal::StoredGoal;
@@ -122,12 +122,6 @@ impl Handle for luxfer_lamps {
     type Object = Stage<Inputs, Output>;
     const TAG: u64 = tag(b"lux.lamp");
     const NAME: &'static str = "luxfer_lamps";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_params_init(params: *mut luxfer_lamps_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *lamps. Any thread.
@@ -257,7 +251,7 @@ impl luxfer_lamps_params {
 
     fn solving(&self, groups: usize, levels: Vec<f64>) -> GroupParams {
         GroupParams {
-            colour: if self.free_colour == 1 { Colour::Free } else { Colour::Kept },
+            colour: if self.free_colour == 1 { Colour::PerChannel } else { Colour::Common },
             max_scale: vec![self.max_scale; groups],
             levels,
             regularisation: self.regularisation,

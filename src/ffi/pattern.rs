@@ -2,9 +2,7 @@
 //!
 //! Size, rotation and offset of the light pattern of a transfer on the surface, and the areas without lamps.
 
-use super::guard::guard;
-use super::params::{self, versioned};
-use super::status::luxfer_status;
+use super::params::versioned;
 use crate::error::{Error, Result};
 use crate::transfer::{Pattern, Scale};
 use glam::DVec2;
@@ -78,10 +76,4 @@ impl luxfer_pattern_params {
             margin: self.margin,
         })
     }
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_pattern_params_init(params: *mut luxfer_pattern_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }

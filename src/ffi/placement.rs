@@ -3,7 +3,7 @@
 //! Finds the position of a texture on a surface that gives a target the most light, the least light, or a given
 //! radiance, by gradient descent on the map of luxfer_importance, without tracing more paths.
 
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::luxfer_image;
 use super::importance::{Traced, luxfer_importance};
@@ -130,16 +130,6 @@ versioned!(luxfer_placement, [192], {
         band_error: [0.0; 3],
     }
 });
-
-/// Fills *params with the defaults: any offset, with fixed scale 1 and rotation 0; size is sizeof *params.
-/// LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_placement_params_init(
-    params: *mut luxfer_placement_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
 
 /// Starts a job that finds the best placement of a texture (linear, in cd/m²; it repeats) for the target. params may be
 /// NULL for the defaults. The caller releases *job. Any thread.

@@ -10,7 +10,7 @@
 //! a stylisation.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned, versioned};
@@ -156,12 +156,6 @@ impl Handle for luxfer_plan {
     type Object = Stage<(), Made>;
     const TAG: u64 = tag(b"lux.plan");
     const NAME: &'static str = "luxfer_plan";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_plan_params_init(params: *mut luxfer_plan_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates a plan. The caller releases *plan. Any thread.

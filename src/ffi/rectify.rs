@@ -5,7 +5,7 @@
 //! (0.5, 0.5). Room axes 0 and 2 are horizontal, axis 1 is vertical; camera space is x to the right, y down, z forward.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -298,12 +298,6 @@ fn unwarped(output: &Output) -> Result<&Arc<Unwarped>> {
     output.unwarped.as_ref().ok_or_else(|| {
         Error::new(ErrorKind::NotReady, "no plane has been unwarped yet; set its mask and start the stage again")
     })
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_params_init(params: *mut luxfer_rectify_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *rectify. Any thread.

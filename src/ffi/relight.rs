@@ -4,7 +4,7 @@
 //! photo. The solution is a factor for the emission, per channel, with a confidence interval.
 
 use super::context::{Context, luxfer_context};
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned, versioned};
@@ -222,12 +222,6 @@ impl Handle for luxfer_relight {
     type Object = Stage<Inputs, Solution>;
     const TAG: u64 = tag(b"lux.reli");
     const NAME: &'static str = "luxfer_relight";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_params_init(params: *mut luxfer_relight_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *relight. Any thread.

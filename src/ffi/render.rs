@@ -4,7 +4,7 @@
 //! cancel, the current image can be read with an estimate of its error.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -192,12 +192,6 @@ impl Handle for luxfer_render {
     type Object = Stage<Inputs, Film>;
     const TAG: u64 = tag(b"lux.rend");
     const NAME: &'static str = "luxfer_render";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_params_init(params: *mut luxfer_render_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *render. Any thread.

@@ -10,7 +10,7 @@
 //!
 //! The files are OpenEXR: R, G, B show the part at its place in the image, and integer channels store its sums.
 
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned, versioned};
 use super::pointer::text;
@@ -60,13 +60,6 @@ impl luxfer_render_part {
             samples: if self.samples == 0 { params.samples.saturating_sub(first) } else { self.samples },
         }
     }
-}
-
-/// Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is
-/// wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_part_init(part: *mut luxfer_render_part, size: usize) -> luxfer_status {
-    guard(|| params::init(part, size))
 }
 
 /// Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of

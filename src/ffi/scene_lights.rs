@@ -4,7 +4,7 @@
 //! intensity distribution. Area lights are surfaces whose material emits.
 
 use super::distribution::luxfer_distribution;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Owned};
 use super::params::{self, versioned};
 use super::pointer::set_optional;
@@ -83,12 +83,6 @@ impl luxfer_light_params {
             other => Err(Error::argument(format!("light.kind is {other}; it must be a LUXFER_LIGHT_ value"))),
         }
     }
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_light_params_init(params: *mut luxfer_light_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Adds a light; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
@@ -177,15 +171,6 @@ impl luxfer_luminaire_params {
             self.colour
         )))
     }
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_luminaire_params_init(
-    params: *mut luxfer_luminaire_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its

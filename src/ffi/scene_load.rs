@@ -4,7 +4,7 @@
 //! are not rendered.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Owned};
 use super::params::{self, versioned};
 use super::pointer::{Out, bytes, text};
@@ -47,16 +47,6 @@ impl luxfer_scene_load_params {
         }
         Ok(gltf::Options { budget, unit: self.unit, is_open: self.allow_external_files == 1 })
     }
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or no version of
-/// the struct has this size.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_load_params_init(
-    params: *mut luxfer_scene_load_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Loads a glTF 2.0 file, .glb or .gltf with the files it names, which must lie in its folder or below; path is UTF-8.

@@ -4,7 +4,7 @@
 //! textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when its
 //! values change.
 
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::params::{self, Report, Versioned, versioned};
@@ -122,15 +122,6 @@ pub struct luxfer_texture_use {
 versioned!(luxfer_texture_use, [44], {
     Self { struct_size: 44, texture: LUXFER_NONE, uv_set: 0, wrap_u: 0, wrap_v: 0, transform: [0.0; 6] }
 });
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_material_params_init(
-    params: *mut luxfer_material_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
 
 /// Adds a material; *index, unless NULL, receives its index. params may be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.

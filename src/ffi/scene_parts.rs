@@ -3,7 +3,7 @@
 //! Describes a scene by arrays of the host: add materials first, then the meshes that use them, then cameras. The calls
 //! copy the arrays, which may have any alignment and stride.
 
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::params::{self, Report, Versioned, versioned};
 use super::pointer::{bytes, set_optional, text};
 use super::scene::{luxfer_scene, missing};
@@ -114,18 +114,6 @@ impl luxfer_camera_params {
         };
         Ok(Camera { name: String::new(), position, forward, up: side.cross(forward), fov_y: self.fov_y })
     }
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_mesh_params_init(params: *mut luxfer_mesh_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_camera_params_init(params: *mut luxfer_camera_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Adds a mesh and copies its arrays; *index, unless NULL, receives its index. Any thread.

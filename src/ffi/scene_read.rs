@@ -13,6 +13,19 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Mesh, Scene};
 use std::ffi::c_char;
 
+/// An attribute of the vertices of a mesh: a LUXFER_VERTEX_ value.
+pub type luxfer_vertex_attribute = i32;
+/// Positions, three floats per vertex.
+pub const LUXFER_VERTEX_POSITION: luxfer_vertex_attribute = 0;
+/// Normals, three floats per vertex.
+pub const LUXFER_VERTEX_NORMAL: luxfer_vertex_attribute = 1;
+/// The first set of texture coordinates, two floats per vertex.
+pub const LUXFER_VERTEX_UV_0: luxfer_vertex_attribute = 2;
+/// The second set of texture coordinates, two floats per vertex.
+pub const LUXFER_VERTEX_UV_1: luxfer_vertex_attribute = 3;
+/// Colours, four floats per vertex.
+pub const LUXFER_VERTEX_COLOUR: luxfer_vertex_attribute = 4;
+
 /// A mesh of a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -90,83 +103,53 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
     enter(scene, |object| copy_text(&mesh(&object.snapshot(), index)?.name, buffer, capacity, needed))
 }
 
-/// Copies a mesh into packed arrays of the caller: positions and normals with three floats per vertex, and indices with
-/// three per triangle. Any of the arrays may be NULL. The capacities are numbers of vertices and of triangles. Any
+/// Copies an attribute of a mesh's vertices into a packed array of the caller; capacity is a number of vertices. Any
 /// thread.
-/// LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none; LUXFER_INVALID_ARGUMENT if
-/// a capacity is too small.
+/// LUXFER_NOT_FOUND if there is no such mesh or it lacks the attribute; LUXFER_INVALID_ARGUMENT if the attribute is
+/// unknown, values is NULL or the capacity is too small.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_read_mesh(
+pub unsafe extern "C" fn luxfer_scene_read_vertices(
     scene: *mut luxfer_scene,
     index: u32,
-    vertex_capacity: usize,
-    positions: *mut f32,
-    normals: *mut f32,
-    triangle_capacity: usize,
+    attribute: luxfer_vertex_attribute,
+    capacity: usize,
+    values: *mut f32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let scene = object.snapshot();
+        let mesh = mesh(&scene, index)?;
+        let uvs = |set: usize| mesh.uvs.get(set).map_or(&[][..], |set| bytemuck::cast_slice(set));
+        let (data, numbers, name): (&[f32], usize, &str) = match attribute {
+            LUXFER_VERTEX_POSITION => (bytemuck::cast_slice(&mesh.positions), 3, "positions"),
+            LUXFER_VERTEX_NORMAL => (bytemuck::cast_slice(&mesh.normals), 3, "normals"),
+            LUXFER_VERTEX_UV_0 => (uvs(0), 2, "texture coordinates of set 0"),
+            LUXFER_VERTEX_UV_1 => (uvs(1), 2, "texture coordinates of set 1"),
+            LUXFER_VERTEX_COLOUR => (bytemuck::cast_slice(&mesh.colours), 4, "colours"),
+            other => {
+                return Err(Error::argument(format!("attribute is {other}; it must be a LUXFER_VERTEX_ value")));
+            }
+        };
+        if data.is_empty() && attribute != LUXFER_VERTEX_POSITION {
+            return Err(Error::new(ErrorKind::NotFound, format!("mesh {index} has no {name}")));
+        }
+        copy(data, numbers, values, capacity, name)
+    })
+}
+
+/// Copies the triangles of a mesh into a packed array of the caller, three vertex indices per triangle; capacity is a
+/// number of triangles. Any thread.
+/// LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if indices is NULL or the capacity is too small.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_read_triangles(
+    scene: *mut luxfer_scene,
+    index: u32,
+    capacity: usize,
     indices: *mut u32,
 ) -> luxfer_status {
     enter(scene, |object| {
         let scene = object.snapshot();
-        let mesh = mesh(&scene, index)?;
-        if !normals.is_null() && mesh.normals.is_empty() {
-            return Err(lacks(index, "normals; its faces are flat"));
-        }
-        let positions = place(positions.cast(), &mesh.positions, vertex_capacity, "positions")?;
-        let normals = place(normals.cast(), &mesh.normals, vertex_capacity, "normals")?;
-        let indices = place(indices.cast(), &mesh.triangles, triangle_capacity, "indices")?;
-        for (place, data) in [positions, normals, indices].into_iter().flatten() {
-            place.copy_from_slice(data);
-        }
-        Ok(())
-    })
-}
-
-/// Copies set uv_set, 0 or 1, of a mesh's texture coordinates into a packed array of the caller, two floats per vertex;
-/// capacity is a number of vertices. Any thread.
-/// LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too
-/// small.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_read_mesh_uvs(
-    scene: *mut luxfer_scene,
-    index: u32,
-    uv_set: u32,
-    capacity: usize,
-    uvs: *mut f32,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let scene = object.snapshot();
-        let set = mesh(&scene, index)?.uvs.get(uv_set as usize).filter(|set| !set.is_empty());
-        let set = set.ok_or_else(|| lacks(index, format_args!("set {uv_set} of texture coordinates")))?;
-        let Some((place, data)) = place(uvs.cast(), set, capacity, "uvs")? else {
-            return Err(Error::argument("uvs is NULL; it must point to two floats for each vertex"));
-        };
-        place.copy_from_slice(data);
-        Ok(())
-    })
-}
-
-/// Copies the colours of a mesh's vertices into a packed array of the caller, four floats per vertex; capacity is a
-/// number of vertices. Any thread.
-/// LUXFER_NOT_FOUND if there is no such mesh or it has no colours; LUXFER_INVALID_ARGUMENT if the capacity is too
-/// small.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_read_mesh_colours(
-    scene: *mut luxfer_scene,
-    index: u32,
-    capacity: usize,
-    colours: *mut f32,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let scene = object.snapshot();
-        let mesh = mesh(&scene, index)?;
-        if mesh.colours.is_empty() {
-            return Err(lacks(index, "colours"));
-        }
-        let Some((place, data)) = place(colours.cast(), &mesh.colours, capacity, "colours")? else {
-            return Err(Error::argument("colours is NULL; it must point to four floats for each vertex"));
-        };
-        place.copy_from_slice(data);
-        Ok(())
+        let indices_of_mesh: &[u32] = bytemuck::cast_slice(&mesh(&scene, index)?.triangles);
+        copy(indices_of_mesh, 3, indices, capacity, "triangles")
     })
 }
 
@@ -174,23 +157,16 @@ fn mesh(scene: &Scene, index: u32) -> Result<&Mesh> {
     scene.meshes.get(index as usize).ok_or_else(|| missing("mesh", index, scene.meshes.len()))
 }
 
-fn lacks(mesh: u32, what: impl std::fmt::Display) -> Error {
-    Error::new(ErrorKind::NotFound, format!("mesh {mesh} has no {what}"))
-}
-
-/// The caller's array and the bytes to copy there; `None` if the caller passed null.
-fn place<'a, T: bytemuck::NoUninit>(
-    place: *mut u8,
-    data: &'a [T],
-    capacity: usize,
-    name: &str,
-) -> Result<Option<(&'a mut [u8], &'a [u8])>> {
+/// Copies elements of some numbers each to the caller's array, which has room for `capacity` elements.
+fn copy<T: bytemuck::NoUninit>(data: &[T], numbers: usize, place: *mut T, capacity: usize, name: &str) -> Result<()> {
+    let needed = data.len() / numbers;
     if place.is_null() {
-        return Ok(None);
+        return Err(Error::argument(format!("the array for the {name} is NULL; it must have room for {needed}")));
     }
-    if capacity < data.len() {
-        return Err(Error::argument(format!("there is room for {capacity} {name}; {} are needed", data.len())));
+    if capacity < needed {
+        return Err(Error::argument(format!("there is room for {capacity} {name}; {needed} are needed")));
     }
     let data: &[u8] = bytemuck::cast_slice(data);
-    Ok(Some((bytes_mut(place, data.len(), name)?, data)))
+    bytes_mut(place.cast(), data.len(), name)?.copy_from_slice(data);
+    Ok(())
 }

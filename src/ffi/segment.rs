@@ -4,7 +4,7 @@
 //! masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start again.
 
 use super::context::luxfer_context;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -148,12 +148,6 @@ impl Handle for luxfer_segment {
     type Object = Stage<Inputs, Segmentation>;
     const TAG: u64 = tag(b"lux.segm");
     const NAME: &'static str = "luxfer_segment";
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_segment_params_init(params: *mut luxfer_segment_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
 }
 
 /// Creates the stage. The caller releases *segment. Any thread.

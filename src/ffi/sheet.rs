@@ -3,7 +3,7 @@
 //! For artists who paint on paper: prints the exemplar in pale colours between alignment marks, and aligns a photo or
 //! scan of the painted sheet with the exemplar by these marks. These calls return when their work is done.
 
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::params::{self, Report, Versioned, versioned};
@@ -84,12 +84,6 @@ pub struct luxfer_sheet_report {
 versioned!(luxfer_sheet_report, [96], {
     Self { struct_size: 96, marks: 0, residual: 0.0, error: 0.0, to_photo: [0.0; 9] }
 });
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_sheet_params_init(params: *mut luxfer_sheet_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
 
 /// Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): in pale colours, as large as the
 /// paper allows, with ten marks around it. Save it as PNG and print it at params->dpi without scaling. params may be

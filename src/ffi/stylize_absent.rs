@@ -8,7 +8,7 @@ use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use std::ffi::c_void;
 
-fn left_out() -> Result<()> {
+pub(super) fn left_out() -> Result<()> {
     Err(Error::new(
         ErrorKind::Unsupported,
         "stylisation was left out of this build of luxfer; build it with the Cargo feature stylize",
@@ -31,7 +31,7 @@ macro_rules! absent {
 }
 
 absent! {
-    luxfer_stylize_params_init luxfer_stylize_params_preset luxfer_stylize_set_artwork luxfer_stylize_add_guide
+    luxfer_stylize_params_preset luxfer_stylize_set_artwork luxfer_stylize_add_guide
     luxfer_stylize_add_guides luxfer_stylize_clear_guides luxfer_stylize_set_source_mask
     luxfer_stylize_set_target_mask luxfer_stylize_set_painted
     luxfer_stylize_set_motion

@@ -202,12 +202,6 @@ impl luxfer_stylize_params {
     }
 }
 
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_params_init(params: *mut luxfer_stylize_params, size: usize) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
-
 /// Fills *params with a preset instead: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
 /// LUXFER_INVALID_ARGUMENT for another value.
 #[unsafe(no_mangle)]

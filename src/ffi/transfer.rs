@@ -8,7 +8,7 @@ use super::context::luxfer_context;
 use super::emission::luxfer_emission_params;
 use super::features::{depth_kind, luxfer_depth_kind, luxfer_features, luxfer_features_params};
 use super::geometry::list;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
@@ -211,15 +211,6 @@ fn stage_of(name: &str, value: luxfer_stage) -> Result<Stage> {
     found.ok_or_else(|| Error::argument(format!("{name} is {value}; it must be a LUXFER_STAGE_ value")))
 }
 
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_params_init(
-    params: *mut luxfer_transfer_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
-
 /// Creates a transfer. The caller releases *transfer. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_create(
@@ -289,8 +280,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
 }
 
 /// Sets the triangles of the scene that receive the lights, mesh index and triangle index of each, instead of the named
-/// surface. Among them, too, the transfer takes the plane that faces most of the room. They replace earlier triangles,
-/// and luxfer_transfer_set_scene removes them. triangles may be NULL if count is 0: the name counts again. Any thread.
+/// surface. If they lie in several planes, the transfer takes the plane that faces most of the room, as for a named
+/// surface. They replace earlier triangles, and luxfer_transfer_set_scene removes them. If count is 0, triangles may be
+/// NULL, and the named surface receives the lights again. Any thread.
 /// A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_triangles(

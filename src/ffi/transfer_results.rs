@@ -198,7 +198,7 @@ pub struct luxfer_fixture {
     pub flux: f64,
     /// Correlated colour temperature in kelvin; 0 for a lamp that is off.
     pub cct: f64,
-    /// Distance from the blackbody in the CIE 1960 diagram.
+    /// Distance from the blackbody locus in the CIE 1960 diagram.
     pub duv: f64,
 }
 

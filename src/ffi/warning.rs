@@ -8,7 +8,7 @@
 use super::context::Context;
 use super::emission::luxfer_emission;
 use super::features::luxfer_features;
-use super::guard::{enter, guard};
+use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, c_string};
@@ -16,9 +16,9 @@ use super::rectify::luxfer_rectify;
 use super::relight::luxfer_relight;
 use super::scene::{luxfer_scene, missing};
 use super::segment::luxfer_segment;
-use super::status::{LUXFER_INVALID_ARGUMENT, LUXFER_OK, luxfer_status};
+use super::status::luxfer_status;
 use super::transfer::{LUXFER_STAGE_SCENE, luxfer_stage, luxfer_transfer};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::segment;
 use crate::transfer::Stage;
 use crate::warning::Warning;
@@ -177,40 +177,19 @@ fn of(stage: Stage, list: Vec<Warning>) -> impl Iterator<Item = (luxfer_stage, W
 }
 
 /// An object whose result may be in doubt.
-trait Doubtful: Handle {
+pub(super) trait Doubtful: Handle {
     fn list(object: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>>;
 }
 
-/// How to list the warnings of one kind of object.
-struct Lister {
-    tag: u64,
-    list: fn(*mut c_void, *mut *mut luxfer_warnings) -> luxfer_status,
+/// Creates the list of an object's warnings.
+pub(super) fn create<H: Doubtful>(handle: *mut c_void, warnings: *mut *mut luxfer_warnings) -> luxfer_status {
+    enter(handle.cast::<H>(), |object| {
+        let out = Out::new(warnings, "warnings")?;
+        let list = H::list(object)?.into_iter().map(|(stage, warning)| Entry::new(stage, warning)).collect();
+        out.set(handle::give(Arc::new(Warnings { context: object.context().clone(), list })));
+        Ok(())
+    })
 }
-
-impl Lister {
-    const fn of<H: Doubtful>() -> Self {
-        let list = |handle: *mut c_void, warnings: *mut *mut luxfer_warnings| {
-            enter(handle.cast::<H>(), |object| {
-                let out = Out::new(warnings, "warnings")?;
-                let list = H::list(object)?.into_iter().map(|(stage, warning)| Entry::new(stage, warning)).collect();
-                out.set(handle::give(Arc::new(Warnings { context: object.context().clone(), list })));
-                Ok(())
-            })
-        };
-        Self { tag: H::TAG, list }
-    }
-}
-
-/// The kinds of objects that have warnings.
-const LISTERS: &[Lister] = &[
-    Lister::of::<luxfer_emission>(),
-    Lister::of::<luxfer_features>(),
-    Lister::of::<luxfer_rectify>(),
-    Lister::of::<luxfer_relight>(),
-    Lister::of::<luxfer_scene>(),
-    Lister::of::<luxfer_segment>(),
-    Lister::of::<luxfer_transfer>(),
-];
 
 impl Doubtful for luxfer_transfer {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
@@ -264,34 +243,6 @@ impl Doubtful for luxfer_scene {
         let list = scene.snapshot().warnings();
         Ok(list.into_iter().map(|warning| (LUXFER_STAGE_SCENE, warning)).collect())
     }
-}
-
-/// Gets the warnings about the result of an object. handle is one of:
-/// - a luxfer_transfer: the warnings of all stages that have a result, in their order;
-/// - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
-/// - a luxfer_features;
-/// - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
-/// - a luxfer_emission: about the texture; a plan has no warnings;
-/// - a luxfer_relight;
-/// - a luxfer_scene: an implausible size, and features of its file that are not rendered.
-///
-/// The caller releases *warnings. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);
-/// LUXFER_INVALID_ARGUMENT if handle is of another kind.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_get_warnings(
-    handle: *mut c_void,
-    warnings: *mut *mut luxfer_warnings,
-) -> luxfer_status {
-    let mut list = LUXFER_INVALID_ARGUMENT;
-    let status = guard(|| {
-        let tag = handle::read_tag(handle);
-        let lister = LISTERS.iter().find(|lister| tag == Some(lister.tag));
-        let lister = lister.ok_or_else(|| Error::argument("the handle is not a live object that has warnings"))?;
-        list = (lister.list)(handle, warnings);
-        Ok(())
-    });
-    if status == LUXFER_OK { list } else { status }
 }
 
 /// Counts the warnings of a list. Any thread.

@@ -143,7 +143,7 @@ pub struct Extras {
     pub normals: bool,
     /// For shapes finer than the strokes (Fig. 16).
     pub edges: bool,
-    /// For scenes whose materials are painted differently.
+    /// A colour for each material, for artworks that paint each material in a style of its own.
     pub materials: bool,
     /// For scenes with caustics.
     pub caustics: bool,

@@ -17,7 +17,7 @@ const HOLE: f64 = 0.25;
 pub struct Rectangle {
     pub low: DVec2,
     pub high: DVec2,
-    /// Side, in plane units, of the smallest square that one photo pixel covers in it.
+    /// Side, in plane units, of the smallest square of the plane that one photo pixel covers.
     pub densest: f64,
 }
 

@@ -31,9 +31,9 @@ pub const MAX_LEVELS: usize = 4096;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
     /// One power for all channels.
-    Kept,
+    Common,
     /// A power for each channel.
-    Free,
+    PerChannel,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,13 @@ pub struct GroupParams {
 
 impl Default for GroupParams {
     fn default() -> Self {
-        Self { colour: Colour::Kept, max_scale: Vec::new(), levels: Vec::new(), regularisation: 1e-6, tolerance: 0.01 }
+        Self {
+            colour: Colour::Common,
+            max_scale: Vec::new(),
+            levels: Vec::new(),
+            regularisation: 1e-6,
+            tolerance: 0.01,
+        }
     }
 }
 
@@ -166,7 +172,7 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
             return Err(Error::argument("a goal of luminance has limits that differ between channels; give it one"));
         }
     }
-    if params.colour == Colour::Free && goals.iter().any(|g| g.aspect == Aspect::Luminance) {
+    if params.colour == Colour::PerChannel && goals.iter().any(|g| g.aspect == Aspect::Luminance) {
         return Err(Error::argument(
             "a goal asks for luminance alone, which says nothing about channels that are free: keep the groups' colours",
         ));
@@ -290,8 +296,8 @@ impl System<'_> {
     /// Solves for all channels together, or for each channel, and collects the powers.
     fn by_channels(&self, solve: impl Fn(&[usize]) -> Result<Vec<f64>>) -> Result<Powers> {
         let channels: &[&[usize]] = match self.params.colour {
-            Colour::Kept => &[&[0, 1, 2]],
-            Colour::Free => &[&[0], &[1], &[2]],
+            Colour::Common => &[&[0, 1, 2]],
+            Colour::PerChannel => &[&[0], &[1], &[2]],
         };
         channels.iter().map(|channels| solve(channels)).collect::<Result<_>>().map(Powers)
     }
@@ -377,11 +383,11 @@ impl System<'_> {
                 "the goals ask for different things of the same groups: divide them further, or weigh the goals"
             }
             _ => match self.params.colour {
-                Colour::Kept => {
+                Colour::Common => {
                     "the goals ask for different things of the same groups, or for a colour that the groups do not have: \
                      divide them further, free their colours, or weigh the goals"
                 }
-                Colour::Free => {
+                Colour::PerChannel => {
                     "the goals ask for different things of the same groups: divide them further, or weigh the goals"
                 }
             },

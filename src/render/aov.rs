@@ -78,7 +78,7 @@ impl Aov {
     }
 
     /// Number of values per pixel in the totals of a film, without the number of hits.
-    pub fn kept(self) -> usize {
+    pub fn total_count(self) -> usize {
         match self {
             Self::Depth | Self::Distance => 1,
             Self::Position | Self::Normal | Self::GeometricNormal | Self::Albedo => 3,
@@ -91,15 +91,15 @@ impl Aov {
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
-            _ => self.kept(),
+            _ => self.total_count(),
         }
     }
 
     /// Converts lossless sums to the totals of a film.
-    pub fn keep_sums(self, sums: &[f64], kept: &mut [f32]) {
+    pub fn set_totals(self, sums: &[f64], totals: &mut [f32]) {
         match self {
-            Self::Object | Self::Material => kept.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
-            _ => kept.iter_mut().zip(sums).for_each(|(k, &s)| *k = s as f32),
+            Self::Object | Self::Material => totals.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
+            _ => totals.iter_mut().zip(sums).for_each(|(k, &s)| *k = s as f32),
         }
     }
 
@@ -113,16 +113,16 @@ impl Aov {
 
     /// The value of a pixel from its totals, its number of hits, and its number of samples. Positions are relative to
     /// the centre of the world.
-    pub fn value(self, kept: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
-        let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(kept[i])));
+    pub fn value(self, totals: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
+        let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(totals[i])));
         match self {
             Self::Depth | Self::Distance => {
-                out[0] = if hits > 0.0 { (f64::from(kept[0]) / hits) as f32 } else { f32::INFINITY }
+                out[0] = if hits > 0.0 { (f64::from(totals[0]) / hits) as f32 } else { f32::INFINITY }
             }
             Self::Position => vector().map(|v| v / hits.max(1.0)).as_vec3().write_to_slice(out),
             Self::Normal | Self::GeometricNormal => vector().normalize_or_zero().as_vec3().write_to_slice(out),
             Self::Albedo => (vector() / samples).as_vec3().write_to_slice(out),
-            Self::Object | Self::Material => out[0] = if hits > 0.0 { kept[0] } else { 0.0 },
+            Self::Object | Self::Material => out[0] = if hits > 0.0 { totals[0] } else { 0.0 },
             Self::Alpha => out[0] = (hits / samples) as f32,
             // Computed from the main image.
             Self::Luminance => (),
@@ -160,11 +160,11 @@ impl Surfaces {
     }
 
     /// Adds the sums to the totals of a pixel.
-    pub fn keep(&self, aov: Aov, kept: &mut [f32]) {
+    pub fn add_to_totals(&self, aov: Aov, totals: &mut [f32]) {
         match aov {
-            Aov::Object => self.object.join(kept),
-            Aov::Material => self.material.join(kept),
-            _ => self.sum(aov).to_array().iter().zip(kept).for_each(|(v, k)| *k += *v as f32),
+            Aov::Object => self.object.join(totals),
+            Aov::Material => self.material.join(totals),
+            _ => self.sum(aov).to_array().iter().zip(totals).for_each(|(v, k)| *k += *v as f32),
         }
     }
 
@@ -208,14 +208,14 @@ impl Vote {
 
     /// Merges with the outcome of other votes, stored as two numbers; a majority of all votes still wins (Agarwal et
     /// al. 2013, "Mergeable summaries").
-    fn join(self, kept: &mut [f32]) {
+    fn join(self, totals: &mut [f32]) {
         let (candidate, lead) = (self.candidate as f32, self.lead as f32);
-        if kept[0] == candidate {
-            kept[1] += lead;
-        } else if lead > kept[1] {
-            kept.copy_from_slice(&[candidate, lead - kept[1]]);
+        if totals[0] == candidate {
+            totals[1] += lead;
+        } else if lead > totals[1] {
+            totals.copy_from_slice(&[candidate, lead - totals[1]]);
         } else {
-            kept[1] -= lead;
+            totals[1] -= lead;
         }
     }
 }
@@ -234,17 +234,17 @@ mod tests {
             for i in (1..votes.len()).rev() {
                 votes.swap(i, rng.below(i + 1));
             }
-            let mut kept = [0.0; 2];
+            let mut totals = [0.0; 2];
             let mut vote = Vote::default();
             for v in votes {
                 vote.cast(v);
                 if rng.below(7) == 0 {
-                    vote.join(&mut kept);
+                    vote.join(&mut totals);
                     vote = Vote::default();
                 }
             }
-            vote.join(&mut kept);
-            assert_eq!(kept[0], 7.0, "round {round}");
+            vote.join(&mut totals);
+            assert_eq!(totals[0], 7.0, "round {round}");
         }
     }
 }

@@ -19,7 +19,7 @@ use glam::{DVec3, Vec3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The totals of a tile, pixel after pixel.
-pub type Kept<'a> = MutexGuard<'a, Vec<f32>>;
+pub type TileTotals<'a> = MutexGuard<'a, Vec<f32>>;
 
 /// Longest name of a layer in bytes, and the largest number of layers. [convention]
 const MAX_NAME_BYTES: usize = 64;
@@ -100,36 +100,37 @@ impl<'a> Layers<'a> {
         }
         let expressions: Vec<&Expression> = outputs.expressions.iter().map(|(_, e)| e).collect();
         let automaton = Automaton::new(world.scene(), &expressions, outputs.emitter_as)?;
-        let surfaces = 1 + outputs.aovs.iter().map(|a| a.kept()).sum::<usize>();
+        let surfaces = 1 + outputs.aovs.iter().map(|a| a.total_count()).sum::<usize>();
         let width = 3 * expressions.len() + if outputs.aovs.is_empty() { 0 } else { surfaces };
-        let mut kept = try_with_capacity(tiles)?;
+        let mut totals = try_with_capacity(tiles)?;
         for _ in 0..tiles {
-            kept.push(Mutex::new(try_vec(width * tile_pixels, 0.0)?));
+            totals.push(Mutex::new(try_vec(width * tile_pixels, 0.0)?));
         }
         let (eye, forward) = (world.from_scene(camera.position), camera.forward.normalize_or_zero());
-        Ok(Some(Self { world, outputs, eye, forward, automaton, width, tiles: kept }))
+        Ok(Some(Self { world, outputs, eye, forward, automaton, width, tiles: totals }))
     }
 
     /// The totals of a tile.
-    pub fn kept(&self, tile: usize) -> Kept<'_> {
+    pub fn totals(&self, tile: usize) -> TileTotals<'_> {
         self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Sets the totals of a pixel from f64 sums made by [`Recorder::add_to`].
-    pub fn keep_sums(&self, tile: usize, pixel: usize, sums: &[f64]) {
-        let mut kept = self.kept(tile);
+    pub fn set_totals(&self, tile: usize, pixel: usize, sums: &[f64]) {
+        let mut totals = self.totals(tile);
         let (colours, surfaces) =
-            kept[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
+            totals[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
         let (light, sums) = sums.split_at(colours.len());
-        colours.iter_mut().zip(light).for_each(|(kept, &sum)| *kept = sum as f32);
-        if let (Some((hits, mut kept)), Some((hit_count, mut sums))) = (surfaces.split_first_mut(), sums.split_first())
+        colours.iter_mut().zip(light).for_each(|(total, &sum)| *total = sum as f32);
+        if let (Some((hits, mut totals)), Some((hit_count, mut sums))) =
+            (surfaces.split_first_mut(), sums.split_first())
         {
             *hits = *hit_count as f32;
             for aov in &self.outputs.aovs {
-                let (of_sums, of_kept);
-                (of_kept, kept) = kept.split_at_mut(aov.kept());
+                let (of_sums, of_totals);
+                (of_totals, totals) = totals.split_at_mut(aov.total_count());
                 (of_sums, sums) = sums.split_at(aov.summed());
-                aov.keep_sums(of_sums, of_kept);
+                aov.set_totals(of_sums, of_totals);
             }
         }
     }
@@ -203,14 +204,14 @@ impl<'a> Layers<'a> {
                     }
                     let sums = sums(place);
                     let (samples, hit_count) = (f64::from(place.2.max(1)), f64::from(sums[hits]));
-                    aov.value(&sums[first..][..aov.kept()], hit_count, samples, out);
+                    aov.value(&sums[first..][..aov.total_count()], hit_count, samples, out);
                     if aov == Aov::Position && hit_count > 0.0 {
                         self.world.in_scene(Vec3::from_slice(out)).write_to_slice(out);
                     }
                 }
             })?;
             layers.push(Layer { name: aov.name().into(), channels: aov.channels(), expression: None, image });
-            first += aov.kept();
+            first += aov.total_count();
         }
         Ok(layers)
     }
@@ -245,27 +246,27 @@ impl Recorder<'_> {
     }
 
     /// Adds the recorded sums to the totals of a pixel of a tile.
-    pub fn keep(&mut self, kept: &mut Kept, pixel: usize) {
+    pub fn add_to_totals(&mut self, totals: &mut TileTotals, pixel: usize) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) =
-            kept[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
+            totals[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
         // Add the sum of a list to each expression of the list.
         let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             let light = sum.as_vec3();
             for &expression in list {
-                let kept = &mut colours[usize::from(expression)];
-                *kept = (Vec3::from(*kept) + light).into();
+                let total = &mut colours[usize::from(expression)];
+                *total = (Vec3::from(*total) + light).into();
             }
             *sum = DVec3::ZERO;
         }
         if let Some((hits, mut rest)) = surfaces.split_first_mut() {
             *hits += self.surfaces.hits as f32;
             for aov in &layers.outputs.aovs {
-                let kept;
-                (kept, rest) = rest.split_at_mut(aov.kept());
-                self.surfaces.keep(*aov, kept);
+                let totals;
+                (totals, rest) = rest.split_at_mut(aov.total_count());
+                self.surfaces.add_to_totals(*aov, totals);
             }
             self.surfaces = Surfaces::default();
         }

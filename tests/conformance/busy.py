@@ -62,7 +62,7 @@ class Busy(Player):
             check(library.luxfer_render_set_scene(render, scene))
             check(library.luxfer_release(scene))
             params = abi.luxfer_render_params()
-            check(library.luxfer_render_params_init(ctypes.addressof(params), ctypes.sizeof(params)))
+            check(library.luxfer_init(abi.LUXFER_STRUCT_RENDER_PARAMS, ctypes.addressof(params), ctypes.sizeof(params)))
             params.width, params.height, params.samples = 64, 64, 1 << 20
             check(library.luxfer_render_start(render, ctypes.addressof(params), ctypes.addressof(job)))
             self.endless[context] = (render.value, job.value)

@@ -111,7 +111,7 @@ class Player:
         room = ctypes.create_string_buffer(ROOM)
         value = kind.from_buffer(room)
         if base == "init":
-            getattr(library, f"{name}_init")(address(value), ctypes.sizeof(kind))
+            library.luxfer_init(kind.struct_type, address(value), ctypes.sizeof(kind))
         self.kept.append((room, value))
         members = {f.name: f for f in STRUCTS[name]}
         for field, argument in fields.items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from script import FUNCTIONS, Argument, Call, Script, array, report, struct, view
+from script import SETTINGS, Argument, Call, Script, array, report, struct, view
 
 ROOM = ["room", 0x5A]
 
@@ -60,10 +60,8 @@ def library() -> Scenario:
     s.call("get_version_string")
     s.call("status_get_name", 3)
     s.call("context_get_last_error", s.context, ROOM, 100, ROOM)
-    for function in FUNCTIONS:
-        name = function.removeprefix("luxfer_").removesuffix("_init")
-        if function.endswith("_init"):
-            s.call(f"{name}_init", struct(name, "raw"), 200)
+    for number, name in enumerate(SETTINGS):
+        s.call("init", number, struct(name.removeprefix("luxfer_"), "raw"), 200)
     s.references(s.context)
     return s
 
@@ -121,14 +119,14 @@ def scenes() -> Scenario:
     s.call("scene_get_requirements_text", scene, ROOM, 300, ROOM)
     s.call("scene_get_mesh", scene, 0, *report("mesh_info"))
     s.call("scene_get_mesh_name", scene, 0, ROOM, 20, ROOM)
-    s.call("scene_read_mesh", scene, 0, 4, ROOM, None, 2, ROOM)
-    s.call("scene_read_mesh_uvs", scene, 0, 0, 4, ROOM)
+    s.call("scene_read_vertices", scene, 0, 0, 4, ROOM)
+    s.call("scene_read_triangles", scene, 0, 2, ROOM)
     coloured = struct(
         "mesh_params", name="Coloured", vertex_count=3, positions=array("float", 0, 0, 0, 1, 0, 0, 0, 1, 0), triangle_count=1,
         indices=array("uint32_t", 0, 1, 2), colours=array("float", *[0.5] * 12),
     )  # fmt: skip
     s.call("scene_add_mesh", scene, coloured, None)
-    s.call("scene_read_mesh_colours", scene, 2, 3, ROOM)
+    s.call("scene_read_vertices", scene, 2, 4, 3, ROOM)
     s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
     s.make("demo_create_scene", s.context, 2)
     return s

@@ -28,6 +28,8 @@ KINDS = set(HEADER.opaque)
 STRUCTS = HEADER.structs
 FUNCTIONS = {name: arguments for name, (_, arguments) in HEADER.functions.items()}
 CALLBACKS = set(HEADER.callbacks)
+#: The structs that luxfer_init fills, in the order of their types.
+SETTINGS = list(HEADER.settings)
 
 #: Bytes of memory behind every pointer to results, of arrays and of pixels: more than any call that is not a lie needs.
 ROOM = 65536

@@ -67,10 +67,13 @@ inline MeshCopy read_mesh(const luxfer::Scene &scene, std::uint32_t index) {
     mesh.positions.resize(3 * info.vertex_count);
     mesh.normals.resize(info.has_normals ? 3 * info.vertex_count : 0);
     mesh.indices.resize(3 * info.triangle_count);
-    scene.read_mesh(index, mesh.positions, mesh.normals, mesh.indices);
+    scene.read_vertices(index, LUXFER_VERTEX_POSITION, mesh.positions);
+    scene.read_triangles(index, mesh.indices);
+    if (info.has_normals)
+        scene.read_vertices(index, LUXFER_VERTEX_NORMAL, mesh.normals);
     if (info.uv_sets & 1) {
         mesh.uvs.resize(2 * info.vertex_count);
-        scene.read_mesh_uvs(index, 0, mesh.uvs);
+        scene.read_vertices(index, LUXFER_VERTEX_UV_0, mesh.uvs);
     }
     return mesh;
 }

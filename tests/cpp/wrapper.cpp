@@ -377,11 +377,12 @@ void scenes_come_back() {
     CHECK(ok(copy.material(ok(copy.mesh(1)).material)).emission[0] == 100.0f);
     std::vector<float> positions(12);
     std::vector<std::uint32_t> indices(6);
-    OK(copy.read_mesh(0, positions, {}, indices));
+    OK(copy.read_vertices(0, LUXFER_VERTEX_POSITION, positions));
+    OK(copy.read_triangles(0, indices));
     CHECK(positions[1] == -1.0f && indices[5] == 3);
-    CHECK_ERROR(copy.read_mesh(0, positions, positions, indices), LUXFER_NOT_FOUND);
-    CHECK_ERROR(copy.read_mesh_uvs(0, 0, positions), LUXFER_NOT_FOUND);
-    CHECK_ERROR(copy.read_mesh_colours(0, positions), LUXFER_NOT_FOUND);
+    for (const luxfer_vertex_attribute lacking : {LUXFER_VERTEX_NORMAL, LUXFER_VERTEX_UV_0, LUXFER_VERTEX_COLOUR})
+        CHECK_ERROR(copy.read_vertices(0, lacking, positions), LUXFER_NOT_FOUND);
+    CHECK_ERROR(copy.read_triangles(2, indices), LUXFER_NOT_FOUND);
     CHECK(ok(copy.mesh(0)).has_colours == 0);
     CHECK(ok(copy.material_texture(0, LUXFER_TEXTURE_NORMAL)).texture == LUXFER_NONE);
     CHECK_ERROR(copy.texture(0), LUXFER_NOT_FOUND);

@@ -16,26 +16,28 @@ foreach(file IN LISTS files)
 endforeach()
 
 string(REGEX REPLACE "/\\*([^*]|\\*+[^*/])*\\*+/" "" header "${header}")
+string(REGEX REPLACE "static inline [^}]*}" "" header "${header}")
 string(REGEX MATCHALL "luxfer_[a-z0-9_]+\\(" functions "${header}")
 list(TRANSFORM functions REPLACE "\\(" "")
 list(REMOVE_DUPLICATES functions)
 list(LENGTH functions count)
+string(REGEX MATCHALL "LUXFER_STRUCT_[A-Z_]+" settings "${header}")
 if(count LESS 100)
   message(FATAL_ERROR "found only ${count} functions in include/luxfer.h: does this script still know its form?")
 endif()
 
 set(missing "")
-foreach(function IN LISTS functions)
-  if(NOT wrapper MATCHES "[^a-z0-9_]${function}[^a-z0-9_]")
+foreach(function IN LISTS functions settings)
+  if(NOT wrapper MATCHES "[^A-Za-z0-9_]${function}[^A-Za-z0-9_]")
     string(APPEND missing "\n  ${function}")
   endif()
 endforeach()
 if(missing)
-  message(FATAL_ERROR "the C++ wrapper lacks these functions of include/luxfer.h:${missing}\n"
+  message(FATAL_ERROR "the C++ wrapper lacks these functions and settings of include/luxfer.h:${missing}\n"
     "Add to bindings/cpp/luxfer, in the class of the handle, a method that calls each:\n"
     "  Result<> set_thing(const Image &thing) const { return call(luxfer_x_set_thing, thing.get()); }\n"
     "  Result<Image> image(luxfer_x_image which) const { return make<Image>(luxfer_x_get_image, which); }\n"
     "  Result<luxfer_x_report> report() const { return value<luxfer_x_report>(luxfer_x_get_report); }\n"
-    "and of a luxfer_x_params_init a type: using XParams = Params<luxfer_x_params, luxfer_x_params_init>;")
+    "and of each struct of settings a type: using XParams = Params<luxfer_x_params, LUXFER_STRUCT_X_PARAMS>;")
 endif()
 message(STATUS "all ${count} functions of include/luxfer.h are called by the C++ wrapper")

@@ -29,7 +29,7 @@ pub fn message(context: *mut luxfer_context) -> String {
 
 pub fn view(width: u32, height: u32, pixels: &mut [f32]) -> luxfer_image_view {
     let mut view = unsafe { std::mem::zeroed::<luxfer_image_view>() };
-    assert_eq!(unsafe { luxfer_image_view_init(&mut view, size_of_val(&view)) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_init(LUXFER_STRUCT_IMAGE_VIEW, (&raw mut view).cast(), size_of_val(&view)) }, LUXFER_OK);
     luxfer_image_view { width, height, byte_size: size_of_val(pixels), data: pixels.as_mut_ptr().cast(), ..view }
 }
 
@@ -45,8 +45,11 @@ pub fn scene(context: *mut luxfer_context) -> *mut luxfer_scene {
     let mut material = unsafe { std::mem::zeroed::<luxfer_material_params>() };
     let mut mesh = unsafe { std::mem::zeroed::<luxfer_mesh_params>() };
     unsafe {
-        assert_eq!(luxfer_material_params_init(&mut material, size_of_val(&material)), LUXFER_OK);
-        assert_eq!(luxfer_mesh_params_init(&mut mesh, size_of_val(&mesh)), LUXFER_OK);
+        assert_eq!(
+            luxfer_init(LUXFER_STRUCT_MATERIAL_PARAMS, (&raw mut material).cast(), size_of_val(&material)),
+            LUXFER_OK
+        );
+        assert_eq!(luxfer_init(LUXFER_STRUCT_MESH_PARAMS, (&raw mut mesh).cast(), size_of_val(&mesh)), LUXFER_OK);
         assert_eq!(luxfer_scene_add_material(scene, &material, null_mut()), LUXFER_OK);
         material.emission = [100.0; 3];
         assert_eq!(luxfer_scene_add_material(scene, &material, null_mut()), LUXFER_OK);

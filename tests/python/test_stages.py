@@ -383,7 +383,7 @@ class Scenes(Case):
         with self.assertRaisesRegex(errors.InvalidArgument, "element 1 of mesh.colours"):
             scene.add_mesh(corners, triangle, colours=colours * [1, 2, 1, 1])
         with self.assertRaisesRegex(errors.NotFound, "mesh 1 has no colours"):
-            scene._call("read_mesh_colours", 1, 3, None)
+            scene._call("read_vertices", 1, luxfer.abi.LUXFER_VERTEX_COLOUR, 3, None)
 
     def test_arrays_go_in_and_come_out(self):
         vertices = np.zeros(4, [("p", "f4", 3), ("n", "f4", 3), ("t", "f4", 2), ("pad", "u1", 4)])  # as hosts interleave them

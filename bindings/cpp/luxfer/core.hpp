@@ -77,7 +77,7 @@ Result<std::string> get_text(luxfer_context *context, luxfer_status (*function)(
 
 } // namespace detail
 
-using ContextParams = Params<luxfer_context_params, luxfer_context_params_init>;
+using ContextParams = Params<luxfer_context_params, LUXFER_STRUCT_CONTEXT_PARAMS>;
 
 /// Owns the worker threads, a memory budget and the error messages; all other objects are created in it. See
 /// luxfer_context.

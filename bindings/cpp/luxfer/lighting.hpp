@@ -7,11 +7,11 @@
 
 namespace luxfer {
 
-using LampsParams = Params<luxfer_lamps_params, luxfer_lamps_params_init>;
-using ImportanceParams = Params<luxfer_importance_params, luxfer_importance_params_init>;
-using FalseColourParams = Params<luxfer_false_colour_params, luxfer_false_colour_params_init>;
-using LuminaireParams = Params<luxfer_luminaire_params, luxfer_luminaire_params_init>;
-using PlacementParams = Params<luxfer_placement_params, luxfer_placement_params_init>;
+using LampsParams = Params<luxfer_lamps_params, LUXFER_STRUCT_LAMPS_PARAMS>;
+using ImportanceParams = Params<luxfer_importance_params, LUXFER_STRUCT_IMPORTANCE_PARAMS>;
+using FalseColourParams = Params<luxfer_false_colour_params, LUXFER_STRUCT_FALSE_COLOUR_PARAMS>;
+using LuminaireParams = Params<luxfer_luminaire_params, LUXFER_STRUCT_LUMINAIRE_PARAMS>;
+using PlacementParams = Params<luxfer_placement_params, LUXFER_STRUCT_PLACEMENT_PARAMS>;
 
 /// Solves for the powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
 class Lamps : public Handle<luxfer_lamps> {

@@ -10,10 +10,10 @@
 
 namespace luxfer {
 
-using RectifyParams = Params<luxfer_rectify_params, luxfer_rectify_params_init>;
-using FeaturesParams = Params<luxfer_features_params, luxfer_features_params_init>;
-using SegmentParams = Params<luxfer_segment_params, luxfer_segment_params_init>;
-using EmissionParams = Params<luxfer_emission_params, luxfer_emission_params_init>;
+using RectifyParams = Params<luxfer_rectify_params, LUXFER_STRUCT_RECTIFY_PARAMS>;
+using FeaturesParams = Params<luxfer_features_params, LUXFER_STRUCT_FEATURES_PARAMS>;
+using SegmentParams = Params<luxfer_segment_params, LUXFER_STRUCT_SEGMENT_PARAMS>;
+using EmissionParams = Params<luxfer_emission_params, LUXFER_STRUCT_EMISSION_PARAMS>;
 
 /// Finds lines, vanishing points and the camera, and unwarps a plane to a frontal view. See luxfer_rectify.
 class Rectify : public Handle<luxfer_rectify> {

@@ -10,7 +10,7 @@
 namespace luxfer {
 
 /// The goal of a plan: set exactly one of its fields.
-using PlanParams = Params<luxfer_plan_params, luxfer_plan_params_init>;
+using PlanParams = Params<luxfer_plan_params, LUXFER_STRUCT_PLAN_PARAMS>;
 
 /// Chooses settings for a given error or time, and predicts both. See luxfer_plan.
 class Plan : public Handle<luxfer_plan> {

@@ -8,11 +8,11 @@
 
 namespace luxfer {
 
-using RenderParams = Params<luxfer_render_params, luxfer_render_params_init>;
-using RenderPart = Params<luxfer_render_part, luxfer_render_part_init>;
-using IlluminanceParams = Params<luxfer_illuminance_params, luxfer_illuminance_params_init>;
-using IlluminanceGrid = Params<luxfer_illuminance_grid, luxfer_illuminance_grid_init>;
-using RelightParams = Params<luxfer_relight_params, luxfer_relight_params_init>;
+using RenderParams = Params<luxfer_render_params, LUXFER_STRUCT_RENDER_PARAMS>;
+using RenderPart = Params<luxfer_render_part, LUXFER_STRUCT_RENDER_PART>;
+using IlluminanceParams = Params<luxfer_illuminance_params, LUXFER_STRUCT_ILLUMINANCE_PARAMS>;
+using IlluminanceGrid = Params<luxfer_illuminance_grid, LUXFER_STRUCT_ILLUMINANCE_GRID>;
+using RelightParams = Params<luxfer_relight_params, LUXFER_STRUCT_RELIGHT_PARAMS>;
 
 /// A path tracer; its current image can be read while its job runs. See luxfer_render.
 class Render : public Handle<luxfer_render> {

@@ -8,13 +8,13 @@
 
 namespace luxfer {
 
-using MaterialParams = Params<luxfer_material_params, luxfer_material_params_init>;
-using CameraParams = Params<luxfer_camera_params, luxfer_camera_params_init>;
-using LightParams = Params<luxfer_light_params, luxfer_light_params_init>;
-using SceneLoadParams = Params<luxfer_scene_load_params, luxfer_scene_load_params_init>;
+using MaterialParams = Params<luxfer_material_params, LUXFER_STRUCT_MATERIAL_PARAMS>;
+using CameraParams = Params<luxfer_camera_params, LUXFER_STRUCT_CAMERA_PARAMS>;
+using LightParams = Params<luxfer_light_params, LUXFER_STRUCT_LIGHT_PARAMS>;
+using SceneLoadParams = Params<luxfer_scene_load_params, LUXFER_STRUCT_SCENE_LOAD_PARAMS>;
 
 /// A mesh of packed arrays, which must live until it is added. Arrays with strides are set in the C struct's fields.
-struct MeshParams : Params<luxfer_mesh_params, luxfer_mesh_params_init> {
+struct MeshParams : Params<luxfer_mesh_params, LUXFER_STRUCT_MESH_PARAMS> {
     MeshParams() noexcept = default;
 
     /// Three numbers per vertex, three indices per triangle.
@@ -198,24 +198,17 @@ public:
     }
     Result<std::string> mesh_name(std::uint32_t index) const { return text(luxfer_scene_get_mesh_name, index); }
 
-    /// Copies into packed arrays: positions and normals, three numbers per vertex, and indices, three per triangle.
-    /// Leave arrays empty that you do not need.
-    Result<> read_mesh(std::uint32_t index, Span<float> positions, Span<float> normals, Span<std::uint32_t> indices) const {
-        std::size_t vertices = std::max(positions.size(), normals.size()) / 3;
-        if (!positions.empty() && !normals.empty())
-            vertices = std::min(positions.size(), normals.size()) / 3;
-        return call(luxfer_scene_read_mesh, index, vertices, positions.data(), normals.data(), indices.size() / 3,
-                    indices.data());
+    /// Copies an attribute of the vertices into a packed array: two numbers per vertex for texture coordinates, four for
+    /// colours, else three.
+    Result<> read_vertices(std::uint32_t index, luxfer_vertex_attribute attribute, Span<float> values) const {
+        const bool is_uv = attribute == LUXFER_VERTEX_UV_0 || attribute == LUXFER_VERTEX_UV_1;
+        const std::size_t numbers = is_uv ? 2 : attribute == LUXFER_VERTEX_COLOUR ? 4 : 3;
+        return call(luxfer_scene_read_vertices, index, attribute, values.size() / numbers, values.data());
     }
 
-    /// Copies a set of texture coordinates, two numbers per vertex.
-    Result<> read_mesh_uvs(std::uint32_t index, std::uint32_t uv_set, Span<float> uvs) const {
-        return call(luxfer_scene_read_mesh_uvs, index, uv_set, uvs.size() / 2, uvs.data());
-    }
-
-    /// Copies the colours of the vertices, four numbers per vertex.
-    Result<> read_mesh_colours(std::uint32_t index, Span<float> colours) const {
-        return call(luxfer_scene_read_mesh_colours, index, colours.size() / 4, colours.data());
+    /// Copies the vertex indices of the triangles, three per triangle.
+    Result<> read_triangles(std::uint32_t index, Span<std::uint32_t> indices) const {
+        return call(luxfer_scene_read_triangles, index, indices.size() / 3, indices.data());
     }
 
     Result<luxfer_material_params> material(std::uint32_t index) const {

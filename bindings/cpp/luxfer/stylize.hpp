@@ -7,11 +7,11 @@
 
 namespace luxfer {
 
-using GuidesParams = Params<luxfer_guides_params, luxfer_guides_params_init>;
-using SheetParams = Params<luxfer_sheet_params, luxfer_sheet_params_init>;
+using GuidesParams = Params<luxfer_guides_params, LUXFER_STRUCT_GUIDES_PARAMS>;
+using SheetParams = Params<luxfer_sheet_params, LUXFER_STRUCT_SHEET_PARAMS>;
 
 /// The settings of a stylisation; a LUXFER_STYLIZE_ preset sets them all.
-struct StylizeParams : Params<luxfer_stylize_params, luxfer_stylize_params_init> {
+struct StylizeParams : Params<luxfer_stylize_params, LUXFER_STRUCT_STYLIZE_PARAMS> {
     StylizeParams() noexcept = default;
 
     /// Any other value than a preset is refused when the settings are used.

@@ -9,9 +9,9 @@
 namespace luxfer {
 
 /// Its pointers to the settings of the stages must live until start() returns.
-using TransferParams = Params<luxfer_transfer_params, luxfer_transfer_params_init>;
-using PatternParams = Params<luxfer_pattern_params, luxfer_pattern_params_init>;
-using DemoPhotoParams = Params<luxfer_demo_photo_params, luxfer_demo_photo_params_init>;
+using TransferParams = Params<luxfer_transfer_params, LUXFER_STRUCT_TRANSFER_PARAMS>;
+using PatternParams = Params<luxfer_pattern_params, LUXFER_STRUCT_PATTERN_PARAMS>;
+using DemoPhotoParams = Params<luxfer_demo_photo_params, LUXFER_STRUCT_DEMO_PHOTO_PARAMS>;
 
 /// Lights a scene as in a photo, from the photo and a few strokes. See luxfer_transfer.
 class Transfer : public Handle<luxfer_transfer> {

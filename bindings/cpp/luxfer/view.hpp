@@ -70,9 +70,9 @@ struct Rgb {
 /// A versioned struct of the C header that starts with the library's defaults. It is the C struct: set its fields,
 /// which the C header documents. (If its initialisation fails, its size stays 0, and the call that receives it refuses
 /// it.)
-template <class C, luxfer_status (*init)(C *, std::size_t)>
+template <class C, luxfer_struct_type which>
 struct Params : C {
-    Params() noexcept : C() { init(this, sizeof(C)); }
+    Params() noexcept : C() { luxfer_init(which, static_cast<C *>(this), sizeof(C)); }
 };
 
 namespace detail {
@@ -93,7 +93,7 @@ constexpr luxfer_sample sample_of() {
 
 /// Pixels to read from: `ConstImageView(pixels, width, height, channels)` for any container of packed samples. Set
 /// strides, flags, colour space and half floats in the fields of its base, luxfer_image_view.
-struct ConstImageView : Params<luxfer_image_view, luxfer_image_view_init> {
+struct ConstImageView : Params<luxfer_image_view, LUXFER_STRUCT_IMAGE_VIEW> {
     ConstImageView() noexcept = default;
 
     template <class Pixels>

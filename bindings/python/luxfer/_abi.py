@@ -26,6 +26,34 @@ LUXFER_INTERNAL = 10
 LUXFER_DEGENERATE = 11
 LUXFER_NOT_FOUND = 12
 LUXFER_UNREACHABLE = 13
+LUXFER_STRUCT_CONTEXT_PARAMS = 0
+LUXFER_STRUCT_IMAGE_VIEW = 1
+LUXFER_STRUCT_SCENE_LOAD_PARAMS = 2
+LUXFER_STRUCT_MATERIAL_PARAMS = 3
+LUXFER_STRUCT_MESH_PARAMS = 4
+LUXFER_STRUCT_CAMERA_PARAMS = 5
+LUXFER_STRUCT_LIGHT_PARAMS = 6
+LUXFER_STRUCT_LUMINAIRE_PARAMS = 7
+LUXFER_STRUCT_RENDER_PARAMS = 8
+LUXFER_STRUCT_RECTIFY_PARAMS = 9
+LUXFER_STRUCT_FEATURES_PARAMS = 10
+LUXFER_STRUCT_SEGMENT_PARAMS = 11
+LUXFER_STRUCT_EMISSION_PARAMS = 12
+LUXFER_STRUCT_RELIGHT_PARAMS = 13
+LUXFER_STRUCT_PATTERN_PARAMS = 14
+LUXFER_STRUCT_TRANSFER_PARAMS = 15
+LUXFER_STRUCT_ILLUMINANCE_PARAMS = 16
+LUXFER_STRUCT_ILLUMINANCE_GRID = 17
+LUXFER_STRUCT_LAMPS_PARAMS = 18
+LUXFER_STRUCT_IMPORTANCE_PARAMS = 19
+LUXFER_STRUCT_PLACEMENT_PARAMS = 20
+LUXFER_STRUCT_FALSE_COLOUR_PARAMS = 21
+LUXFER_STRUCT_GUIDES_PARAMS = 22
+LUXFER_STRUCT_STYLIZE_PARAMS = 23
+LUXFER_STRUCT_SHEET_PARAMS = 24
+LUXFER_STRUCT_PLAN_PARAMS = 25
+LUXFER_STRUCT_RENDER_PART = 26
+LUXFER_STRUCT_DEMO_PHOTO_PARAMS = 27
 LUXFER_VIEW_BOTTOM_UP = 1
 LUXFER_SAMPLE_U8 = 0
 LUXFER_SAMPLE_U16 = 1
@@ -68,6 +96,11 @@ LUXFER_LIGHTS_POINT = 4
 LUXFER_LIGHTS_SPOT = 8
 LUXFER_LIGHTS_DIRECTIONAL = 16
 LUXFER_LIGHTS_ENVIRONMENT = 32
+LUXFER_VERTEX_POSITION = 0
+LUXFER_VERTEX_NORMAL = 1
+LUXFER_VERTEX_UV_0 = 2
+LUXFER_VERTEX_UV_1 = 3
+LUXFER_VERTEX_COLOUR = 4
 LUXFER_CANDIDATE_OBJECT = 0
 LUXFER_CANDIDATE_MATERIAL = 1
 LUXFER_RENDER_BEAUTY = 0
@@ -119,10 +152,6 @@ LUXFER_SEGMENT_UNSEEN = 2
 LUXFER_SUBJECT_AUTO = 0
 LUXFER_SUBJECT_SURFACE = 1
 LUXFER_SUBJECT_LAMPS = 2
-LUXFER_EMISSION_TEXTURE = 0
-LUXFER_EMISSION_MASK = 1
-LUXFER_EMISSION_EXEMPLAR_METADATA = 2
-LUXFER_EMISSION_METADATA = 3
 LUXFER_LAW_BEST = 0
 LUXFER_LAW_CORRELATION = 1
 LUXFER_LAW_LATTICE = 2
@@ -130,6 +159,10 @@ LUXFER_LAW_ROW = 3
 LUXFER_LAW_WHOLE = 4
 LUXFER_LAW_FREE = 5
 LUXFER_LAW_COPY = 6
+LUXFER_EMISSION_TEXTURE = 0
+LUXFER_EMISSION_MASK = 1
+LUXFER_EMISSION_EXEMPLAR_METADATA = 2
+LUXFER_EMISSION_METADATA = 3
 LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_FIT_MEAN = 0
@@ -356,6 +389,7 @@ class luxfer_context_params(Structure):
         ("num_threads", c_uint32),
         ("memory_budget_mib", c_uint64),
     ]
+    struct_type = LUXFER_STRUCT_CONTEXT_PARAMS
 
 
 class luxfer_image_view(Structure):
@@ -376,6 +410,7 @@ class luxfer_image_view(Structure):
         ("data", c_void_p),
     ]
     enumerations: dict[str, type] = {"sample": types.Sample, "colour_space": types.ColourSpace, "flags": types.View}
+    struct_type = LUXFER_STRUCT_IMAGE_VIEW
 
 
 class luxfer_photo_metadata(Structure):
@@ -439,6 +474,7 @@ class luxfer_scene_load_params(Structure):
         ("allow_external_files", c_uint32),
         ("unit", c_double),
     ]
+    struct_type = LUXFER_STRUCT_SCENE_LOAD_PARAMS
 
 
 class luxfer_material_params(Structure):
@@ -460,6 +496,7 @@ class luxfer_material_params(Structure):
         ("normal_scale", c_float),
     ]
     enumerations: dict[str, type] = {"alpha_mode": types.AlphaMode}
+    struct_type = LUXFER_STRUCT_MATERIAL_PARAMS
 
 
 class luxfer_texture_use(Structure):
@@ -497,6 +534,7 @@ class luxfer_mesh_params(Structure):
         ("colours", c_void_p),
         ("colour_stride", c_size_t),
     ]
+    struct_type = LUXFER_STRUCT_MESH_PARAMS
 
 
 class luxfer_camera_params(Structure):
@@ -510,6 +548,7 @@ class luxfer_camera_params(Structure):
         ("up", c_float * 3),
         ("reserved", c_uint32),
     ]
+    struct_type = LUXFER_STRUCT_CAMERA_PARAMS
 
 
 class luxfer_distribution_report(Structure):
@@ -542,6 +581,7 @@ class luxfer_light_params(Structure):
         ("reserved", c_uint32),
     ]
     enumerations: dict[str, type] = {"kind": types.LightKind}
+    struct_type = LUXFER_STRUCT_LIGHT_PARAMS
 
 
 class luxfer_luminaire_params(Structure):
@@ -556,6 +596,7 @@ class luxfer_luminaire_params(Structure):
         ("c0", c_float * 3),
         ("colour", c_float * 3),
     ]
+    struct_type = LUXFER_STRUCT_LUMINAIRE_PARAMS
 
 
 class luxfer_ray(Structure):
@@ -654,6 +695,7 @@ class luxfer_render_params(Structure):
         ("preview", c_float),
         ("relative_error", c_float),
     ]
+    struct_type = LUXFER_STRUCT_RENDER_PARAMS
 
 
 class luxfer_render_report(Structure):
@@ -688,6 +730,7 @@ class luxfer_rectify_params(Structure):
         ("seed", c_uint64),
     ]
     enumerations: dict[str, type] = {"detector": types.Lines, "search": types.Search, "metric": types.Metric}
+    struct_type = LUXFER_STRUCT_RECTIFY_PARAMS
 
 
 class luxfer_rectify_report(Structure):
@@ -728,6 +771,7 @@ class luxfer_features_params(Structure):
         ("far_plane", c_float),
         ("normal_radius", c_uint32),
     ]
+    struct_type = LUXFER_STRUCT_FEATURES_PARAMS
 
 
 class luxfer_features_report(Structure):
@@ -758,6 +802,7 @@ class luxfer_segment_params(Structure):
         ("reserved", c_uint32),
     ]
     enumerations: dict[str, type] = {"subject": types.Subject}
+    struct_type = LUXFER_STRUCT_SEGMENT_PARAMS
 
 
 class luxfer_segment_report(Structure):
@@ -800,6 +845,7 @@ class luxfer_emission_params(Structure):
         ("max_magnification", c_double),
     ]
     enumerations: dict[str, type] = {"law": types.EmissionLaw}
+    struct_type = LUXFER_STRUCT_EMISSION_PARAMS
 
 
 class luxfer_emission_report(Structure):
@@ -851,6 +897,7 @@ class luxfer_relight_params(Structure):
         ("seed", c_uint64),
     ]
     enumerations: dict[str, type] = {"quantity": types.Quantity, "fit": types.Fit}
+    struct_type = LUXFER_STRUCT_RELIGHT_PARAMS
 
 
 class luxfer_relight_report(Structure):
@@ -885,6 +932,7 @@ class luxfer_pattern_params(Structure):
         ("margin", c_double),
     ]
     enumerations: dict[str, type] = {"scale": types.PatternScale}
+    struct_type = LUXFER_STRUCT_PATTERN_PARAMS
 
 
 class luxfer_transfer_params(Structure):
@@ -906,6 +954,7 @@ class luxfer_transfer_params(Structure):
         ("pattern", POINTER(luxfer_pattern_params)),
     ]
     enumerations: dict[str, type] = {"target": types.Target}
+    struct_type = LUXFER_STRUCT_TRANSFER_PARAMS
 
 
 class luxfer_transfer_report(Structure):
@@ -972,18 +1021,6 @@ class luxfer_warning(Structure):
     result = types.Warning
 
 
-class luxfer_illuminance_params(Structure):
-    """Settings of the calculation."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("columns", c_uint32),
-        ("rows", c_uint32),
-        ("samples", c_uint32),
-        ("seed", c_uint64),
-    ]
-
-
 class luxfer_illuminance_grid(Structure):
     """A calculation grid."""
 
@@ -995,6 +1032,20 @@ class luxfer_illuminance_grid(Structure):
         ("normal", c_float * 3),
         ("reserved", c_uint32),
     ]
+    struct_type = LUXFER_STRUCT_ILLUMINANCE_GRID
+
+
+class luxfer_illuminance_params(Structure):
+    """Settings of the calculation."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("columns", c_uint32),
+        ("rows", c_uint32),
+        ("samples", c_uint32),
+        ("seed", c_uint64),
+    ]
+    struct_type = LUXFER_STRUCT_ILLUMINANCE_PARAMS
 
 
 class luxfer_illuminance_report(Structure):
@@ -1029,6 +1080,7 @@ class luxfer_lamps_params(Structure):
         ("seed", c_uint64),
     ]
     enumerations: dict[str, type] = {"group": types.Group}
+    struct_type = LUXFER_STRUCT_LAMPS_PARAMS
 
 
 class luxfer_lamps_report(Structure):
@@ -1104,6 +1156,7 @@ class luxfer_importance_params(Structure):
         ("seed", c_uint64),
     ]
     enumerations: dict[str, type] = {"quantity": types.Quantity}
+    struct_type = LUXFER_STRUCT_IMPORTANCE_PARAMS
 
 
 class luxfer_importance_report(Structure):
@@ -1137,6 +1190,7 @@ class luxfer_placement_params(Structure):
         ("seed", c_uint64),
     ]
     enumerations: dict[str, type] = {"aim": types.Aim}
+    struct_type = LUXFER_STRUCT_PLACEMENT_PARAMS
 
 
 class luxfer_placement(Structure):
@@ -1182,6 +1236,7 @@ class luxfer_false_colour_params(Structure):
         ("maximum", c_double),
     ]
     enumerations: dict[str, type] = {"scale": types.Scale, "unit": types.Unit}
+    struct_type = LUXFER_STRUCT_FALSE_COLOUR_PARAMS
 
 
 class luxfer_mixture(Structure):
@@ -1239,6 +1294,7 @@ class luxfer_guides_params(Structure):
         ("smooth", c_uint32),
         ("seed", c_uint64),
     ]
+    struct_type = LUXFER_STRUCT_GUIDES_PARAMS
 
 
 class luxfer_stylize_params(Structure):
@@ -1272,6 +1328,7 @@ class luxfer_stylize_params(Structure):
         ("reserved", c_uint32),
     ]
     enumerations: dict[str, type] = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
+    struct_type = LUXFER_STRUCT_STYLIZE_PARAMS
 
 
 class luxfer_stylize_report(Structure):
@@ -1330,6 +1387,7 @@ class luxfer_sheet_params(Structure):
         ("margin", c_double),
         ("contrast", c_double),
     ]
+    struct_type = LUXFER_STRUCT_SHEET_PARAMS
 
 
 class luxfer_sheet_report(Structure):
@@ -1354,6 +1412,7 @@ class luxfer_plan_params(Structure):
         ("target_error", c_float),
         ("reserved", c_uint32),
     ]
+    struct_type = LUXFER_STRUCT_PLAN_PARAMS
 
 
 class luxfer_plan_report(Structure):
@@ -1384,6 +1443,7 @@ class luxfer_render_part(Structure):
         ("first_sample", c_uint32),
         ("samples", c_uint32),
     ]
+    struct_type = LUXFER_STRUCT_RENDER_PART
 
 
 class luxfer_demo_photo_params(Structure):
@@ -1396,6 +1456,7 @@ class luxfer_demo_photo_params(Structure):
         ("samples", c_uint32),
         ("seed", c_uint64),
     ]
+    struct_type = LUXFER_STRUCT_DEMO_PHOTO_PARAMS
 
 
 #: What each function returns, and takes: names and types.
@@ -1403,12 +1464,11 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_get_version": (c_uint32, []),
     "luxfer_get_version_string": (c_char_p, []),
     "luxfer_status_get_name": (c_char_p, [("status", c_int32)]),
-    "luxfer_context_params_init": (c_int32, [("params", POINTER(luxfer_context_params)), ("size", c_size_t)]),
+    "luxfer_init": (c_int32, [("which", c_int32), ("place", c_void_p), ("size", c_size_t)]),
     "luxfer_context_create": (c_int32, [("params", POINTER(luxfer_context_params)), ("context", POINTER(POINTER(luxfer_context)))]),
     "luxfer_context_get_last_error": (c_int32, [("context", POINTER(luxfer_context)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_retain": (c_int32, [("handle", c_void_p)]),
     "luxfer_release": (c_int32, [("handle", c_void_p)]),
-    "luxfer_image_view_init": (c_int32, [("view", POINTER(luxfer_image_view)), ("size", c_size_t)]),
     "luxfer_image_create": (c_int32, [("context", POINTER(luxfer_context)), ("view", POINTER(luxfer_image_view)), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_image_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_image_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
@@ -1432,10 +1492,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_set_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface)), ("size", c_size_t)]),
     "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
-    "luxfer_scene_load_params_init": (c_int32, [("params", POINTER(luxfer_scene_load_params)), ("size", c_size_t)]),
     "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
-    "luxfer_material_params_init": (c_int32, [("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
     "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
     "luxfer_scene_get_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
@@ -1443,8 +1501,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_set_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("role", c_int32), ("texture", c_uint32), ("uv_set", c_uint32), ("transform", POINTER(c_float))]),
     "luxfer_scene_get_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material_index", c_uint32), ("role", c_int32), ("texture_use", POINTER(luxfer_texture_use)), ("size", c_size_t)]),
     "luxfer_scene_get_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_mesh_params_init": (c_int32, [("params", POINTER(luxfer_mesh_params)), ("size", c_size_t)]),
-    "luxfer_camera_params_init": (c_int32, [("params", POINTER(luxfer_camera_params)), ("size", c_size_t)]),
     "luxfer_scene_add_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_mesh_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_add_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_camera_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
@@ -1455,22 +1511,18 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_distribution_get_report": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("report", POINTER(luxfer_distribution_report)), ("size", c_size_t)]),
     "luxfer_distribution_get_name": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_distribution_get_intensity": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("c", c_double), ("gamma", c_double), ("candela", POINTER(c_double))]),
-    "luxfer_light_params_init": (c_int32, [("params", POINTER(luxfer_light_params)), ("size", c_size_t)]),
     "luxfer_scene_add_light": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_light_params)), ("index", POINTER(c_uint32))]),
-    "luxfer_luminaire_params_init": (c_int32, [("params", POINTER(luxfer_luminaire_params)), ("size", c_size_t)]),
     "luxfer_scene_add_luminaire": (c_int32, [("scene", POINTER(luxfer_scene)), ("distribution", POINTER(luxfer_distribution)), ("params", POINTER(luxfer_luminaire_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_intersect": (c_int32, [("scene", POINTER(luxfer_scene)), ("rays", POINTER(luxfer_ray)), ("count", c_size_t), ("hits", POINTER(luxfer_hit))]),
     "luxfer_scene_get_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements)), ("size", c_size_t)]),
     "luxfer_scene_get_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_get_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("info", POINTER(luxfer_mesh_info)), ("size", c_size_t)]),
     "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_scene_read_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("vertex_capacity", c_size_t), ("positions", POINTER(c_float)), ("normals", POINTER(c_float)), ("triangle_capacity", c_size_t), ("indices", POINTER(c_uint32))]),
-    "luxfer_scene_read_mesh_uvs": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("uv_set", c_uint32), ("capacity", c_size_t), ("uvs", POINTER(c_float))]),
-    "luxfer_scene_read_mesh_colours": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("capacity", c_size_t), ("colours", POINTER(c_float))]),
+    "luxfer_scene_read_vertices": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("attribute", c_int32), ("capacity", c_size_t), ("values", POINTER(c_float))]),
+    "luxfer_scene_read_triangles": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("capacity", c_size_t), ("indices", POINTER(c_uint32))]),
     "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
     "luxfer_candidates_get_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
     "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate)), ("size", c_size_t)]),
-    "luxfer_render_params_init": (c_int32, [("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
     "luxfer_render_create": (c_int32, [("context", POINTER(luxfer_context)), ("render", POINTER(POINTER(luxfer_render)))]),
     "luxfer_render_set_scene": (c_int32, [("render", POINTER(luxfer_render)), ("scene", POINTER(luxfer_scene))]),
     "luxfer_render_set_camera": (c_int32, [("render", POINTER(luxfer_render)), ("camera", POINTER(luxfer_camera_params))]),
@@ -1488,7 +1540,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),
     "luxfer_rectify_create": (c_int32, [("context", POINTER(luxfer_context)), ("rectify", POINTER(POINTER(luxfer_rectify)))]),
     "luxfer_rectify_set_photo": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("photo", POINTER(luxfer_image))]),
     "luxfer_rectify_set_mask": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("mask", POINTER(luxfer_image))]),
@@ -1496,7 +1547,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
-    "luxfer_features_params_init": (c_int32, [("params", POINTER(luxfer_features_params)), ("size", c_size_t)]),
     "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
     "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
     "luxfer_features_set_depth": (c_int32, [("features", POINTER(luxfer_features)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
@@ -1506,7 +1556,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_features_start": (c_int32, [("features", POINTER(luxfer_features)), ("params", POINTER(luxfer_features_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_features_get_image": (c_int32, [("features", POINTER(luxfer_features)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_features_get_report": (c_int32, [("features", POINTER(luxfer_features)), ("report", POINTER(luxfer_features_report)), ("size", c_size_t)]),
-    "luxfer_segment_params_init": (c_int32, [("params", POINTER(luxfer_segment_params)), ("size", c_size_t)]),
     "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
     "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
     "luxfer_segment_set_region": (c_int32, [("segment", POINTER(luxfer_segment)), ("region", POINTER(luxfer_image))]),
@@ -1514,7 +1563,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_segment_start": (c_int32, [("segment", POINTER(luxfer_segment)), ("params", POINTER(luxfer_segment_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_segment_get_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_segment_get_report": (c_int32, [("segment", POINTER(luxfer_segment)), ("report", POINTER(luxfer_segment_report)), ("size", c_size_t)]),
-    "luxfer_emission_params_init": (c_int32, [("params", POINTER(luxfer_emission_params)), ("size", c_size_t)]),
     "luxfer_emission_create": (c_int32, [("context", POINTER(luxfer_context)), ("emission", POINTER(POINTER(luxfer_emission)))]),
     "luxfer_emission_set_exemplar": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image))]),
     "luxfer_emission_set_photo": (c_int32, [("emission", POINTER(luxfer_emission)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double))]),
@@ -1527,15 +1575,12 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_emission_clear_styles": (c_int32, [("emission", POINTER(luxfer_emission))]),
     "luxfer_emission_start_plan": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_relight_params_init": (c_int32, [("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
     "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
     "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
     "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_relight_set_constraint": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
     "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
-    "luxfer_pattern_params_init": (c_int32, [("params", POINTER(luxfer_pattern_params)), ("size", c_size_t)]),
-    "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
     "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
     "luxfer_transfer_set_photo": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("photo", POINTER(luxfer_image))]),
     "luxfer_transfer_set_depth": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
@@ -1557,19 +1602,16 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
     "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture)), ("size", c_size_t)]),
     "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
-    "luxfer_get_warnings": (c_int32, [("handle", c_void_p), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
     "luxfer_warnings_get_count": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("count", POINTER(c_uint32))]),
     "luxfer_warnings_get": (c_int32, [("warnings", POINTER(luxfer_warnings)), ("index", c_uint32), ("warning", POINTER(luxfer_warning)), ("size", c_size_t)]),
     "luxfer_warning_get_name": (c_char_p, [("code", c_int32)]),
-    "luxfer_illuminance_params_init": (c_int32, [("params", POINTER(luxfer_illuminance_params)), ("size", c_size_t)]),
-    "luxfer_illuminance_grid_init": (c_int32, [("grid", POINTER(luxfer_illuminance_grid)), ("size", c_size_t)]),
+    "luxfer_get_warnings": (c_int32, [("handle", c_void_p), ("warnings", POINTER(POINTER(luxfer_warnings)))]),
     "luxfer_illuminance_create": (c_int32, [("context", POINTER(luxfer_context)), ("illuminance", POINTER(POINTER(luxfer_illuminance)))]),
     "luxfer_illuminance_set_scene": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("scene", POINTER(luxfer_scene))]),
     "luxfer_illuminance_start_grid": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("grid", POINTER(luxfer_illuminance_grid)), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_illuminance_start_mesh": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("mesh", c_uint32), ("back", c_uint32), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_illuminance_get_image": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_illuminance_get_report": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("report", POINTER(luxfer_illuminance_report)), ("size", c_size_t)]),
-    "luxfer_lamps_params_init": (c_int32, [("params", POINTER(luxfer_lamps_params)), ("size", c_size_t)]),
     "luxfer_lamps_create": (c_int32, [("context", POINTER(luxfer_context)), ("lamps", POINTER(POINTER(luxfer_lamps)))]),
     "luxfer_lamps_set_scene": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32)]),
     "luxfer_lamps_start": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("params", POINTER(luxfer_lamps_params)), ("job", POINTER(POINTER(luxfer_job)))]),
@@ -1584,33 +1626,28 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_lamps_get_response": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("lamp", c_uint32), ("response", POINTER(luxfer_lamps_response)), ("size", c_size_t)]),
     "luxfer_lamps_get_reason": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_lamps_get_texture": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("texture", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_importance_params_init": (c_int32, [("params", POINTER(luxfer_importance_params)), ("size", c_size_t)]),
     "luxfer_importance_create": (c_int32, [("context", POINTER(luxfer_context)), ("importance", POINTER(POINTER(luxfer_importance)))]),
     "luxfer_importance_set_scene": (c_int32, [("importance", POINTER(luxfer_importance)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
     "luxfer_importance_start": (c_int32, [("importance", POINTER(luxfer_importance)), ("params", POINTER(luxfer_importance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_importance_get_image": (c_int32, [("importance", POINTER(luxfer_importance)), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_importance_respond": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("report", POINTER(luxfer_importance_report)), ("size", c_size_t)]),
     "luxfer_importance_solve": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("red", c_float), ("green", c_float), ("blue", c_float), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
-    "luxfer_placement_params_init": (c_int32, [("params", POINTER(luxfer_placement_params)), ("size", c_size_t)]),
     "luxfer_importance_start_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_importance_get_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("placement", POINTER(luxfer_placement)), ("size", c_size_t)]),
     "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
-    "luxfer_false_colour_params_init": (c_int32, [("params", POINTER(luxfer_false_colour_params)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
     "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
     "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_guides_params_init": (c_int32, [("params", POINTER(luxfer_guides_params)), ("size", c_size_t)]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),
     "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_guides_get_image": (c_int32, [("guides", POINTER(luxfer_guides)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_guides_get_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("before", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_stylize_params_init": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
     "luxfer_stylize_params_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("preset", c_int32), ("size", c_size_t)]),
     "luxfer_stylize_create": (c_int32, [("context", POINTER(luxfer_context)), ("stylize", POINTER(POINTER(luxfer_stylize)))]),
     "luxfer_stylize_set_artwork": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image))]),
@@ -1628,10 +1665,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_stylize_get_level": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("rounds", POINTER(c_uint32))]),
     "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round)), ("size", c_size_t)]),
     "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass)), ("size", c_size_t)]),
-    "luxfer_sheet_params_init": (c_int32, [("params", POINTER(luxfer_sheet_params)), ("size", c_size_t)]),
     "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
     "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report)), ("size", c_size_t)]),
-    "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
     "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
     "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_plan_start_transfer": (c_int32, [("plan", POINTER(luxfer_plan)), ("transfer", POINTER(luxfer_transfer)), ("settings", POINTER(luxfer_transfer_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
@@ -1640,7 +1675,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_plan_get_relight_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
     "luxfer_plan_start_stylize": (c_int32, [("plan", POINTER(luxfer_plan)), ("stylize", POINTER(luxfer_stylize)), ("settings", POINTER(luxfer_stylize_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_plan_get_stylize_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
-    "luxfer_render_part_init": (c_int32, [("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
     "luxfer_render_split": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("columns", c_uint32), ("rows", c_uint32), ("ranges", c_uint32), ("index", c_uint32), ("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
     "luxfer_render_start_part": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("part", POINTER(luxfer_render_part)), ("path", c_char_p), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_render_add_part": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
@@ -1648,7 +1682,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_start_merge": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_demo_create_scene": (c_int32, [("context", POINTER(luxfer_context)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_demo_create_artwork": (c_int32, [("guides", POINTER(luxfer_guides)), ("style", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_demo_photo_params_init": (c_int32, [("params", POINTER(luxfer_demo_photo_params)), ("size", c_size_t)]),
     "luxfer_demo_photo_create": (c_int32, [("context", POINTER(luxfer_context)), ("demo", POINTER(POINTER(luxfer_demo_photo)))]),
     "luxfer_demo_photo_start": (c_int32, [("demo", POINTER(luxfer_demo_photo)), ("params", POINTER(luxfer_demo_photo_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_demo_photo_get_image": (c_int32, [("demo", POINTER(luxfer_demo_photo)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),

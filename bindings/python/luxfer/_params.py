@@ -108,9 +108,9 @@ def fill(struct: type[ctypes.Structure], values: Mapping[str, Any], keep: list[A
     """A struct with the library's defaults, and `values` over them. Keep `keep` until the call that takes it is done."""
     params = struct()
     name = struct.__name__
-    status = getattr(library, f"{name}_init")(params, ctypes.sizeof(params))
+    status = library.luxfer_init(vars(struct)["struct_type"], ctypes.byref(params), ctypes.sizeof(params))
     if status != _abi.LUXFER_OK:
-        raise RuntimeError(f"{name}_init: the package and the library do not fit together")
+        raise RuntimeError(f"{name}: the package and the library do not fit together")
     update(params, values, keep, prefix)
     return params
 

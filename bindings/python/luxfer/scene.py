@@ -268,26 +268,20 @@ class Scene(Handle):
     def mesh_arrays(self, index: int) -> dict[str, NDArray[Any]]:
         """Copies of a mesh's "positions", "indices" and, if it has them, "normals", "uvs", "uvs1" and "colours"."""
         info = self.mesh(index)
-        out: dict[str, NDArray[Any]] = {"positions": np.empty((info.vertex_count, 3), np.float32)}
-        if info.has_normals:
-            out["normals"] = np.empty((info.vertex_count, 3), np.float32)
-        out["indices"] = np.empty((info.triangle_count, 3), np.uint32)
-        self._call(
-            "read_mesh",
-            index,
-            info.vertex_count,
-            *(_arrays.pointer(out.get(k), ctypes.c_float) for k in ("positions", "normals")),
-            info.triangle_count,
-            _arrays.pointer(out["indices"], ctypes.c_uint32),
-        )
-        for uv_set, name in enumerate(("uvs", "uvs1")):
-            if info.uv_sets >> uv_set & 1:
-                out[name] = np.empty((info.vertex_count, 2), np.float32)
+        attributes = {
+            "positions": (_abi.LUXFER_VERTEX_POSITION, 3, True),
+            "normals": (_abi.LUXFER_VERTEX_NORMAL, 3, info.has_normals),
+            "uvs": (_abi.LUXFER_VERTEX_UV_0, 2, info.uv_sets & 1),
+            "uvs1": (_abi.LUXFER_VERTEX_UV_1, 2, info.uv_sets & 2),
+            "colours": (_abi.LUXFER_VERTEX_COLOUR, 4, info.has_colours),
+        }
+        out: dict[str, NDArray[Any]] = {"indices": np.empty((info.triangle_count, 3), np.uint32)}
+        self._call("read_triangles", index, info.triangle_count, _arrays.pointer(out["indices"], ctypes.c_uint32))
+        for name, (attribute, numbers, exists) in attributes.items():
+            if exists:
+                out[name] = np.empty((info.vertex_count, numbers), np.float32)
                 pointer = _arrays.pointer(out[name], ctypes.c_float)
-                self._call("read_mesh_uvs", index, uv_set, info.vertex_count, pointer)
-        if info.has_colours:
-            out["colours"] = np.empty((info.vertex_count, 4), np.float32)
-            self._call("read_mesh_colours", index, info.vertex_count, _arrays.pointer(out["colours"], ctypes.c_float))
+                self._call("read_vertices", index, attribute, info.vertex_count, pointer)
         return out
 
     # -- questions

@@ -151,6 +151,21 @@ class LightKind(IntEnum):
     """A directional light: shines from infinitely far away."""
 
 
+class VertexAttribute(IntEnum):
+    """An attribute of the vertices of a mesh."""
+
+    POSITION = 0
+    """Positions, three floats per vertex."""
+    NORMAL = 1
+    """Normals, three floats per vertex."""
+    UV_0 = 2
+    """The first set of texture coordinates, two floats per vertex."""
+    UV_1 = 3
+    """The second set of texture coordinates, two floats per vertex."""
+    COLOUR = 4
+    """Colours, four floats per vertex."""
+
+
 class CandidateKind(IntEnum):
     """What a candidate is."""
 
@@ -322,7 +337,7 @@ class EmissionLaw(IntEnum):
     """The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly
     better."""
     CORRELATION = 1
-    """The law that the correlation of the lights tells, by min_regularity."""
+    """The law that the correlation of the lights shows, by min_regularity."""
     LATTICE = 2
     """A lattice of two periods."""
     ROW = 3
@@ -349,6 +364,18 @@ class EmissionImage(IntEnum):
     """Metadata of the result, with these channels."""
 
 
+class Constraint(IntEnum):
+    """Whether light should equal its target value, or stay above or below it."""
+
+    EQUAL = 0
+    """The light should equal the value."""
+    AT_LEAST = 1
+    """The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a
+    photo shows."""
+    AT_MOST = 2
+    """The light should be at most the value, as a limit against glare."""
+
+
 class Quantity(IntEnum):
     """Quantity that should match the photo."""
 
@@ -367,18 +394,6 @@ class Fit(IntEnum):
     """Every point of the target surface, by least squares, as gradient descent on texels does. Bright points
     count more, so the emission is dimmer than with Fit.MEAN: by the factor 1 / (1 + CV²) without other light,
     where CV is the coefficient of variation of the response over the target."""
-
-
-class Constraint(IntEnum):
-    """Whether light should equal its target value, or stay above or below it."""
-
-    EQUAL = 0
-    """The light should equal the value."""
-    AT_LEAST = 1
-    """The light should be at least the value, as a standard requires on a desk, or as a clipped channel of a
-    photo shows."""
-    AT_MOST = 2
-    """The light should be at most the value, as a limit against glare."""
 
 
 class Outcome(IntEnum):
@@ -409,15 +424,6 @@ class PatternScale(IntEnum):
     """The width of the surface: it shows as many lamps across as the plane in the photo."""
 
 
-class Target(IntEnum):
-    """The part of the photo that gives the colour to match."""
-
-    SURFACE = 0
-    """The plane that carries the lights, without the lights and their halo."""
-    WHOLE_IMAGE = 1
-    """The whole photo."""
-
-
 class Stage(IntEnum):
     """A stage of the transfer."""
 
@@ -439,6 +445,15 @@ class Stage(IntEnum):
     """Solves for the colour and intensity of the emission."""
     RENDER = 7
     """Renders the picture."""
+
+
+class Target(IntEnum):
+    """The part of the photo that gives the colour to match."""
+
+    SURFACE = 0
+    """The plane that carries the lights, without the lights and their halo."""
+    WHOLE_IMAGE = 1
+    """The whole photo."""
 
 
 class TransferImage(IntEnum):
@@ -1673,7 +1688,7 @@ class Fixture:
     cct: float
     """Correlated colour temperature in kelvin; 0 for a lamp that is off."""
     duv: float
-    """Distance from the blackbody in the CIE 1960 diagram."""
+    """Distance from the blackbody locus in the CIE 1960 diagram."""
 
 
 @dataclass(frozen=True)
@@ -1700,19 +1715,6 @@ class Warning:
     """The remedy."""
 
 
-class IlluminanceParams(TypedDict, total=False):
-    """Settings of the calculation."""
-
-    columns: int
-    """Points along the first edge or texture coordinate, in [1, 65536]; default 32."""
-    rows: int
-    """Points along the second, in [1, 65536]; default 32."""
-    samples: int
-    """Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024."""
-    seed: int
-    """Seed of the paths; default 1."""
-
-
 class IlluminanceGrid(TypedDict, total=False):
     """A calculation grid."""
 
@@ -1725,6 +1727,19 @@ class IlluminanceGrid(TypedDict, total=False):
     """Edge of the grid along which the rows are counted, in metres; default (0, 0, 1)."""
     normal: Sequence[float]
     """Normal of the side that receives the light; any length but 0; default (0, 1, 0)."""
+
+
+class IlluminanceParams(TypedDict, total=False):
+    """Settings of the calculation."""
+
+    columns: int
+    """Points along the first edge or texture coordinate, in [1, 65536]; default 32."""
+    rows: int
+    """Points along the second, in [1, 65536]; default 32."""
+    samples: int
+    """Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024."""
+    seed: int
+    """Seed of the paths; default 1."""
 
 
 @dataclass(frozen=True)
@@ -1865,7 +1880,7 @@ class ImportanceReport:
     paths: int
     """Number of paths of the map."""
     response: tuple[float, float, float]
-    """Mean radiance of the target from the texture, in cd/m² per channel, as the values of the texture."""
+    """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]

@@ -142,7 +142,7 @@ fn other_light_that_is_too_bright_is_named() {
     let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
     let goals = [goal(Place::Surface(FLOOR), Vec3::ONE)];
     let responses = respond(&world, &lamps, &goals);
-    let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
+    let params = GroupParams { colour: Colour::PerChannel, ..GroupParams::default() };
     let solution = powers(&responses, &goals, &params).unwrap();
     assert!(solution.scale.iter().all(|x| *x == DVec3::ZERO));
     assert_eq!(solution.outcomes[0].status, [TargetStatus::TooBright; 3]);
@@ -165,7 +165,7 @@ fn every_reason_for_a_missed_goal_is_reported() {
         let responses = respond(world, &lamps, goals);
         powers(&responses, goals, params).unwrap().unreachable.unwrap_or_default()
     };
-    let (kept, free) = (GroupParams::default(), GroupParams { colour: Colour::Free, ..GroupParams::default() });
+    let (kept, free) = (GroupParams::default(), GroupParams { colour: Colour::PerChannel, ..GroupParams::default() });
     let floor = |target| Goal { quantity: Quantity::Outgoing, ..goal(Place::Surface(FLOOR), target) };
     // A floor that absorbs red reflects none of it.
     let mut redless = (**world.scene()).clone();
@@ -218,7 +218,7 @@ fn lux_are_luminance() {
     assert_eq!((outcome.status, &solution.unreachable), ([TargetStatus::Met; 3], &None));
     let illuminance = std::f32::consts::PI * crate::image::colour::luminance(outcome.achieved.as_vec3());
     assert!((illuminance - 500.0).abs() < 0.1 && outcome.achieved.x > 1.05 * outcome.achieved.z, "{outcome:?}");
-    let free = GroupParams { colour: Colour::Free, ..GroupParams::default() };
+    let free = GroupParams { colour: Colour::PerChannel, ..GroupParams::default() };
     assert_eq!(powers(&responses, &[lux], &free).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
@@ -347,7 +347,7 @@ fn free_colours_meet_a_coloured_goal() {
     let target = Vec3::new(30.0, 20.0, 10.0);
     let goals = [goal(Place::Surface(FLOOR), target)];
     let responses = respond(&world, &lamps, &goals);
-    let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
+    let params = GroupParams { colour: Colour::PerChannel, ..GroupParams::default() };
     let solution = powers(&responses, &goals, &params).unwrap();
     let achieved = solution.outcomes[0].achieved;
     assert!(((achieved / target.as_dvec3()) - 1.0).abs().max_element() < 1e-6, "{achieved}");

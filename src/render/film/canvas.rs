@@ -55,7 +55,7 @@ impl<'a> Canvas<'a> {
                 let (light, others) = sums.pixel(part.x + x, part.y + y);
                 *pixel = Pixel::of_sums(light, part.samples);
                 if let Some(layers) = layers {
-                    layers.keep_sums(tile, i, others);
+                    layers.set_totals(tile, i, others);
                 }
             }
         })?;

@@ -6,7 +6,7 @@ use super::grid::{AREA, Grid};
 use super::pass::Pass;
 use super::pixel::{Pixel, REPLICATIONS, paths_of_replication};
 use super::roulette::RouletteWeights;
-use crate::render::layers::{Kept, Layers};
+use crate::render::layers::{Layers, TileTotals};
 use crate::render::path::PathLength;
 use crate::render::world::World;
 use glam::DVec3;
@@ -36,7 +36,7 @@ pub struct Tile<'a> {
     pixels: &'a mut [Pixel],
     roulette: Option<RouletteWeights>,
     /// The totals of its layers.
-    kept: Option<Kept<'a>>,
+    totals: Option<TileTotals<'a>>,
     tracer: BlockTracer<'a>,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Tile<'a> {
             number,
             pixels,
             roulette,
-            kept: layers.map(|l| l.kept(number)),
+            totals: layers.map(|l| l.totals(number)),
             tracer: BlockTracer::new(layers),
         }
     }
@@ -95,8 +95,8 @@ impl<'a> Tile<'a> {
             let seed = seed_of(seed, at, replication);
             paths(world, eye, at, length, (seed, indices), recorder.as_deref_mut(), discarded)
         });
-        if let (Some(recorder), Some(kept)) = (recorder, &mut self.kept) {
-            recorder.keep(kept, pixel);
+        if let (Some(recorder), Some(totals)) = (recorder, &mut self.totals) {
+            recorder.add_to_totals(totals, pixel);
         }
     }
 
@@ -118,8 +118,8 @@ impl<'a> Tile<'a> {
                 let sums = self.tracer.paths(world, eye, &members, indices.clone(), discard);
                 for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                     self.pixels[member.pixel].add(replication, sum);
-                    if let (Some(recorders), Some(kept)) = (self.tracer.recorders(), &mut self.kept) {
-                        recorders[k].keep(kept, member.pixel);
+                    if let (Some(recorders), Some(totals)) = (self.tracer.recorders(), &mut self.totals) {
+                        recorders[k].add_to_totals(totals, member.pixel);
                     }
                 }
             }

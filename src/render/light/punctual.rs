@@ -24,7 +24,7 @@ pub enum Punctual {
 
 /// Dependence of the intensity on the direction.
 pub enum Shape {
-    Even,
+    Isotropic,
     Cone(Cone),
     Measured(Measured),
 }
@@ -48,7 +48,7 @@ impl Punctual {
     /// `distributions` are those of the scene.
     pub fn new(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Self {
         match *light {
-            PunctualLight::Point { position, intensity } => Self::Near { position, intensity, shape: Shape::Even },
+            PunctualLight::Point { position, intensity } => Self::Near { position, intensity, shape: Shape::Isotropic },
             PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                 let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
                 let axis = direction.normalize_or_zero();
@@ -127,7 +127,7 @@ impl Shape {
     /// Factor on the intensity in a unit direction: a share, or the candelas of a measured luminaire.
     pub fn factor(&self, direction: Vec3) -> f32 {
         match self {
-            Self::Even => 1.0,
+            Self::Isotropic => 1.0,
             Self::Cone(cone) => cone.share(direction),
             Self::Measured(measured) => measured.candela(direction),
         }

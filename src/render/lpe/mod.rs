@@ -9,13 +9,17 @@
 //!
 //! | event | |
 //! |---|---|
-//! | `<type mode labels>` | e.g. `<RD>`, `<TS'pane'>`, `<L.'Ceiling'>`; each part is a letter, `.` for any, `[..]`, `[^..]` |
+//! | `<type mode labels>` | such as `<RD>`, `<TS'pane'>`, `<L.'Lamp'>`; each part is a letter, `.` for any, `[..]`, `[^..]` |
 //! | types | `R` reflection, `T` transmission, `V` volume (never occurs here); `L` `O` `B` lights; `C` the camera |
 //! | modes | `D` diffuse, `G` glossy, `S` mirror or clear pane, `s` clear pane (straight) |
-//! | labels | names of objects (meshes) or of their materials; for lights also `light0`, `light1`, ... for punctual lights in scene order, and `environment`; `Name#0`, `Name#1`, ... for the lamps of the emission texture of the object or material Name: its connected patches, ordered by their first texels |
+//! | labels | names of objects (meshes), materials and lights |
 //! | `D`, `R`, `L`, `'x'` | short for `<.D>`, `<R.>`, `<L.>`, `<..'x'>` |
 //! | `.` `[DS]` `[^D]` | any event, one of these, any except these |
 //! | `*` `+` `?` `{n}` `{n,}` `{n,m}` `\|` `( )` | as in any regular expression |
+//!
+//! Labels of lights are the names of their objects and materials, `light0`, `light1`, ... for punctual lights in the
+//! order of the scene, and `environment`. `Name#0`, `Name#1`, ... are the lamps of the emission texture of the object or
+//! material Name: its connected patches, ordered by their first texels.
 //!
 //! An event must match all of several labels: `<RD'Floor''Wood'>`. A label that does not exist in the scene is an
 //! error, since a black image would hide the mistake; excluded labels (`[^'coat']`) need not exist. In Open Shading

@@ -1,0 +1,37 @@
+//! Warnings of an object
+//!
+//! Stages, transfers and scenes have warnings.
+
+use super::guard::guard;
+use super::kinds::Kind;
+use super::status::{LUXFER_INVALID_ARGUMENT, LUXFER_OK, luxfer_status};
+use super::warning::luxfer_warnings;
+use crate::error::Error;
+use std::ffi::c_void;
+
+/// Gets the warnings about the result of an object. handle is one of:
+/// - a luxfer_transfer: the warnings of all stages that have a result, in their order;
+/// - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
+/// - a luxfer_features;
+/// - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
+/// - a luxfer_emission: about the texture; a plan has no warnings;
+/// - a luxfer_relight;
+/// - a luxfer_scene: an implausible size, and features of its file that are not rendered.
+///
+/// The caller releases *warnings. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);
+/// LUXFER_INVALID_ARGUMENT if handle is of another kind.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_get_warnings(
+    handle: *mut c_void,
+    warnings: *mut *mut luxfer_warnings,
+) -> luxfer_status {
+    let mut list = LUXFER_INVALID_ARGUMENT;
+    let status = guard(|| {
+        let create = Kind::find(handle)?.create_warnings;
+        let create = create.ok_or_else(|| Error::argument("the handle is of a kind of object that has no warnings"))?;
+        list = create(handle, warnings);
+        Ok(())
+    });
+    if status == LUXFER_OK { list } else { status }
+}
