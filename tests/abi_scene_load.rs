@@ -47,13 +47,8 @@ impl Drop for Folder {
 }
 
 fn params() -> luxfer_scene_load_params {
-    let mut params = luxfer_scene_load_params {
-        struct_size: 0,
-        allow_external_files: 7,
-        unit: 7.0,
-        keep_origin: 7,
-        reserved: 7,
-    };
+    let mut params =
+        luxfer_scene_load_params { struct_size: 0, allow_external_files: 7, unit: 7.0, keep_origin: 7, reserved: 7 };
     assert_eq!(unsafe { luxfer_scene_load_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
     assert_eq!((params.allow_external_files, params.unit), (0, 1.0));
     params
@@ -189,8 +184,7 @@ fn a_scene_on_a_national_grid_has_an_origin_of_its_own() {
     let mut scene = null_mut();
     let wrong = luxfer_scene_load_params { keep_origin: 2, ..params() };
     unsafe {
-        let status =
-            luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), &wrong, &mut scene);
+        let status = luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), &wrong, &mut scene);
         assert_eq!(status, LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("keep_origin is 2"), "{}", message(context));
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);

@@ -644,6 +644,13 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_PROPOSED 24
 
 /**
+ * A scene lies far from the origin. If its positions are relative to an origin of its own (luxfer_scene_get_origin),
+ * the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
+ * large that floats have rounded them, it is the step of the rounding in metres.
+ */
+#define LUXFER_WARNING_FAR_FROM_ORIGIN 25
+
+/**
  * Gets the warnings about the result of an object. handle is one of:
  * - a luxfer_transfer: the warnings of all stages that have a result, in their order;
  * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;

@@ -10,7 +10,8 @@ impl Scene {
     /// A hash of everything in the scene except its cameras. Different scenes collide with probability 2^-64; it
     /// offers no protection against forgery. It may change between versions of the library.
     pub fn fingerprint(&self) -> u64 {
-        let Self { origin, meshes, materials, textures, lights, distributions, environment, cameras: _, unrendered: _ } = self;
+        let Self { origin, meshes, materials, textures, lights, distributions, environment, cameras: _, unrendered: _ } =
+            self;
         let mut digest = Digest(0);
         for Mesh { name, material, positions, normals, uvs: [first, second], colours, triangles } in meshes {
             digest.text(&(name, material));

@@ -16,9 +16,8 @@ pub fn detail(points: &[DVec3]) -> Option<(DVec3, f64)> {
         values.sort_unstable_by(f64::total_cmp);
         values[((values.len() - 1) as f64 * share) as usize]
     };
-    let median = DVec3::from_array(std::array::from_fn(|axis| {
-        at(&mut points.iter().map(|p| p[axis]).collect::<Vec<_>>(), 0.5)
-    }));
+    let median =
+        DVec3::from_array(std::array::from_fn(|axis| at(&mut points.iter().map(|p| p[axis]).collect::<Vec<_>>(), 0.5)));
     let reach = at(&mut points.iter().map(|p| (*p - median).abs().max_element()).collect::<Vec<_>>(), NEAR_SHARE);
     Some((median, reach))
 }

@@ -195,6 +195,7 @@ LUXFER_WARNING_NOT_RENDERED = 21
 LUXFER_WARNING_DIM_LAMPS = 22
 LUXFER_WARNING_NO_PATTERN = 23
 LUXFER_WARNING_PROPOSED = 24
+LUXFER_WARNING_FAR_FROM_ORIGIN = 25
 LUXFER_ILLUMINANCE_LUX = 0
 LUXFER_ILLUMINANCE_ERROR = 1
 LUXFER_GROUP_ALL = 0
@@ -438,6 +439,8 @@ class luxfer_scene_load_params(Structure):
         ("struct_size", c_uint32),
         ("allow_external_files", c_uint32),
         ("unit", c_double),
+        ("keep_origin", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -650,7 +653,7 @@ class luxfer_render_params(Structure):
         ("time_budget_ms", c_uint32),
         ("seed", c_uint64),
         ("pixel_error", c_float),
-        ("bounce_error", c_float),
+        ("reserved", c_uint32),
         ("preview", c_float),
         ("relative_error", c_float),
     ]
@@ -1435,6 +1438,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_load_params_init": (c_int32, [("params", POINTER(luxfer_scene_load_params)), ("size", c_size_t)]),
     "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_get_origin": (c_int32, [("scene", POINTER(luxfer_scene)), ("x", POINTER(c_double)), ("y", POINTER(c_double)), ("z", POINTER(c_double))]),
     "luxfer_material_params_init": (c_int32, [("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
     "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),

@@ -45,11 +45,8 @@ fn a_file_is_read_to_a_hair_at_ten_thousand_kilometres() {
     }
     // A scene near the origin, or larger than its distance, keeps its coordinates.
     assert_eq!(import(&placed(DVec3::splat(200.0)), None).unwrap().origin, DVec3::ZERO);
-    let kept = super::super::import(
-        &placed(DVec3::splat(1e5)),
-        None,
-        Options { keep_origin: true, ..Options::default() },
-    );
+    let kept =
+        super::super::import(&placed(DVec3::splat(1e5)), None, Options { keep_origin: true, ..Options::default() });
     let kept = kept.unwrap();
     assert_eq!((kept.origin, kept.meshes[0].positions[1].x), (DVec3::ZERO, 100_001.25));
 }
