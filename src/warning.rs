@@ -58,10 +58,12 @@ pub enum Code {
     NoPattern = 23,
     /// Mask: it is a proposal, since there were no strokes.
     Proposed = 24,
+    /// Scene: it lies far from the origin of its coordinates.
+    FarFromOrigin = 25,
 }
 
 impl Code {
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -86,6 +88,7 @@ impl Code {
         Self::DimLamps,
         Self::NoPattern,
         Self::Proposed,
+        Self::FarFromOrigin,
     ];
 }
 

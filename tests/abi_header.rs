@@ -492,7 +492,7 @@ layouts! {
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
-    luxfer_scene_load_params: struct_size allow_external_files unit;
+    luxfer_scene_load_params: struct_size allow_external_files unit keep_origin reserved;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
@@ -522,7 +522,7 @@ layouts! {
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour kind;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo
         flat_triangles;
-    luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error bounce_error
+    luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error reserved
         preview relative_error;
     luxfer_render_report: struct_size samples error discarded preview_bias relative_error;
     luxfer_render_part: struct_size x y width height first_sample samples;

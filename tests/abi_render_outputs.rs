@@ -203,14 +203,14 @@ fn mean(values: &[f32]) -> f64 {
 }
 
 #[test]
-fn previews_and_bounds_on_bounces_are_asked_for() {
+fn previews_are_asked_for() {
     let context = context(2);
     let scene = scene(context);
     let render = made(|out| unsafe { luxfer_render_create(context, out) });
     let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
     unsafe {
         assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
-        assert_eq!((params.preview, params.bounce_error), (0.0, 0.0));
+        assert_eq!((params.preview, params.reserved), (0.0, 0));
         params = luxfer_render_params { width: 32, height: 24, samples: 16, ..params };
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
         assert_eq!(luxfer_render_set_aovs(render, LUXFER_AOV_LUMINANCE), LUXFER_OK);
@@ -229,17 +229,12 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
         assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_OK);
         assert_eq!(count, 1, "only what was asked for");
 
-        // In a closed room of albedo up to 0.84, little light is left after the needed number of bounces, and much
-        // after one.
+        // In a closed room of albedo up to 0.84, little light is left after some tens of bounces.
         let mut needed = std::mem::zeroed::<luxfer_requirements>();
         assert_eq!(luxfer_scene_get_requirements(scene, 0.01, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert!((10..40).contains(&needed.bounces), "{}", needed.bounces);
-        let (most, _) = rendered(render, &luxfer_render_params { bounce_error: 0.01, ..params });
-        let (least, _) = rendered(render, &luxfer_render_params { bounce_error: 0.99, ..params });
-        assert!((mean(&most) / mean(&beauty) - 1.0).abs() < 0.03, "{} of {}", mean(&most), mean(&beauty));
-        assert!(mean(&least) < 0.7 * mean(&beauty));
         for wrong in [
-            luxfer_render_params { bounce_error: 1.0, ..params },
+            luxfer_render_params { reserved: 1, ..params },
             luxfer_render_params { preview: -1.0, ..params },
             luxfer_render_params { relative_error: f32::NAN, ..params },
         ] {

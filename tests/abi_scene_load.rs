@@ -47,7 +47,8 @@ impl Drop for Folder {
 }
 
 fn params() -> luxfer_scene_load_params {
-    let mut params = luxfer_scene_load_params { struct_size: 0, allow_external_files: 7, unit: 7.0 };
+    let mut params =
+        luxfer_scene_load_params { struct_size: 0, allow_external_files: 7, unit: 7.0, keep_origin: 7, reserved: 7 };
     assert_eq!(
         unsafe { luxfer_init(LUXFER_STRUCT_SCENE_LOAD_PARAMS, (&raw mut params).cast(), size_of_val(&params)) },
         LUXFER_OK
@@ -144,4 +145,51 @@ fn settings_out_of_range_are_refused() {
     assert_eq!(load(luxfer_scene_load_params { struct_size: 3, ..params() }), LUXFER_INVALID_ARGUMENT);
     assert!(scene.is_null());
     assert_eq!(unsafe { luxfer_release(context.cast()) }, LUXFER_OK);
+}
+
+#[test]
+fn a_scene_on_a_national_grid_has_an_origin_of_its_own() {
+    let context = context(1);
+    // A triangle 300 km east and 5,000 km south of the origin.
+    let file = br#"{ "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0, "translation": [300000.125, 0, -5000000.5] }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+        "buffers": [{ "byteLength": 40, "uri":
+            "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA==" }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": 36, "byteLength": 4 }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5121, "count": 3, "type": "SCALAR" }] }"#;
+    let load = |params: &luxfer_scene_load_params| {
+        made(|out| unsafe { luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), params, out) })
+    };
+    let read = |scene: *mut luxfer_scene| {
+        let (mut at, mut positions) = ([9.0f64; 3], [0.0f32; 9]);
+        unsafe {
+            let [x, y, z] = &mut at;
+            assert_eq!(luxfer_scene_get_origin(scene, x, y, z), LUXFER_OK);
+            assert_eq!(luxfer_scene_get_origin(scene, null_mut(), y, z), LUXFER_INVALID_ARGUMENT);
+            assert_eq!(
+                luxfer_scene_read_vertices(scene, 0, LUXFER_VERTEX_POSITION, 3, positions.as_mut_ptr()),
+                LUXFER_OK
+            );
+        }
+        let codes: Vec<_> = warnings(scene).iter().map(|w| w.0).collect();
+        unsafe { assert_eq!(luxfer_release(scene.cast()), LUXFER_OK) };
+        (at, positions, codes)
+    };
+    let (at, positions, codes) = read(load(&params()));
+    assert_eq!(codes, [LUXFER_WARNING_FAR_FROM_ORIGIN]);
+    assert_eq!(at.map(|v| v % 256.0), [0.0; 3]);
+    assert_eq!(at[0] + f64::from(positions[3]), 300_001.125);
+    assert_eq!(at[2] + f64::from(positions[2]), -5_000_000.5);
+    let (at, positions, codes) = read(load(&luxfer_scene_load_params { keep_origin: 1, ..params() }));
+    assert_eq!((at, positions[3], codes), ([0.0; 3], 300_001.13, vec![LUXFER_WARNING_FAR_FROM_ORIGIN]));
+    let mut scene = null_mut();
+    let wrong = luxfer_scene_load_params { keep_origin: 2, ..params() };
+    unsafe {
+        let status = luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), &wrong, &mut scene);
+        assert_eq!(status, LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("keep_origin is 2"), "{}", message(context));
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
 }

@@ -17,8 +17,6 @@ const REDUCED: usize = 2;
 const STRANGE: f32 = 1e-3;
 /// Least albedo that light is divided by, as the noise filter has it.
 const MIN_ALBEDO: f32 = 0.02;
-/// Share of the light after which paths end: rooms come out a little darker than they would be.
-const MAX_LOST: f32 = 0.15;
 /// How strongly noise is smoothed.
 const SMOOTHING: f32 = 1.5;
 /// Rays across and down a pixel that shows more than one thing, and one that shows a pattern. [convention]
@@ -69,7 +67,6 @@ impl Scattered {
                 width: shot.width / REDUCED,
                 height: shot.height / REDUCED,
                 samples: PATHS,
-                bounce_error: MAX_LOST,
                 seed: 2 * seed + half,
                 outputs,
                 ..render::Params::default()

@@ -50,12 +50,8 @@ typedef struct luxfer_render_params {
      * 0: no target.
      */
     float pixel_error;
-    /**
-     * Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light that
-     * surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the number of
-     * bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased.
-     */
-    float bounce_error;
+    /** Must be 0. */
+    uint32_t reserved;
     /**
      * Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default
      * 0: no preview, as for final images. It does not change the other images.

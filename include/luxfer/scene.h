@@ -98,7 +98,7 @@ luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
                                       size_t size);
 
 /**
- * Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
+ * Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each in [0, 1e15];
  * or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
  * image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
  * right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
@@ -112,7 +112,7 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            float blue);
 
 /**
- * Sets the emission of a material: red, green and blue in cd/m², each finite and >= 0. An emission texture of the
+ * Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. An emission texture of the
  * material is multiplied by it. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
@@ -136,7 +136,7 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
 /**
  * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
  * luxfer_scene_find_surface finds by name. The surface becomes a separate mesh, index *mesh, with a copy of its
- * material, index *material, that emits texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material
+ * material, index *material, that emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. mesh and material
  * may be NULL. Any thread.
  * As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -171,6 +171,14 @@ typedef struct luxfer_scene_load_params {
      * leaves intensities and luminances as they are. 0.001: the file is in millimetres.
      */
     double unit;
+    /**
+     * 0, the default: positions of a scene that lies far from the origin of its file, as on a national grid, are
+     * relative to an origin of the scene's own, which luxfer_scene_get_origin gives; 1: they keep the origin of the
+     * file, and are rounded to floats there.
+     */
+    uint32_t keep_origin;
+    /** Must be 0. */
+    uint32_t reserved;
 } luxfer_scene_load_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
@@ -201,6 +209,18 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const char *base_path,
                                        const luxfer_scene_load_params *params,
                                        luxfer_scene **scene);
+
+/**
+ * Gets the origin of a scene's positions in the coordinates of its file, x, y and z in metres: 0 for scenes near the
+ * origin, for scenes that were created, and with keep_origin. All positions that this library takes and gives are
+ * relative to it, such as those of vertices, cameras, lights, rays and measuring grids. A host that has positions in
+ * the coordinates of the file subtracts it, in doubles. An exported file has the coordinates of the loaded file. Any
+ * thread.
+ */
+luxfer_status luxfer_scene_get_origin(luxfer_scene *scene,
+                                      double *x,
+                                      double *y,
+                                      double *z);
 
 /* ====================================================================================================================
  * Materials
@@ -761,8 +781,7 @@ typedef struct luxfer_requirements {
     uint32_t textures;
     /**
      * Number of bounces that matter: light that is scattered more often is at most the share error, given in the call,
-     * of all light that surfaces scatter. 0 if the albedos give no bound. The renderer ends paths there only if
-     * luxfer_render_params.bounce_error is set.
+     * of all light that surfaces scatter. 0 if the albedos give no bound. It informs: no render ends paths there.
      */
     uint32_t bounces;
     /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */

@@ -186,7 +186,7 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
 ) -> luxfer_status {
     enter(plan, |stage| {
         let (object, scene, camera) = handle::borrow_in(stage.context(), render, "render")?.inputs().view()?;
-        let settings = params::read(settings)?.params();
+        let settings = params::read(settings)?.params()?;
         settings.check()?;
         let goal = params::read_required(params)?.goal()?;
         stage.start(job, move |(), _, job| {

@@ -14,7 +14,7 @@ use super::scene::{SceneObject, luxfer_scene, missing};
 use super::scene_parts::luxfer_camera_params;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::image::Image;
 use crate::job::{Job, Monitor};
 use crate::render::{self, Film, Outputs, World, parts};
@@ -68,10 +68,8 @@ pub struct luxfer_render_params {
     /// out of 20. A block receives at most 64 times samples paths per pixel, even if it then misses the target. Default
     /// 0: no target.
     pub pixel_error: f32,
-    /// Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light that
-    /// surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the number of
-    /// bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased.
-    pub bounce_error: f32,
+    /// Must be 0.
+    pub reserved: u32,
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more. Default
     /// 0: no preview, as for final images. It does not change the other images.
     pub preview: f32,
@@ -94,26 +92,26 @@ impl luxfer_render_params {
             time_budget_ms: d.time_budget_ms,
             seed: d.seed,
             pixel_error: d.pixel_error,
-            bounce_error: d.bounce_error,
+            reserved: 0,
             preview: d.preview,
             relative_error: d.relative_error,
         }
     }
 
-    pub(super) fn params(&self) -> render::Params {
-        render::Params {
+    pub(super) fn params(&self) -> Result<render::Params> {
+        check_range("reserved", self.reserved, 0, 0)?;
+        Ok(render::Params {
             width: self.width as usize,
             height: self.height as usize,
             samples: self.samples,
             target_error: self.target_error,
             pixel_error: self.pixel_error,
             time_budget_ms: self.time_budget_ms,
-            bounce_error: self.bounce_error,
             preview: self.preview,
             relative_error: self.relative_error,
             seed: self.seed,
             ..render::Params::default()
-        }
+        })
     }
 }
 
@@ -168,7 +166,7 @@ impl Inputs {
     /// The same with settings, as one rendering; params may be NULL for the defaults.
     pub(super) fn shot(&self, params: *const luxfer_render_params) -> Result<Shot> {
         let (object, scene, camera) = self.view()?;
-        let params = render::Params { outputs: self.outputs.clone(), ..params::read(params)?.params() };
+        let params = render::Params { outputs: self.outputs.clone(), ..params::read(params)?.params()? };
         Ok(Shot { object, scene, camera, params })
     }
 }

@@ -81,7 +81,7 @@ pub unsafe extern "C" fn luxfer_render_split(
 ) -> luxfer_status {
     enter(render, |_| {
         let out = Report::new(part, size)?;
-        let part = Part::split(&params::read(params)?.params(), [columns, rows, ranges], index)?;
+        let part = Part::split(&params::read(params)?.params()?, [columns, rows, ranges], index)?;
         out.set(luxfer_render_part {
             x: part.x as u32,
             y: part.y as u32,

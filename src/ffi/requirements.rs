@@ -50,8 +50,7 @@ pub struct luxfer_requirements {
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
     /// Number of bounces that matter: light that is scattered more often is at most the share error, given in the call,
-    /// of all light that surfaces scatter. 0 if the albedos give no bound. The renderer ends paths there only if
-    /// luxfer_render_params.bounce_error is set.
+    /// of all light that surfaces scatter. 0 if the albedos give no bound. It informs: no render ends paths there.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,

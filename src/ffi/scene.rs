@@ -17,7 +17,7 @@ use crate::image::io;
 use crate::job::{Job, Monitor};
 use crate::quiet;
 use crate::render::World;
-use crate::scene::{Environment, Scene, gltf, surface};
+use crate::scene::{Environment, Scene, check_light, gltf, surface};
 use glam::Vec3;
 use std::cell::RefCell;
 use std::ffi::{c_char, c_void};
@@ -294,7 +294,7 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
     })
 }
 
-/// Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each finite and >= 0;
+/// Sets an environment that emits the radiance (red, green, blue) from all directions, in cd/m², each in [0, 1e15];
 /// or, unless image is NULL, an equirectangular image in linear values, multiplied by them. The renderer samples an
 /// image in proportion to its brightness. The centre of the image is towards -z, its top towards +y, the centre of its
 /// right half towards +x. The image is copied. The environment replaces any earlier one. Any thread.
@@ -334,7 +334,7 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
     })
 }
 
-/// Sets the emission of a material: red, green and blue in cd/m², each finite and >= 0. An emission texture of the
+/// Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. An emission texture of the
 /// material is multiplied by it. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material.
 #[unsafe(no_mangle)]
@@ -387,7 +387,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 
 /// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
 /// luxfer_scene_find_surface finds by name. The surface becomes a separate mesh, index *mesh, with a copy of its
-/// material, index *material, that emits texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material
+/// material, index *material, that emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. mesh and material
 /// may be NULL. Any thread.
 /// As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
@@ -420,11 +420,8 @@ pub unsafe extern "C" fn luxfer_scene_place_emission(
 /// A colour that light can have.
 pub(super) fn colour(name: &str, red: f32, green: f32, blue: f32) -> Result<Vec3> {
     let colour = Vec3::new(red, green, blue);
-    if colour.is_finite() && colour.min_element() >= 0.0 {
-        Ok(colour)
-    } else {
-        Err(Error::argument(format!("{name} is ({red}, {green}, {blue}); each must be finite and not negative")))
-    }
+    check_light(name, colour)?;
+    Ok(colour)
 }
 
 /// An index into a list that is too short.

@@ -29,23 +29,36 @@ pub struct luxfer_scene_load_params {
     /// Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
     /// leaves intensities and luminances as they are. 0.001: the file is in millimetres.
     pub unit: f64,
+    /// 0, the default: positions of a scene that lies far from the origin of its file, as on a national grid, are
+    /// relative to an origin of the scene's own, which luxfer_scene_get_origin gives; 1: they keep the origin of the
+    /// file, and are rounded to floats there.
+    pub keep_origin: u32,
+    /// Must be 0.
+    pub reserved: u32,
 }
 
-const SIZE: usize = 16;
+const SIZE: usize = 24;
+/// Before keep_origin.
+const FIRST_SIZE: usize = 16;
 
 /// Units that can be meant: a micrometre to a thousand kilometres. [convention]
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
-versioned!(luxfer_scene_load_params, [SIZE], { Self { struct_size: SIZE as u32, allow_external_files: 0, unit: 1.0 } });
+versioned!(luxfer_scene_load_params, [FIRST_SIZE, SIZE], {
+    Self { struct_size: SIZE as u32, allow_external_files: 0, unit: 1.0, keep_origin: 0, reserved: 0 }
+});
 
 impl luxfer_scene_load_params {
     fn options(self, budget: &dyn gltf::Budget) -> Result<gltf::Options<'_>> {
         crate::error::check_range("allow_external_files", self.allow_external_files, 0, 1)?;
+        crate::error::check_range("keep_origin", self.keep_origin, 0, 1)?;
+        crate::error::check_range("reserved", self.reserved, 0, 0)?;
         if !UNITS.contains(&self.unit) {
             let (low, high) = (UNITS.start(), UNITS.end());
             return Err(Error::argument(format!("unit is {}; it must lie in [{low}, {high}] metres", self.unit)));
         }
-        Ok(gltf::Options { budget, unit: self.unit, is_open: self.allow_external_files == 1 })
+        let (is_open, keep_origin) = (self.allow_external_files == 1, self.keep_origin == 1);
+        Ok(gltf::Options { budget, unit: self.unit, is_open, keep_origin })
     }
 }
 
@@ -90,6 +103,28 @@ pub unsafe extern "C" fn luxfer_scene_load_memory(
         let params = params::read(params)?;
         let read = |budget: &dyn gltf::Budget| gltf::import(bytes, base, params.options(budget)?);
         out.set(handle::give(SceneObject::read(object.context(), read)?));
+        Ok(())
+    })
+}
+
+/// Gets the origin of a scene's positions in the coordinates of its file, x, y and z in metres: 0 for scenes near the
+/// origin, for scenes that were created, and with keep_origin. All positions that this library takes and gives are
+/// relative to it, such as those of vertices, cameras, lights, rays and measuring grids. A host that has positions in
+/// the coordinates of the file subtracts it, in doubles. An exported file has the coordinates of the loaded file. Any
+/// thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_get_origin(
+    scene: *mut luxfer_scene,
+    x: *mut f64,
+    y: *mut f64,
+    z: *mut f64,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let [x, y, z] = [Out::new(x, "x")?, Out::new(y, "y")?, Out::new(z, "z")?];
+        let origin = object.snapshot().origin;
+        x.set(origin.x);
+        y.set(origin.y);
+        z.set(origin.z);
         Ok(())
     })
 }

@@ -151,7 +151,7 @@ impl luxfer_transfer_params {
             target,
             white_luminance: self.white_luminance,
             relight: params::read(self.relight)?.params()?,
-            render: params::read(self.render)?.params(),
+            render: params::read(self.render)?.params()?,
         })
     }
 }

@@ -91,6 +91,10 @@ pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes on lights;
 /// the severity is the share of the mask that is expected to be wrong.
 pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
+/// A scene lies far from the origin. If its positions are relative to an origin of its own (luxfer_scene_get_origin),
+/// the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
+/// large that floats have rounded them, it is the step of the rounding in metres.
+pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
 
 /// A reason to doubt a result.
 #[repr(C)]
@@ -311,6 +315,7 @@ pub extern "C" fn luxfer_warning_get_name(code: luxfer_warning_code) -> *const c
         LUXFER_WARNING_DIM_LAMPS => c"LUXFER_WARNING_DIM_LAMPS",
         LUXFER_WARNING_NO_PATTERN => c"LUXFER_WARNING_NO_PATTERN",
         LUXFER_WARNING_PROPOSED => c"LUXFER_WARNING_PROPOSED",
+        LUXFER_WARNING_FAR_FROM_ORIGIN => c"LUXFER_WARNING_FAR_FROM_ORIGIN",
         _ => c"LUXFER_WARNING_UNKNOWN",
     };
     name.as_ptr()

@@ -1,6 +1,7 @@
 //! The triangle data that shading a hit needs, in one cache line.
 
 use crate::scene::Mesh;
+use crate::scene::origin;
 use glam::{DVec3, Vec2, Vec3};
 
 /// A triangle prepared for tracing. Coordinates are relative to the centre of the world.
@@ -23,6 +24,13 @@ pub struct Facet {
 
 /// Relative rounding error of an interpolated point: sixteen errors of 2^-24 of its largest coordinate. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
+/// Largest coordinate that counts for the offset of a free point, in metres: it clears surfaces of a building, and
+/// must not clear the walls themselves where a scene is as large as a country. [convention]
+pub const MAX_FREE_COORDINATE: f32 = 256.0;
+/// The detail of a scene is far from its other parts beyond this multiple of its own size. [convention]
+const FAR: f64 = 32.0;
+/// Number of corners of triangles that tell where the detail of a scene lies. [convention]
+const DETAIL_SAMPLES: usize = 4096;
 /// Marks a missing triangle or emitter.
 pub const NONE: u32 = u32::MAX;
 /// Flag of a varying shading normal.
@@ -101,6 +109,10 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
 /// power of two no smaller than the scene. If the scene lies at least one cell from the origin, the grid points are
 /// multiples of the spacing there, so the differences of the coordinates from a grid point are exact. A scene nearer
 /// to the origin stays in place: a translation would gain next to nothing.
+///
+/// An object that was left at the origin of a national grid makes a scene as large as its distance. If most triangles
+/// lie close together and far from the origin, the middle of these counts: their translation is exact, and only the
+/// rest is rounded, to the spacing that the building had in its file.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {
@@ -115,7 +127,20 @@ pub fn centre(meshes: &[Mesh]) -> DVec3 {
     }
     let grid = 2f64.powi(extent.log2().ceil() as i32);
     let middle = (low + high) / 2.0;
-    DVec3::select(middle.abs().cmplt(DVec3::splat(grid)), DVec3::ZERO, (middle / grid).round() * grid)
+    let whole = DVec3::select(middle.abs().cmplt(DVec3::splat(grid)), DVec3::ZERO, (middle / grid).round() * grid);
+    if whole == DVec3::ZERO { centre_of_detail(meshes).unwrap_or(whole) } else { whole }
+}
+
+/// The centre of a scene whose triangles are mostly far from the origin and close together; `None` for others.
+fn centre_of_detail(meshes: &[Mesh]) -> Option<DVec3> {
+    let count: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let triangles = meshes.iter().flat_map(|mesh| (0..mesh.triangles.len()).map(move |triangle| (mesh, triangle)));
+    let sampled = triangles.step_by((count / DETAIL_SAMPLES).max(1));
+    let corners: Vec<DVec3> = sampled.flat_map(|(mesh, triangle)| mesh.corners(triangle)).map(Vec3::as_dvec3).collect();
+    let (median, reach) = origin::detail(&corners)?;
+    let is_far = reach > 0.0 && median.abs().max_element() > FAR * reach;
+    let grid = 2f64.powi((2.0 * reach).max(f64::MIN_POSITIVE).log2().ceil() as i32);
+    is_far.then(|| (median / grid).round() * grid)
 }
 
 #[cfg(test)]

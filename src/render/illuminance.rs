@@ -125,8 +125,19 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
 
 /// The points at which light is gathered.
 enum Receivers {
-    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3, columns: usize },
-    Texels { mesh: u32, front: bool, texels: Vec<Option<(u32, Vec2)>> },
+    /// In world coordinates, in which neighbouring points differ however far away the scene is.
+    Grid {
+        origin: Vec3,
+        across: Vec3,
+        down: Vec3,
+        normal: Vec3,
+        columns: usize,
+    },
+    Texels {
+        mesh: u32,
+        front: bool,
+        texels: Vec<Option<(u32, Vec2)>>,
+    },
 }
 
 impl Receivers {
@@ -158,7 +169,7 @@ fn receivers(world: &World, place: &Place, params: &Params) -> Result<Receivers>
             }
             let (columns, rows) = (params.columns, params.rows);
             let (across, down) = (*across / columns as f32, *down / rows as f32);
-            Ok(Receivers::Grid { origin: *origin, across, down, normal: unit, columns })
+            Ok(Receivers::Grid { origin: world.from_scene(*origin), across, down, normal: unit, columns })
         }
         Place::Mesh { mesh, front } => {
             let texels = texels(world, *mesh, params)?;

@@ -102,7 +102,7 @@ pub fn irradiance_in_air<S: PathSink>(
 ) {
     let normal = normal.normalize_or_zero();
     if normal != Vec3::ZERO && position.is_finite() {
-        let vertex = Vertex::free(world, position, normal);
+        let vertex = Vertex::free(world, world.from_scene(position), normal);
         path::gather(world, &vertex, true, &mut Sampler::new(seed, sample), &mut path::Contributions(sink));
     }
 }

@@ -25,10 +25,6 @@ pub struct Params {
     pub relative_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
-    /// End every path when its remaining bounces carry at most this share of all scattered light, in `[0, 1)`
-    /// ([`super::Requirements::bounces`]); the image is too dark by up to that share. 0 = never: only Russian roulette
-    /// ends paths.
-    pub bounce_error: f32,
     /// Strength of the filter that makes [`super::Film::preview`] (`denoise`), in `[0, 10]`, usually 1; 0 = no
     /// preview, for final images.
     pub preview: f32,
@@ -47,7 +43,6 @@ impl Default for Params {
             pixel_error: 0.0,
             relative_error: 0.0,
             time_budget_ms: 0,
-            bounce_error: 0.0,
             preview: 0.0,
             seed: 1,
             outputs: Outputs::default(),
@@ -64,7 +59,6 @@ impl Params {
         check_range("target_error", self.target_error, 0.0, f32::MAX)?;
         check_range("pixel_error", self.pixel_error, 0.0, f32::MAX)?;
         check_range("relative_error", self.relative_error, 0.0, f32::MAX)?;
-        check_range("bounce_error", self.bounce_error, 0.0, 1.0f32.next_down())?;
         check_range("preview", self.preview, 0.0, 10.0)?;
         Ok(())
     }

@@ -3,7 +3,7 @@
 //!
 //! Values range over the material factors times the texels of their textures; only materials of meshes with triangles
 //! count. Tracing skips whatever cannot occur, which changes no estimate. The number of bounces that matter is
-//! reported, but limits only renders that set `bounce_error`; other paths end by Russian roulette alone.
+//! reported, but limits no render: paths end by Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -231,6 +231,13 @@ impl Requirements {
             self.surfaces = true;
             self.textured_surfaces |= !emission.is_constant();
         }
+    }
+
+    /// Takes back the emission of surfaces if no part of any has an area that emits, as of a lamp whose lit texels lie
+    /// outside its triangles. `pieces` is the number of parts that emit.
+    pub fn keep_surfaces_that_emit(&mut self, pieces: usize) {
+        self.surfaces &= pieces > 0;
+        self.textured_surfaces &= pieces > 0;
     }
 
     /// Counts the closed transparent meshes.

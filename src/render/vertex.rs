@@ -43,12 +43,12 @@ impl Vertex {
         }
     }
 
-    /// A free point in scene coordinates that faces along a unit normal. Its offset also clears surfaces that it may
+    /// A free point in world coordinates that faces along a unit normal. Its offset also clears surfaces that it may
     /// happen to lie in.
     pub fn free(world: &World, position: Vec3, normal: Vec3) -> Self {
         let (low, high) = world.accel().bounds();
-        let position = world.from_scene(position);
-        let largest = position.abs().max(low.abs()).max(high.abs()).max_element();
+        let extent = low.abs().max(high.abs()).max_element().min(facet::MAX_FREE_COORDINATE);
+        let largest = position.abs().max_element().max(extent);
         let (mesh, triangle, barycentric) = (NONE, NONE, Vec2::ZERO);
         Self { mesh, triangle, id: NONE, barycentric, position, normal, offset: largest * facet::OFFSET }
     }

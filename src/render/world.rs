@@ -86,6 +86,7 @@ impl World {
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
         let (mut requirements, compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
         requirements.flat_triangles = accel.dropped();
+        requirements.keep_surfaces_that_emit(lights.pieces());
         let any_see_through = requirements.glass || requirements.alpha;
         job.report(1.0);
         Ok(Self {
@@ -292,6 +293,7 @@ fn check(scene: &Scene) -> Result<()> {
     for (i, texture) in scene.textures.iter().enumerate() {
         check_image(&texture.image).map_err(|e| e.within(format!("texture {i} ({:?})", texture.name)))?;
     }
+    scene.check_brightness()?;
     match &scene.environment {
         Some(Environment::Image(image)) => check_image(image).map_err(|e| e.within("environment")),
         Some(Environment::Constant(c)) if !c.is_finite() => {

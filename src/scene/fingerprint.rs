@@ -3,13 +3,15 @@
 use super::{Environment, Mesh, Scene, Texture};
 use crate::image::Image;
 use crate::rng;
+use glam::DVec3;
 use std::fmt::{self, Debug, Write};
 
 impl Scene {
     /// A hash of everything in the scene except its cameras. Different scenes collide with probability 2^-64; it
     /// offers no protection against forgery. It may change between versions of the library.
     pub fn fingerprint(&self) -> u64 {
-        let Self { meshes, materials, textures, lights, distributions, environment, cameras: _, unrendered: _ } = self;
+        let Self { origin, meshes, materials, textures, lights, distributions, environment, cameras: _, unrendered: _ } =
+            self;
         let mut digest = Digest(0);
         for Mesh { name, material, positions, normals, uvs: [first, second], colours, triangles } in meshes {
             digest.text(&(name, material));
@@ -25,6 +27,9 @@ impl Scene {
             digest.image(image);
         }
         digest.text(&(materials, lights, distributions));
+        if *origin != DVec3::ZERO {
+            digest.text(origin);
+        }
         match environment {
             None => digest.text(&"dark"),
             Some(Environment::Constant(radiance)) => digest.text(radiance),
@@ -98,7 +103,8 @@ mod tests {
         let original = changed(&|_| ());
         let look = |s: &mut Scene| s.cameras.push(Camera::look_at(Vec3::ZERO, Vec3::Z, 1.0));
         assert_eq!(original, changed(&look));
-        let changes: [&dyn Fn(&mut Scene); 13] = [
+        let changes: [&dyn Fn(&mut Scene); 14] = [
+            &|s| s.origin.x = 256.0,
             &|s| s.meshes[0].name.push('x'),
             &|s| s.meshes[0].material = 1,
             &|s| s.meshes[0].positions[3].z = 1.0f32.next_up(),

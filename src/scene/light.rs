@@ -1,7 +1,24 @@
 //! Punctual lights (glTF), measured luminaires, and the environment light.
 
+use crate::error::{Error, Result};
 use crate::image::Image;
 use glam::Vec3;
+
+/// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. Squares of it, and of
+/// its multiples in pixels near a lamp, stay within the range of `f32` [rounding]. The sun's disc has 1.6e9 cd/m².
+pub const MAX_LIGHT: f32 = 1e15;
+
+/// Checks that each channel of a light lies in [0, [`MAX_LIGHT`]].
+pub fn check_light(what: &str, light: Vec3) -> Result<()> {
+    // NaN compares false and is refused.
+    if light.cmpge(Vec3::ZERO).all() && light.cmple(Vec3::splat(MAX_LIGHT)).all() {
+        return Ok(());
+    }
+    let [red, green, blue] = light.to_array();
+    Err(Error::argument(format!(
+        "{what} is ({red:e}, {green:e}, {blue:e}); each channel must lie in [0, {MAX_LIGHT:e}]"
+    )))
+}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PunctualLight {

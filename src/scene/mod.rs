@@ -5,12 +5,14 @@
 //! (directional).
 
 pub mod accel;
+mod brightness;
 pub mod camera;
 mod fingerprint;
 pub mod gltf;
 pub mod light;
 pub mod material;
 pub mod mesh;
+pub mod origin;
 pub mod surface;
 pub mod texture;
 pub mod unrendered;
@@ -18,7 +20,7 @@ mod validate;
 mod warnings;
 
 pub use camera::Camera;
-pub use light::{Environment, PunctualLight, c90};
+pub use light::{Environment, MAX_LIGHT, PunctualLight, c90, check_light};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use mesh::Mesh;
 pub use texture::{Texture, Wrap, texel_at};
@@ -26,11 +28,15 @@ pub use unrendered::Unrendered;
 pub use validate::check_place;
 
 use crate::photometry::Luminaire;
+use glam::DVec3;
 use std::sync::Arc;
 
 /// A scene description. [`Scene::validate`] checks the indices between the lists.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
+    /// The origin of all positions in the coordinates of the scene's file, in metres: f32 positions of a building on a
+    /// national grid would be rounded to centimetres.
+    pub origin: DVec3,
     pub meshes: Vec<Mesh>,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,

@@ -1,5 +1,6 @@
 //! Validates a scene before anything is built from it.
 
+use super::light::check_light;
 use super::{AlphaMode, Camera, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::image::Image;
@@ -50,13 +51,14 @@ impl Scene {
             })?;
         }
         for (i, light) in self.lights.iter().enumerate() {
-            self.check_light(light).map_err(|e| e.within(format_args!("light {i}")))?;
+            self.check_punctual(light).map_err(|e| e.within(format_args!("light {i}")))?;
         }
         for (i, camera) in self.cameras.iter().enumerate() {
             check_camera(camera).map_err(|e| e.within(format_args!("camera {i} {:?}", camera.name)))?;
         }
+        self.check_brightness()?;
         match &self.environment {
-            Some(Environment::Constant(colour)) => check_light_colour("environment", *colour),
+            Some(Environment::Constant(colour)) => check_light("environment", *colour),
             Some(Environment::Image(image)) => {
                 check_image(image).and_then(|()| check_positive(image)).map_err(|e| e.within("environment"))
             }
@@ -75,7 +77,7 @@ impl Scene {
         check_range("transmission", material.transmission, 0.0, 1.0)?;
         check_range("ior", material.ior, 1.0, f32::MAX)?;
         check_range("normal_scale", material.normal_scale, f32::MIN, f32::MAX)?;
-        check_light_colour("emission", material.emission)?;
+        check_light("emission", material.emission)?;
         self.check_reference("base_color_texture", material.base_color_texture)?;
         self.check_reference("metallic_roughness_texture", material.metallic_roughness_texture)?;
         self.check_reference("normal_texture", material.normal_texture)?;
@@ -97,22 +99,22 @@ impl Scene {
         Err(Error::argument(format!("{what}.transform is {transform}; it must be finite with the last row 0 0 1")))
     }
 
-    fn check_light(&self, light: &PunctualLight) -> Result<()> {
+    fn check_punctual(&self, light: &PunctualLight) -> Result<()> {
         match *light {
             PunctualLight::Point { position, intensity } => {
                 check_place(|| "position", position)?;
-                check_light_colour("intensity", intensity)
+                check_light("intensity", intensity)
             }
             PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                 check_place(|| "position", position)?;
                 check_unit("direction", direction)?;
-                check_light_colour("intensity", intensity)?;
+                check_light("intensity", intensity)?;
                 check_range("outer_angle", outer_angle, 0.0, FRAC_PI_2)?;
                 check_range("inner_angle", inner_angle, 0.0, outer_angle).map(|_| ())
             }
             PunctualLight::Directional { direction, illuminance } => {
                 check_unit("direction", direction)?;
-                check_light_colour("illuminance", illuminance)
+                check_light("illuminance", illuminance)
             }
             PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
                 check_place(|| "position", position)?;
@@ -120,7 +122,7 @@ impl Scene {
                 check_unit("c0", c0)?;
                 check_right_angle("axis · c0", axis.dot(c0))?;
                 check_index("its distribution", distribution, self.distributions.len(), "distributions")?;
-                check_light_colour("colour", colour)
+                check_light("colour", colour)
             }
         }
     }
@@ -217,10 +219,6 @@ fn check_colour(what: &str, colour: Vec3) -> Result<()> {
     colour.to_array().into_iter().try_for_each(|v| check_range(what, v, 0.0, 1.0).map(|_| ()))
 }
 
-fn check_light_colour(what: &str, colour: Vec3) -> Result<()> {
-    colour.to_array().into_iter().try_for_each(|v| check_range(what, v, 0.0, f32::MAX).map(|_| ()))
-}
-
 fn check_unit(what: &str, direction: Vec3) -> Result<()> {
     if (direction.length() - 1.0).abs() <= DIRECTION_TOLERANCE {
         return Ok(());
@@ -258,6 +256,7 @@ mod tests {
         };
         let material = Material { emission_texture: Some(TextureRef::new(0)), ..Material::diffuse("Oak", Vec3::ONE) };
         Scene {
+            origin: glam::DVec3::ZERO,
             meshes: vec![mesh],
             materials: vec![material],
             textures: vec![Texture::new("Grain", image)],

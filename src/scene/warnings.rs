@@ -2,7 +2,7 @@
 
 use super::Scene;
 use crate::warning::{Code, Warning};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Maximum height in metres of a plausible scene. [convention]: few interiors are higher, and rooms of 2 to 4 m would
 /// be 79 to 157 in inches, and more in smaller units.
@@ -25,6 +25,10 @@ const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimet
 /// Units of scenes that were scaled down once too often, in metres. [convention]
 const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
+/// Spacing in metres of the coordinates of vertices above which walls, lamps and panes that lie close together merge.
+/// [convention]: half a millimetre, which f32 reaches 4 km from the origin.
+pub const MAX_SPACING: f64 = 5e-4;
+
 impl Scene {
     pub fn warnings(&self) -> Vec<Warning> {
         let unrendered = self.unrendered.iter().map(|feature| {
@@ -32,7 +36,36 @@ impl Scene {
                 "compare a rendering with the program that wrote the file; bake the feature into meshes and textures";
             Warning::new(Code::NotRendered, feature.count as f64, 0.0, feature.to_string(), advice)
         });
-        self.implausible_size().into_iter().chain(unrendered).collect()
+        self.implausible_size().into_iter().chain(self.far_away()).chain(unrendered).collect()
+    }
+
+    /// A warning if positions are relative to an origin of the scene's own, or if they are so large that f32 has
+    /// rounded them.
+    fn far_away(&self) -> Option<Warning> {
+        if self.origin != DVec3::ZERO {
+            let [x, y, z] = self.origin.to_array();
+            let message = format!(
+                "the scene lies {} m from the origin of its file: positions are relative to ({x}, {y}, {z})",
+                significant(self.origin.length())
+            );
+            let advice = "subtract luxfer_scene_get_origin from positions in the coordinates of the file, or load it with \
+                          keep_origin = 1";
+            return Some(Warning::new(Code::FarFromOrigin, self.origin.length(), 0.0, message, advice));
+        }
+        let (low, high) = self.bounds()?;
+        // The coordinate along whose axis the triangles are rounded most.
+        let largest = low.abs().max(high.abs()).max_element();
+        let spacing = f64::from(largest.next_up() - largest);
+        Warning::above(
+            Code::FarFromOrigin,
+            spacing,
+            MAX_SPACING,
+            || {
+                let (far, step) = (significant(f64::from(largest)), significant(spacing * 1000.0));
+                format!("coordinates of vertices reach {far} m, where f32 rounds them to steps of {step} mm")
+            },
+            "store vertices relative to their nodes, and place the nodes by translations, or move the scene to the origin",
+        )
     }
 
     /// A warning if the extent suggests a unit other than the metre: the first of height, width and smallness.
@@ -135,6 +168,21 @@ mod tests {
             assert!(warnings[0].advice.contains(&format!("unit = {unit} ")), "{height}: {}", warnings[0]);
         }
         assert!(room(0.0027).warnings()[0].message.starts_with("the scene is 0.0027 m high"));
+    }
+
+    #[test]
+    fn a_scene_far_from_the_origin_is_noticed() {
+        let wall = |x: f32| Mesh::parallelogram(Vec3::X * x, Vec3::X * 4.0, Vec3::Y * 3.0, 0);
+        let scene = |x: f32| Scene { meshes: vec![wall(x)], ..Scene::default() };
+        assert!(scene(2000.0).warnings().is_empty());
+        let warnings = scene(1e5).warnings();
+        assert_eq!((warnings.len(), warnings[0].code, warnings[0].severity), (1, Code::FarFromOrigin, 0.0078125));
+        assert!(warnings[0].message.contains("100004 m") && warnings[0].message.contains("7.81 mm"), "{}", warnings[0]);
+        // Near its own origin, the scene is not rounded, but its coordinates are not those of its file.
+        let moved = Scene { origin: DVec3::new(3e5, 0.0, -4e5), ..scene(0.0) };
+        let warnings = moved.warnings();
+        assert_eq!((warnings[0].severity, warnings[0].limit), (5e5, 0.0));
+        assert!(warnings[0].message.contains("(300000, 0, -400000)"), "{}", warnings[0]);
     }
 
     #[test]

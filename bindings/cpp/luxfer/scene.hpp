@@ -72,6 +72,13 @@ public:
         return make_in<Scene>(context, luxfer_scene_load_memory, data, std::size(file), base_path.get(), &params);
     }
 
+    /// The origin of the scene's positions in the coordinates of its file: x, y and z in metres.
+    Result<std::array<double, 3>> origin() const {
+        std::array<double, 3> at = {};
+        const luxfer_status status = luxfer_scene_get_origin(get(), &at[0], &at[1], &at[2]);
+        return detail::finish(context().get(), status, at);
+    }
+
     /// An implausible size, and features of the scene's file that are not rendered.
     Result<Warnings> warnings() const { return make<Warnings>(luxfer_get_warnings); }
 

@@ -228,6 +228,7 @@ LUXFER_WARNING_NOT_RENDERED = 21
 LUXFER_WARNING_DIM_LAMPS = 22
 LUXFER_WARNING_NO_PATTERN = 23
 LUXFER_WARNING_PROPOSED = 24
+LUXFER_WARNING_FAR_FROM_ORIGIN = 25
 LUXFER_ILLUMINANCE_LUX = 0
 LUXFER_ILLUMINANCE_ERROR = 1
 LUXFER_GROUP_ALL = 0
@@ -473,6 +474,8 @@ class luxfer_scene_load_params(Structure):
         ("struct_size", c_uint32),
         ("allow_external_files", c_uint32),
         ("unit", c_double),
+        ("keep_origin", c_uint32),
+        ("reserved", c_uint32),
     ]
     struct_type = LUXFER_STRUCT_SCENE_LOAD_PARAMS
 
@@ -691,7 +694,7 @@ class luxfer_render_params(Structure):
         ("time_budget_ms", c_uint32),
         ("seed", c_uint64),
         ("pixel_error", c_float),
-        ("bounce_error", c_float),
+        ("reserved", c_uint32),
         ("preview", c_float),
         ("relative_error", c_float),
     ]

@@ -79,6 +79,13 @@ class Scene(Handle):
         return cls._made(context, "luxfer_scene_load_memory", data, len(data), base, settings)
 
     @property
+    def origin(self) -> tuple[float, float, float]:
+        """The origin of the scene's positions in the coordinates of its file, in metres; 0 unless the scene is far away."""
+        x, y, z = (ctypes.c_double() for _ in range(3))
+        self._call("get_origin", x, y, z)
+        return x.value, y.value, z.value
+
+    @property
     def warnings(self) -> list[StageWarning]:
         """An implausible size, and each feature of the file that is not rendered."""
         return warnings_of(self)

@@ -563,6 +563,11 @@ class WarningCode(IntEnum):
     PROPOSED = 24
     """A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes
     on lights; the severity is the share of the mask that is expected to be wrong."""
+    FAR_FROM_ORIGIN = 25
+    """A scene lies far from the origin. If its positions are relative to an origin of its own
+    (luxfer_scene_get_origin), the severity is the distance of that origin in metres, above a limit of 0; if
+    coordinates of its vertices are so large that floats have rounded them, it is the step of the rounding in
+    metres."""
 
 
 class IlluminanceImage(IntEnum):
@@ -963,6 +968,10 @@ class SceneLoadParams(TypedDict, total=False):
     unit: float
     """Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions,
     and leaves intensities and luminances as they are. 0.001: the file is in millimetres."""
+    keep_origin: int
+    """0, the default: positions of a scene that lies far from the origin of its file, as on a national grid,
+    are relative to an origin of the scene's own, which luxfer_scene_get_origin gives; 1: they keep the origin
+    of the file, and are rounded to floats there."""
 
 
 class MaterialParams(TypedDict, total=False):
@@ -1154,8 +1163,8 @@ class Requirements:
     """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
     """Number of bounces that matter: light that is scattered more often is at most the share error, given in
-    the call, of all light that surfaces scatter. 0 if the albedos give no bound. The renderer ends paths there
-    only if RenderParams.bounce_error is set."""
+    the call, of all light that surfaces scatter. 0 if the albedos give no bound. It informs: no render ends
+    paths there."""
     brightest_material: int
     """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
@@ -1238,10 +1247,6 @@ class RenderParams(TypedDict, total=False):
     divided by that luminance or by a tenth of the image's mean, whichever is larger. 0.1 means: within 10 % of
     the value, 19 times out of 20. A block receives at most 64 times samples paths per pixel, even if it then
     misses the target. Default 0: no target."""
-    bounce_error: float
-    """Limit the number of bounces so that the remaining light is at most this share, in [0, 1), of all light
-    that surfaces scatter: the image is too dark by up to that share. luxfer_scene_get_requirements gives the
-    number of bounces. Default 0: no limit; paths end by Russian roulette only, and the image is unbiased."""
     preview: float
     """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     Default 0: no preview, as for final images. It does not change the other images."""

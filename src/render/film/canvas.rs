@@ -39,7 +39,7 @@ impl<'a> Canvas<'a> {
     fn sized(world: &'a World, camera: &'a Camera, params: &'a Params, grid: Grid) -> Result<Self> {
         let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
         let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
-        let eye = Eye::new(world, camera, params);
+        let eye = Eye::new(camera, params);
         Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 

@@ -2,7 +2,7 @@
 
 use crate::render::layers::Recorder;
 use crate::render::params::Params;
-use crate::render::path::{self, MAX_BOUNCES, PathLength};
+use crate::render::path::{self, PathLength};
 use crate::render::sampler::Sampler;
 use crate::render::shared::Start;
 use crate::render::tape::Sum;
@@ -65,19 +65,16 @@ pub struct Eye {
     corner: Vec3,
     right: Vec3,
     down: Vec3,
-    /// Largest number of bounces of a path.
-    pub max_bounces: u32,
 }
 
 impl Eye {
-    pub fn new(world: &World, camera: &Camera, params: &Params) -> Self {
-        let max_bounces = world.requirements().bounces(params.bounce_error).unwrap_or(MAX_BOUNCES).min(MAX_BOUNCES);
+    pub fn new(camera: &Camera, params: &Params) -> Self {
         let aspect = params.width as f32 / params.height as f32;
         let at = |x: f32, y: f32| camera.direction(x, y, aspect);
         let corner = at(0.0, 0.0);
         let right = (at(1.0, 0.0) - corner) / params.width as f32;
         let down = (at(0.0, 1.0) - corner) / params.height as f32;
-        Self { position: camera.position, corner, right, down, max_bounces }
+        Self { position: camera.position, corner, right, down }
     }
 
     /// Starts a path: the first block of random numbers selects the point in the pixel (box filter) and the light

@@ -106,7 +106,7 @@ pub fn run(
     params.check()?;
     params::check_camera(camera)?;
     let grid = Grid { width: params.width, height: params.height };
-    let eye = Eye::new(world, camera, params);
+    let eye = Eye::new(camera, params);
     let params = &Params { seed: params.seed ^ SALT, ..params.clone() };
     let prepass = Prepass::new(world, &eye, params, job.part(0.0, 0.05))?;
     let expected = tile_moments(&prepass, grid, job.part(0.05, 0.1))?;

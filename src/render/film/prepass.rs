@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 use crate::render::params::Params;
-use crate::render::path::PathLength;
+use crate::render::path::{MAX_BOUNCES, PathLength};
 use crate::render::world::World;
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
@@ -63,7 +63,7 @@ impl<'a> Prepass<'a> {
 
     /// Samples `count` paths of a pixel.
     pub fn sample_pixel(&self, at: [usize; 2], count: u32) -> Pixel {
-        let length = PathLength { max_bounces: self.eye.max_bounces, roulette_weight: None };
+        let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: None };
         // Drop paths that are not finite, as in the image, but do not count them.
         let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));
         pixel.extend(count, |replication, indices| {

@@ -16,7 +16,7 @@ use crate::job::Job;
 use crate::render::layers::Layers;
 use crate::render::params::Params;
 use crate::render::parts::Part;
-use crate::render::path::PathLength;
+use crate::render::path::{MAX_BOUNCES, PathLength};
 use crate::render::world::World;
 use crate::scene::Camera;
 use glam::DVec3;
@@ -55,14 +55,14 @@ impl Sums {
     pub fn trace(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Self> {
         let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
         let mut sums = Self::new(part, layers.as_ref())?;
-        let eye = Eye::new(world, camera, params);
+        let eye = Eye::new(camera, params);
         let prepass = Prepass::new(world, &eye, params, job.part(0.0, 0.01))?;
         let discarded = AtomicU64::new(0);
         let Self { corner, grid, width, numbers, .. } = &mut sums;
         exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {
             let (left, top) = grid.corner(tile);
             let length = PathLength {
-                max_bounces: eye.max_bounces,
+                max_bounces: MAX_BOUNCES,
                 roulette_weight: prepass.weight([corner[0] + left, corner[1] + top]),
             };
             let mut tracer = BlockTracer::new(layers.as_ref());

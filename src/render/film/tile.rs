@@ -7,7 +7,7 @@ use super::pass::Pass;
 use super::pixel::{Pixel, REPLICATIONS, paths_of_replication};
 use super::roulette::RouletteWeights;
 use crate::render::layers::{Layers, TileTotals};
-use crate::render::path::PathLength;
+use crate::render::path::{MAX_BOUNCES, PathLength};
 use crate::render::world::World;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -83,7 +83,7 @@ impl<'a> Tile<'a> {
 
     fn length(&self, pixel: usize) -> PathLength {
         let roulette_weight = self.roulette.as_ref().map(|s| s.weight(&self.pixels[pixel]));
-        PathLength { max_bounces: self.context.eye.max_bounces, roulette_weight }
+        PathLength { max_bounces: MAX_BOUNCES, roulette_weight }
     }
 
     /// Extends the paths of a single pixel.

@@ -104,6 +104,11 @@ impl Lights {
         })
     }
 
+    /// Number of pieces of surfaces that emit.
+    pub fn pieces(&self) -> usize {
+        self.pieces
+    }
+
     /// Samples a light for a receiver: `u` selects the light; its remainder and `v` select the point on it.
     #[inline]
     pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {

@@ -29,7 +29,6 @@ impl Identity {
             ("camera", format!("{position} {forward} {up} {fov_y}")),
             ("samples", params.samples.to_string()),
             ("seed", params.seed.to_string()),
-            ("bounce_error", params.bounce_error.to_string()),
             ("emitter_as", emitter_as.to_string()),
             ("layers", layers.join(", ")),
         ];

@@ -4,6 +4,7 @@ pub(super) mod chi2;
 mod denoise;
 mod energy;
 mod extremes;
+mod far;
 mod film;
 mod illuminance;
 mod irradiance;

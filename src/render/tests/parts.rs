@@ -152,7 +152,6 @@ fn parts_that_do_not_belong_together_are_refused_by_name() {
     refused(&world, &with(&|p| p.seed = 7), &files, "seed");
     refused(&world, &with(&|p| p.samples = 9), &files, "samples");
     refused(&world, &with(&|p| p.height = 13), &files, "16 x 12");
-    refused(&world, &with(&|p| p.bounce_error = 0.1), &files, "bounce_error");
     refused(&world, &with(&|p| p.preview = 1.0), &files, "layers");
     refused(&world, &with(&|p| p.outputs.add("direct", "LDE").unwrap()), &files, "layers");
     let mut other = scene;

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A room with a table, a lamp and a point light, whose coordinates are exact even a million metres away.
-fn room(at: Vec3) -> (Scene, Camera) {
+pub(super) fn room(at: Vec3) -> (Scene, Camera) {
     let boxed = |low: Vec3, size: Vec3, material| {
         let (x, y, z) = (Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z);
         let (low, high) = (low + at, low + size + at);

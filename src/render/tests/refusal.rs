@@ -28,7 +28,6 @@ fn invalid_scenes_and_parameters_are_refused_by_name() {
         Params { samples: 0, ..Params::default() },
         Params { samples: (1 << 20) + 1, ..Params::default() },
         Params { target_error: f32::NAN, ..Params::default() },
-        Params { bounce_error: 1.0, ..Params::default() },
         Params { preview: 10.5, ..Params::default() },
     ] {
         assert!(run_with(&viewer(), &bad).is_err());

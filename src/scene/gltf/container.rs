@@ -1,12 +1,13 @@
 //! The outer layers of a file: GLB chunks; buffers and images embedded in the file, in `data:` URIs, or in separate
 //! files.
 
-use super::document;
+use super::document::{self, Document};
 use super::meshopt::{self, Packed};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io::read_file;
 use crate::image::try_with_capacity;
 use crate::scene::Unrendered;
+use glam::DVec3;
 use gltf::json::{Index, Root, buffer};
 use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
@@ -29,6 +30,8 @@ pub struct File<'a> {
     pub root: Root,
     /// The parts that are not rendered, as far as the JSON shows them.
     pub unrendered: Vec<Unrendered>,
+    /// The translation of each node in f64.
+    pub translations: Vec<DVec3>,
     /// `None` for a buffer without data: the fallback of compressed views, or a buffer that is not used.
     buffers: Vec<Option<Cow<'a, [u8]>>>,
     /// The decoded data of compressed buffer views.
@@ -39,8 +42,8 @@ pub struct File<'a> {
 impl<'a> File<'a> {
     pub fn parse(bytes: &'a [u8], folder: Folder<'a>) -> Result<Self> {
         let (json, blob) = split(bytes)?;
-        let (root, unrendered) = document::parse(json)?;
-        let mut file = Self { root, unrendered, buffers: Vec::new(), unpacked: Vec::new(), folder };
+        let Document { root, unrendered, translations } = document::parse(json)?;
+        let mut file = Self { root, unrendered, translations, buffers: Vec::new(), unpacked: Vec::new(), folder };
         for (i, buffer) in file.root.buffers.iter().enumerate() {
             let bytes = file.buffer(i, buffer, blob).map_err(|e| e.within(format_args!("buffer {i}")))?;
             file.buffers.push(bytes);

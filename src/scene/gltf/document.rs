@@ -4,23 +4,48 @@
 use super::features;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::unrendered::Unrendered;
+use glam::DVec3;
 use gltf::json::Root;
 use serde_json::{Map, Number, Value, json};
 
 /// Largest number up to which floats store every integer: 2^53. [rounding]
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
-/// A file's JSON, and the parts of it that are not rendered.
-pub fn parse(json: &[u8]) -> Result<(Root, Vec<Unrendered>)> {
+/// A file's JSON in the shape that the crate `gltf` reads, with the parts that this shape lacks.
+pub struct Document {
+    pub root: Root,
+    /// The parts that are not rendered.
+    pub unrendered: Vec<Unrendered>,
+    /// The translation of each node, which the crate rounds to f32.
+    pub translations: Vec<DVec3>,
+}
+
+/// Reads the JSON of a file.
+pub fn parse(json: &[u8]) -> Result<Document> {
     let broken = |e: serde_json::Error| Error::format(format!("not a glTF file, or its JSON is broken: {e}"));
     let mut document: Value = serde_json::from_slice(json).map_err(broken)?;
     check_version(&document)?;
     let unrendered = features::unrendered(&document);
+    let translations = translations(&document);
     tidy(&mut document);
     if let Value::Object(root) = &mut document {
         complete(root);
     }
-    Ok((serde_json::from_value(document).map_err(broken)?, unrendered))
+    Ok(Document { root: serde_json::from_value(document).map_err(broken)?, unrendered, translations })
+}
+
+/// The translation of each node, or the last column of its matrix.
+fn translations(document: &Value) -> Vec<DVec3> {
+    let nodes = document.get("nodes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let number = |list: Option<&Value>, at: usize| list.and_then(|list| list.get(at)?.as_f64()).unwrap_or(0.0);
+    let column = |node: &Value| {
+        let (matrix, translation) = (node.get("matrix"), node.get("translation"));
+        DVec3::from_array(std::array::from_fn(|axis| match matrix {
+            Some(_) => number(matrix, 12 + axis),
+            None => number(translation, axis),
+        }))
+    };
+    nodes.iter().map(column).collect()
 }
 
 /// Refuses files of glTF 1, and files that require a version above 2.0.

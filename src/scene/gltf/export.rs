@@ -7,7 +7,7 @@ use crate::image::colour::srgb_to_linear;
 use crate::image::io::{self, Encoding};
 use crate::photometry::ies;
 use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, TextureRef, Wrap, c90};
-use glam::{Mat3, Quat, Vec2, Vec3};
+use glam::{DVec3, Mat3, Quat, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
 /// Constants of the specification (glTF 2.0, 5.1.3, 5.11.5, 5.26).
@@ -43,7 +43,7 @@ pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     for (i, light) in scene.lights.iter().enumerate() {
         writer.light(scene, i, light)?;
     }
-    writer.into_glb()
+    writer.into_glb(scene.origin)
 }
 
 /// An image as written: its texture, its encoding, and the divisor of its values.
@@ -317,7 +317,7 @@ impl Writer {
         Ok(number)
     }
 
-    fn into_glb(mut self) -> Result<Vec<u8>> {
+    fn into_glb(mut self, origin: DVec3) -> Result<Vec<u8>> {
         let samplers: Vec<Value> = self.textures.iter_mut().map(|texture| texture["sampler"].take()).collect();
         for (i, texture) in self.textures.iter_mut().enumerate() {
             texture["sampler"] = i.into();
@@ -326,7 +326,13 @@ impl Writer {
         root.insert("asset".into(), json!({ "version": "2.0", "generator": "luxfer" }));
         // glTF requires scenes to have nodes, but allows files without scenes.
         if !self.nodes.is_empty() {
-            let nodes: Vec<usize> = (0..self.nodes.len()).collect();
+            let mut nodes: Vec<usize> = (0..self.nodes.len()).collect();
+            if origin != DVec3::ZERO {
+                // Put everything under one node: its translation is in f64, and vertices stay near their origin.
+                let all = std::mem::take(&mut nodes);
+                nodes.push(all.len());
+                self.nodes.push(json!({ "name": "Origin", "translation": origin.to_array(), "children": all }));
+            }
             root.insert("scene".into(), 0.into());
             root.insert("scenes".into(), json!([{ "nodes": nodes }]));
         }

@@ -5,6 +5,7 @@ use super::features::{IES, READ};
 use super::instances::{instances, local_transform};
 use super::material::Materials;
 use super::nodes::roots;
+use super::origin::origin;
 use super::pose::{self, Skinning, mixed};
 use super::vertices::Vertices;
 use super::{Budget, Options, accessor};
@@ -49,7 +50,7 @@ pub fn import(bytes: &[u8], base: Option<&Path>, options: Options) -> Result<Sce
     scene.ok_or_else(|| Error::new(ErrorKind::Internal, "the budget ran no work"))
 }
 
-fn convert(file: &mut File, Options { budget, unit, .. }: Options) -> Result<Scene> {
+fn convert(file: &mut File, Options { budget, unit, keep_origin, .. }: Options) -> Result<Scene> {
     let mut scene = Scene { unrendered: std::mem::take(&mut file.unrendered), ..Scene::default() };
     let file = &*file;
     let mut materials = Materials::new(file, budget);
@@ -68,7 +69,12 @@ fn convert(file: &mut File, Options { budget, unit, .. }: Options) -> Result<Sce
         vertices: 0,
         triangles: 0,
     };
-    let world = DMat4::from_scale(DVec3::splat(unit));
+    let mut world = DMat4::from_scale(DVec3::splat(unit));
+    if !keep_origin {
+        let origin = origin(file, world)?;
+        importer.scene.origin = origin;
+        world = DMat4::from_translation(-origin) * world;
+    }
     if !file.root.skins.is_empty() {
         importer.nodes = pose::node_transforms(file, world)?;
     }
@@ -122,7 +128,7 @@ impl Importer<'_> {
             if std::mem::replace(&mut visited[index], true) {
                 return Err(Error::format(format!("node {index} is reached twice: the nodes must form a tree")));
             }
-            let transform = parent * local_transform(node);
+            let transform = parent * local_transform(file, index, node);
             if !transform.is_finite() {
                 return Err(Error::format(format!("node {index} has a transform that is not finite")));
             }

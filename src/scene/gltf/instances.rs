@@ -5,24 +5,27 @@ use super::container::File;
 use super::features::INSTANCING;
 use crate::error::{Error, Result};
 use crate::image::try_collect;
-use glam::{DMat4, DQuat, Vec3};
+use glam::{DMat4, DQuat, DVec3, Vec3};
 use gltf::json::{self, Index};
 use serde_json::Value;
 
-/// The transform of a node within its parent.
-pub fn local_transform(node: &json::Node) -> DMat4 {
+/// The transform of a node within its parent, with its translation in f64.
+pub fn local_transform(file: &File, index: usize, node: &json::Node) -> DMat4 {
+    let translation = file.translations.get(index).copied().unwrap_or_default();
     if let Some(matrix) = node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
+        let mut matrix = DMat4::from_cols_array(&matrix.map(f64::from));
+        matrix.w_axis = translation.extend(matrix.w_axis.w);
+        return matrix;
     }
     let rotation = node.rotation.unwrap_or_default().0;
-    compose(node.translation.unwrap_or([0.0; 3]), rotation, node.scale.unwrap_or([1.0; 3]))
+    compose(translation, rotation, node.scale.unwrap_or([1.0; 3]))
 }
 
 /// Translation × rotation × scale; a rotation of zeros counts as the identity.
-fn compose(translation: [f32; 3], rotation: [f32; 4], scale: [f32; 3]) -> DMat4 {
+fn compose(translation: DVec3, rotation: [f32; 4], scale: [f32; 3]) -> DMat4 {
     let rotation = DQuat::from_array(rotation.map(f64::from));
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
-    DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, Vec3::from(translation).as_dvec3())
+    DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, translation)
 }
 
 /// The transforms of all instances of a node's mesh: a single one, unless the node has `EXT_mesh_gpu_instancing`.
@@ -50,6 +53,6 @@ fn read(file: &File, stated: &Value, transform: DMat4) -> Result<Vec<DMat4>> {
         let translation = translations.as_ref().map_or([0.0; 3], |all| all[i]);
         let rotation = rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |all| all[i]);
         let scale = scales.as_ref().map_or([1.0; 3], |all| all[i]);
-        transform * compose(translation, rotation, scale)
+        transform * compose(Vec3::from(translation).as_dvec3(), rotation, scale)
     }))
 }

@@ -13,6 +13,8 @@
 //! `_sheen` and `_volume`. A required extension not listed above is an error; an optional one is ignored. Visible
 //! parts of the file that are not rendered are listed in [`Scene::unrendered`].
 //!
+//! The positions of a scene far from the origin are relative to [`Scene::origin`], which is subtracted in f64.
+//!
 //! Export: a flat list of nodes, one per mesh, camera and light. The environment is left out, because glTF cannot hold
 //! it.
 //!
@@ -31,6 +33,7 @@ mod instances;
 mod material;
 mod meshopt;
 mod nodes;
+mod origin;
 mod pose;
 #[cfg(test)]
 mod tests;
@@ -76,11 +79,13 @@ pub struct Options<'a> {
     pub unit: f64,
     /// Whether the file may name files outside its folder.
     pub is_open: bool,
+    /// Whether the positions of a scene far from the origin keep the origin of the file.
+    pub keep_origin: bool,
 }
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { budget: UNLIMITED, unit: 1.0, is_open: false }
+        Self { budget: UNLIMITED, unit: 1.0, is_open: false, keep_origin: false }
     }
 }
 

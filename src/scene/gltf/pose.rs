@@ -23,7 +23,7 @@ pub fn node_transforms(file: &File, world: DMat4) -> Result<Vec<Option<DMat4>>> 
     while let Some((index, parent)) = stack.pop() {
         let Some(node) = all.get(index) else { continue };
         if placed[index].is_none() {
-            let transform = parent * local_transform(node);
+            let transform = parent * local_transform(file, index, node);
             placed[index] = Some(transform);
             stack.extend(node.children.iter().flatten().map(|child| (child.value(), transform)));
         }

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 mod compressed;
 mod features;
+mod origin;
 
 fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
     super::import(bytes, base, Options::default())
@@ -78,6 +79,7 @@ fn scene() -> Scene {
     let pane = Mesh { name: "Pane".into(), material: 2, uvs: [Vec::new(), Vec::new()], ..triangle.clone() };
     let camera = Camera::look_at(Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 0.5, 0.0), 0.8);
     Scene {
+        origin: glam::DVec3::ZERO,
         meshes: vec![triangle, sheet, pane],
         materials: materials(),
         textures: vec![

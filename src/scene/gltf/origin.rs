@@ -1,0 +1,56 @@
+//! The origin of a scene that lies far from the origin of its file.
+//!
+//! A file places a building on a national grid by the translations of nodes, which JSON holds in f64, over vertices in
+//! f32 near their own origins. Vertices in world space would be rounded to metres at 10,000 km. The importer therefore
+//! subtracts an origin in f64, before it rounds.
+
+use super::container::File;
+use super::instances::instances;
+use super::pose::node_transforms;
+use crate::error::Result;
+use crate::scene::origin::detail;
+use glam::{DMat4, DVec3};
+use gltf::json::mesh::{Primitive, Semantic};
+use gltf::json::validation::Checked;
+
+/// Coordinates up to this distance in metres keep their origin: f32 resolves 0.015 mm there. Origins are multiples of
+/// it. [convention]
+pub const GRID: f64 = 256.0;
+
+/// A scene is far from the origin beyond this multiple of its own extent. [convention]
+const FAR: f64 = 4.0;
+
+/// Number of corners of bounding boxes after which the others change little. [convention]: bounds memory.
+const MAX_CORNERS: usize = 1 << 16;
+
+/// Where the coordinates of a file's scene should start, in the metres of `world`; zero for scenes near the origin.
+pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
+    let mut corners = Vec::new();
+    for (node, transform) in file.root.nodes.iter().zip(node_transforms(file, world)?) {
+        let Some((mesh, transform)) = node.mesh.and_then(|mesh| file.root.get(mesh)).zip(transform) else { continue };
+        if corners.len() >= MAX_CORNERS {
+            break;
+        }
+        // A broken list of instances is reported where the meshes are read.
+        for transform in instances(file, node, transform).unwrap_or_default() {
+            for [low, high] in mesh.primitives.iter().map(|primitive| bounds(file, primitive)) {
+                corners.extend([low, high].map(|corner| transform.transform_point3(corner)));
+            }
+        }
+    }
+    corners.retain(|corner| corner.is_finite());
+    let Some((median, reach)) = detail(&corners) else { return Ok(DVec3::ZERO) };
+    let is_near = median.abs().cmplt(DVec3::splat(GRID.max(FAR * reach)));
+    Ok(DVec3::select(is_near, DVec3::ZERO, (median / GRID).round() * GRID))
+}
+
+/// The bounds of a primitive that its file states; the origin of its node if it states none in metres.
+fn bounds(file: &File, primitive: &Primitive) -> [DVec3; 2] {
+    let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
+    let accessor = positions.and_then(|index| file.root.get(*index)).filter(|accessor| !accessor.normalized);
+    let corner = |value: Option<&serde_json::Value>| {
+        let coordinate = |axis: usize| value.and_then(|v| v.get(axis)?.as_f64()).unwrap_or(0.0);
+        DVec3::from_array(std::array::from_fn(coordinate))
+    };
+    [accessor.and_then(|a| a.min.as_ref()), accessor.and_then(|a| a.max.as_ref())].map(corner)
+}

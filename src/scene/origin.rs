@@ -1,0 +1,38 @@
+//! The place where most of a scene is, as the origin of coordinates that f32 can hold.
+
+use glam::DVec3;
+
+/// Share of the points that must lie near the median: a few objects left behind at the origin of a national grid do
+/// not count. [convention]
+const NEAR_SHARE: f64 = 0.75;
+
+/// The median of points per axis, and the distance from it, along an axis, within which [`NEAR_SHARE`] of them lie.
+/// `None` without points. A median lies where most points lie, however far away the others are.
+pub fn detail(points: &[DVec3]) -> Option<(DVec3, f64)> {
+    if points.is_empty() {
+        return None;
+    }
+    let at = |values: &mut [f64], share: f64| {
+        values.sort_unstable_by(f64::total_cmp);
+        values[((values.len() - 1) as f64 * share) as usize]
+    };
+    let median =
+        DVec3::from_array(std::array::from_fn(|axis| at(&mut points.iter().map(|p| p[axis]).collect::<Vec<_>>(), 0.5)));
+    let reach = at(&mut points.iter().map(|p| (*p - median).abs().max_element()).collect::<Vec<_>>(), NEAR_SHARE);
+    Some((median, reach))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_detail_of_a_scene_is_where_most_of_it_is() {
+        let building = (0..60).map(|i| DVec3::new(1e6 + f64::from(i), f64::from(i % 3), -2e6));
+        let points: Vec<DVec3> = building.chain([DVec3::ZERO, DVec3::splat(3.0)]).collect();
+        let (median, reach) = detail(&points).unwrap();
+        assert!((median - DVec3::new(1e6 + 29.0, 1.0, -2e6)).abs().max_element() <= 1.0, "{median}");
+        assert!(reach <= 30.0, "{reach}");
+        assert_eq!(detail(&[]), None);
+    }
+}
