@@ -58,10 +58,12 @@ pub enum Code {
     NoPattern = 23,
     /// Mask: strokes were missing, and it is a proposal.
     Proposed = 24,
+    /// Scene: lights shine from points, and are not in its pictures.
+    NotInPicture = 25,
 }
 
 impl Code {
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -86,6 +88,7 @@ impl Code {
         Self::DimLamps,
         Self::NoPattern,
         Self::Proposed,
+        Self::NotInPicture,
     ];
 }
 

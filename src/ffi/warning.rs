@@ -91,6 +91,9 @@ pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes on lights;
 /// the severity is the share of the mask that is expected to be wrong.
 pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
+/// Luminaires, points or spots of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not
+/// rate them; the severity is their number, and the message lists the first ones with their positions.
+pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 25;
 
 /// A reason to doubt a result.
 #[repr(C)]
@@ -360,6 +363,7 @@ pub extern "C" fn luxfer_warning_get_name(code: luxfer_warning_code) -> *const c
         LUXFER_WARNING_DIM_LAMPS => c"LUXFER_WARNING_DIM_LAMPS",
         LUXFER_WARNING_NO_PATTERN => c"LUXFER_WARNING_NO_PATTERN",
         LUXFER_WARNING_PROPOSED => c"LUXFER_WARNING_PROPOSED",
+        LUXFER_WARNING_NOT_IN_PICTURE => c"LUXFER_WARNING_NOT_IN_PICTURE",
         _ => c"LUXFER_WARNING_UNKNOWN",
     };
     name.as_ptr()

@@ -5,6 +5,7 @@ mod denoise;
 mod energy;
 mod extremes;
 mod film;
+mod glare;
 mod illuminance;
 mod irradiance;
 mod layers;
