@@ -644,6 +644,12 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_PROPOSED 24
 
 /**
+ * Luminaires, points or spots of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not
+ * rate them; the severity is their number, and the message lists the first ones with their positions.
+ */
+#define LUXFER_WARNING_NOT_IN_PICTURE 25
+
+/**
  * Gets the warnings about the result of an object. handle is one of:
  * - a luxfer_transfer: the warnings of all stages that have a result, in their order;
  * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;

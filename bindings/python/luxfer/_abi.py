@@ -195,6 +195,7 @@ LUXFER_WARNING_NOT_RENDERED = 21
 LUXFER_WARNING_DIM_LAMPS = 22
 LUXFER_WARNING_NO_PATTERN = 23
 LUXFER_WARNING_PROPOSED = 24
+LUXFER_WARNING_NOT_IN_PICTURE = 25
 LUXFER_ILLUMINANCE_LUX = 0
 LUXFER_ILLUMINANCE_ERROR = 1
 LUXFER_GROUP_ALL = 0
@@ -1166,8 +1167,35 @@ class luxfer_glare_report(Structure):
         ("background", c_double),
         ("threshold", c_double),
         ("solid_angle", c_double),
+        ("unseen_lights", c_uint32),
+        ("reserved", c_uint32),
     ]
     result = types.GlareReport
+
+
+class luxfer_observer(Structure):
+    """An eye that looks in a direction. An element of arrays, so this struct never changes."""
+
+    _fields_ = [
+        ("position", c_float * 3),
+        ("direction", c_float * 3),
+    ]
+    result = types.Observer
+
+
+class luxfer_observer_glare(Structure):
+    """The glare of an observer. An element of arrays, so this struct never changes."""
+
+    _fields_ = [
+        ("ugr", c_double),
+        ("background", c_double),
+        ("background_error", c_double),
+        ("unrated_lux", c_double),
+        ("solid_angle", c_double),
+        ("sources", c_uint32),
+        ("outside_range", c_uint32),
+    ]
+    result = types.ObserverGlare
 
 
 class luxfer_false_colour_params(Structure):
@@ -1597,6 +1625,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
+    "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare))]),
     "luxfer_false_colour_params_init": (c_int32, [("params", POINTER(luxfer_false_colour_params)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
