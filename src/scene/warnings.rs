@@ -60,8 +60,7 @@ impl Scene {
         let describe = |(index, kind, p): (usize, &str, Vec3)| format!("light {index}, a {kind} at {p}");
         let mut listed: Vec<String> = self.unseen_lights().take(MAX_LISTED).map(describe).collect();
         listed.extend((count > MAX_LISTED).then(|| format!("and {} more", count - MAX_LISTED)));
-        let message =
-            format!("{count} lights shine from points, so that pictures do not show them: {}", listed.join("; "));
+        let message = format!("pictures do not show lights that shine from points: {}", listed.join("; "));
         let advice = "rate their glare with luxfer_scene_get_glare; luxfer_image_get_glare leaves them out";
         (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
