@@ -60,10 +60,12 @@ pub enum Code {
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
+    /// Scene: lights shine from points, and are not in its pictures.
+    NotInPicture = 26,
 }
 
 impl Code {
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -89,6 +91,7 @@ impl Code {
         Self::NoPattern,
         Self::Proposed,
         Self::FarFromOrigin,
+        Self::NotInPicture,
     ];
 }
 

@@ -89,6 +89,7 @@ const PARTS: &[Part] = &[
             "importance",
             "placement",
             "photometry",
+            "glare",
             "false_colour",
             "design",
         ],
@@ -126,7 +127,7 @@ const MAX_READ: (&[&str], usize) = (&["core", "scene", "transfer"], 110);
 const MAX_FUNCTIONS: usize = 230;
 
 /// Structs that occur in arrays: they have no size field and never change.
-const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit"];
+const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit", "luxfer_observer", "luxfer_observer_glare"];
 
 #[test]
 fn the_headers_are_what_the_sources_say() {
@@ -501,6 +502,8 @@ layouts! {
     luxfer_camera_params: struct_size fov_y position target up reserved;
     luxfer_ray: origin direction t_max;
     luxfer_hit: t mesh triangle u v;
+    luxfer_observer: position direction;
+    luxfer_observer_glare: ugr background background_error unrated_lux solid_angle sources outside_range;
     luxfer_mesh_info: struct_size material vertex_count triangle_count has_normals uv_sets has_colours reserved;
     luxfer_texture_use: struct_size texture uv_set wrap_u wrap_v transform;
     luxfer_demo_photo_params: struct_size width height samples seed;
@@ -543,7 +546,7 @@ layouts! {
     luxfer_placement_params: struct_size aim radiance starts min_offset max_offset min_scale max_scale
         min_rotation max_rotation seed;
     luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
-    luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
+    luxfer_glare_report: struct_size sources ugr background threshold solid_angle unseen_lights reserved;
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;

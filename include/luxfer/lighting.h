@@ -676,6 +676,14 @@ typedef struct luxfer_glare_report {
     double threshold;
     /** Solid angle of all sources in steradians. */
     double solid_angle;
+    /**
+     * Number of lights of the rendered scene that shine from points: the image does not show them, and ugr leaves them
+     * out; rate them with luxfer_scene_get_glare. Known for images of luxfer_render_get_image and
+     * luxfer_render_get_layer; 0 for others, whose scene has LUXFER_WARNING_NOT_IN_PICTURE.
+     */
+    uint32_t unseen_lights;
+    /** 0. */
+    uint32_t reserved;
 } luxfer_glare_report;
 
 /**
@@ -714,6 +722,59 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
                                      double threshold,
                                      luxfer_glare_report *report,
                                      size_t size);
+
+/* ====================================================================================================================
+ * Glare of observers
+ *
+ * The unified glare rating (CIE 117) of observers in a scene, from its luminaires: their intensity over the area of
+ * their luminous openings, as seen from the eye.
+ * ==================================================================================================================== */
+
+/** An eye that looks in a direction. An element of arrays, so this struct never changes. */
+typedef struct luxfer_observer {
+    /** Position of the eye, in metres. */
+    float position[3];
+    /** Line of sight; any length but 0, and not vertical. */
+    float direction[3];
+} luxfer_observer;
+
+/** The glare of an observer. An element of arrays, so this struct never changes. */
+typedef struct luxfer_observer_glare {
+    /**
+     * Unified glare rating: below 10 there is no glare, 19 is the limit for offices; -infinity without a luminaire in
+     * view, infinity if the background is black.
+     */
+    double ugr;
+    /** Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi. */
+    double background;
+    /** Standard error of background. */
+    double background_error;
+    /**
+     * Direct illuminance at the eye, in lux, by lights that ugr leaves out: luminaires whose file has no dimensions,
+     * or that are seen edge-on, points, spots, directional lights, emissive surfaces and the environment.
+     */
+    double unrated_lux;
+    /** Solid angle of the visible parts of all rated luminaires in view, in steradians. */
+    double solid_angle;
+    /** Number of these luminaires. */
+    uint32_t sources;
+    /** Number of these whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. */
+    uint32_t outside_range;
+} luxfer_observer_glare;
+
+/**
+ * Rates the glare of count observers in a scene. samples is the number of paths per observer for the background, in
+ * [16, 16777216]; 4096 suit most rooms. Returns when the work is done, which takes as long as count * samples paths;
+ * the first call after a scene is loaded or changed also prepares it for tracing. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
+ * straight up or down, or is inside a luminaire: the message names it. Then no rating is written.
+ */
+luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
+                                     const luxfer_observer *observers,
+                                     size_t count,
+                                     uint32_t samples,
+                                     uint64_t seed,
+                                     luxfer_observer_glare *ratings);
 
 /* ====================================================================================================================
  * False colour

@@ -528,7 +528,10 @@ typedef struct luxfer_distribution_report {
     double lamp_flux;
     /** Electric power in watts; 0 if unknown. */
     double watts;
-    /** Length, width and height of the luminous opening in metres; negative for round ones. */
+    /**
+     * Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round ones.
+     * These are the length, width and height of IES, and the width, length and height of EULUMDAT.
+     */
     double size[3];
 } luxfer_distribution_report;
 
@@ -675,7 +678,8 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
 /**
  * Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
  * index among the lights. It is a good model only if the luminaire is at most a fifth as large as its distance from
- * the surfaces that it lights. params may be NULL for the defaults. Any thread.
+ * the surfaces that it lights. No picture shows it: rate its glare with luxfer_scene_get_glare. params may be NULL for
+ * the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,

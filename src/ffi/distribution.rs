@@ -46,7 +46,8 @@ pub struct luxfer_distribution_report {
     pub lamp_flux: f64,
     /// Electric power in watts; 0 if unknown.
     pub watts: f64,
-    /// Length, width and height of the luminous opening in metres; negative for round ones.
+    /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round ones.
+    /// These are the length, width and height of IES, and the width, length and height of EULUMDAT.
     pub size: [f64; 3],
 }
 

@@ -135,6 +135,8 @@ pub(super) struct Pixels {
     context: Arc<Context>,
     source: Source,
     metadata: PhotoMetadata,
+    /// Number of lights of a rendered scene that shine from points and are not in the image.
+    unseen_lights: usize,
 }
 
 /// Who owns the pixels.
@@ -192,7 +194,12 @@ impl Pixels {
 
     /// Pixels of the caller's, counted in the budget.
     fn own(context: &Arc<Context>, image: Image, charge: Charge, metadata: PhotoMetadata) -> Arc<Self> {
-        Arc::new(Self { context: context.clone(), source: Source::Own(Arc::new(image), charge), metadata })
+        Arc::new(Self {
+            context: context.clone(),
+            source: Source::Own(Arc::new(image), charge),
+            metadata,
+            unseen_lights: 0,
+        })
     }
 
     /// An image that the library makes at the caller's request, counted in the budget before it is made.
@@ -213,9 +220,24 @@ impl Pixels {
         output: Arc<O>,
         pick: impl Fn(&O) -> &Image + Send + Sync + 'static,
     ) -> Arc<Self> {
+        Self::rendered(context, output, pick, 0)
+    }
+
+    /// An image inside a rendering, in which a number of lights cannot be seen.
+    pub(super) fn rendered<O: Send + Sync + 'static>(
+        context: &Arc<Context>,
+        output: Arc<O>,
+        pick: impl Fn(&O) -> &Image + Send + Sync + 'static,
+        unseen_lights: usize,
+    ) -> Arc<Self> {
         let holder = Part { output, pick };
         let source = Source::Result(Arc::new(holder));
-        Arc::new(Self { context: context.clone(), source, metadata: PhotoMetadata::default() })
+        Arc::new(Self { context: context.clone(), source, metadata: PhotoMetadata::default(), unseen_lights })
+    }
+
+    /// Number of lights of a rendered scene that shine from points and are not in the image.
+    pub(super) fn unseen_lights(&self) -> usize {
+        self.unseen_lights
     }
 
     /// An input that may be left out.

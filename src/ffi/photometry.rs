@@ -31,10 +31,25 @@ pub struct luxfer_glare_report {
     pub threshold: f64,
     /// Solid angle of all sources in steradians.
     pub solid_angle: f64,
+    /// Number of lights of the rendered scene that shine from points: the image does not show them, and ugr leaves them
+    /// out; rate them with luxfer_scene_get_glare. Known for images of luxfer_render_get_image and
+    /// luxfer_render_get_layer; 0 for others, whose scene has LUXFER_WARNING_NOT_IN_PICTURE.
+    pub unseen_lights: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
-versioned!(luxfer_glare_report, [40], {
-    Self { struct_size: 40, sources: 0, ugr: 0.0, background: 0.0, threshold: 0.0, solid_angle: 0.0 }
+versioned!(luxfer_glare_report, [40, 48], {
+    Self {
+        struct_size: 48,
+        sources: 0,
+        ugr: 0.0,
+        background: 0.0,
+        threshold: 0.0,
+        solid_angle: 0.0,
+        unseen_lights: 0,
+        reserved: 0,
+    }
 });
 
 /// Gets the correlated colour temperature of a linear colour: *kelvin receives the temperature of the nearest
@@ -104,6 +119,7 @@ pub unsafe extern "C" fn luxfer_image_get_glare(
             background: rating.background,
             threshold: rating.threshold,
             solid_angle: rating.sources.iter().map(|s| s.solid_angle).sum(),
+            unseen_lights: object.unseen_lights() as u32,
             ..luxfer_glare_report::defaults()
         });
         Ok(())

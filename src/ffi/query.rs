@@ -107,7 +107,7 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
     }
 }
 
-fn size_of_all<T>(count: usize) -> Result<usize> {
+pub(super) fn size_of_all<T>(count: usize) -> Result<usize> {
     let size = count.checked_mul(size_of::<T>());
     size.ok_or_else(|| Error::argument(format!("count is {count}; that is more than the address space holds")))
 }

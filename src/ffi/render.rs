@@ -293,7 +293,9 @@ pub unsafe extern "C" fn luxfer_render_get_image(
             }
             _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_RENDER_ value"))),
         };
-        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        let film = stage.output()?;
+        let unseen_lights = film.unseen_lights;
+        out.set(handle::give(Pixels::rendered(stage.context(), film, pick, unseen_lights)));
         Ok(())
     })
 }

@@ -191,7 +191,10 @@ pub unsafe extern "C" fn luxfer_render_get_layer(
         let out = Out::new(image, "image")?;
         let output = stage.output()?;
         layer(&output, index)?;
-        out.set(handle::give(Pixels::part(stage.context(), output, move |film| &film.layers[index as usize].image)));
+        let unseen_lights = output.unseen_lights;
+        let pixels =
+            Pixels::rendered(stage.context(), output, move |film| &film.layers[index as usize].image, unseen_lights);
+        out.set(handle::give(pixels));
         Ok(())
     })
 }

@@ -175,7 +175,8 @@ impl luxfer_luminaire_params {
 
 /// Adds a luminaire: a point light whose intensity by direction is a distribution; *index, unless NULL, receives its
 /// index among the lights. It is a good model only if the luminaire is at most a fifth as large as its distance from
-/// the surfaces that it lights. params may be NULL for the defaults. Any thread.
+/// the surfaces that it lights. No picture shows it: rate its glare with luxfer_scene_get_glare. params may be NULL for
+/// the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

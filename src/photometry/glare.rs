@@ -171,7 +171,7 @@ impl View {
 }
 
 /// Position index of a direction; the line of sight is -z, and y is up.
-fn position_index(direction: DVec3) -> f64 {
+pub fn position_index(direction: DVec3) -> f64 {
     let (side, up, ahead) = (direction.x, direction.y, -direction.z);
     if up >= 0.0 {
         // Guth 1963: τ is the angle from the vertical, σ the angle from the line of sight, in degrees.

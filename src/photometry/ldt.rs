@@ -74,8 +74,8 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
     let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
     let height = rows.list(4, "a height of the luminous area", 0.0, 1e7)?.into_iter().fold(0.0, f64::max);
-    // A round luminaire has its diameter as length, and width 0.
-    let size = if width == 0.0 { [-length, -length, height] } else { [length, width, height] }.map(|mm| mm / 1e3);
+    // The length runs along the plane C90. A round luminaire has its diameter as length, and width 0.
+    let size = if width == 0.0 { [-length, -length, height] } else { [width, length, height] }.map(|mm| mm / 1e3);
     rows.skip(2, "the light output ratio")?;
     let factor = rows.within("the conversion factor", 0.0, 1e9)?;
     rows.skip(1, "the tilt")?;
@@ -201,7 +201,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { flux };
     let down = if flux > 0.0 { 100.0 * below_horizon(l).flux() / flux } else { 0.0 };
     let output_ratio = if lumens > 0.0 { 100.0 * flux / lumens } else { 0.0 };
-    let [length, width, height] = l.size.map(|m| m * 1e3);
+    let [width, length, height] = l.size.map(|m| m * 1e3);
     let (length, width) = if length < 0.0 { (-length, 0.0) } else { (length, width.abs()) };
     let mut text = String::new();
     let mut line = |value: &dyn std::fmt::Display| {
@@ -295,6 +295,17 @@ mod tests {
             assert!((again.flux() / l.flux() - 1.0).abs() < 1e-9);
             assert_eq!((again.name, again.lamp_flux), (l.name, l.lamp_flux));
         }
+    }
+
+    /// The length of EULUMDAT runs along C90, that of IES along C0.
+    #[test]
+    fn the_opening_keeps_its_orientation_in_both_formats() {
+        use crate::photometry::ies;
+        let long = file(1, 24, &[7.0]).replace("1190\r\n0\r\n", "1190\r\n300\r\n");
+        let l = read(long.as_bytes()).unwrap();
+        assert_eq!(l.size, [0.3, 1.19, 0.0]);
+        assert_eq!(ies::read(ies::write(&l).unwrap().as_bytes()).unwrap().size, l.size);
+        assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap().size, l.size);
     }
 
     #[test]

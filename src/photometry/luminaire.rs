@@ -17,7 +17,8 @@ pub struct Luminaire {
     pub lamp_flux: f64,
     /// Electric power in watts including the ballast; 0 if unknown.
     pub watts: f64,
-    /// Length, width and height of the luminous opening in metres; negative for round ones, as in IES.
+    /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round ones, as
+    /// in IES.
     pub size: [f64; 3],
 }
 

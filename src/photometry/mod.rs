@@ -2,11 +2,15 @@
 //!
 //! [`temperature`] converts between colours and correlated colour temperatures, and finds the blackbody light closest
 //! to a target. [`glare`] rates the discomfort glare of a luminance image (UGR, CIE 117). [`luminaire`] is a measured
-//! luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`]). [`presets`]
-//! lists requirements of EN 12464-1 for common rooms. [`false_colour`] shows luminance and illuminance in colours with
-//! a scale.
+//! luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`]); [`opening`] is
+//! the shape of its luminous area. [`presets`] lists requirements of EN 12464-1 for common rooms. [`false_colour`]
+//! shows luminance and illuminance in colours with a scale.
 //!
-//! Illuminance itself is computed by `render::illuminance`. Not modelled: spectra and colour rendering; maintenance.
+//! Illuminance itself is computed by `render::illuminance`, and the glare of observers from the luminaires of a scene
+//! by `render::glare`.
+//!
+//! Not modelled: spectra and colour rendering; maintenance; luminaires with a body or a luminous face. A luminaire
+//! shines from a point, pictures do not show it, and its light within five times its size is wrong.
 
 pub mod false_colour;
 pub mod glare;
@@ -15,6 +19,7 @@ pub mod ies;
 pub mod ldt;
 mod lines;
 pub mod luminaire;
+pub mod opening;
 pub mod presets;
 pub mod temperature;
 

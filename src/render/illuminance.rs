@@ -4,7 +4,7 @@
 //! Grid points need no surface beneath them. A surface is mapped by its texture coordinates: each texel stands for the
 //! point at its centre.
 //!
-//! Not modelled: maintenance factors, cylindrical illuminance, glare ratings.
+//! Not modelled: maintenance factors, cylindrical illuminance.
 
 use super::contribution::{LightSource, PathSink};
 use super::path::{self, Contributions};

@@ -11,7 +11,7 @@
 //! receives its contributions → `film` keeps means and errors and decides which pixels get more paths. `shared` lets
 //! the paths of neighbouring pixels reuse each other's secondary vertices. `layers` adds images from the same paths:
 //! light path expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes grids and maps of meshes in
-//! lux. `denoise` filters previews, with a bias.
+//! lux, [`glare`] the unified glare rating of observers. `denoise` filters previews, with a bias.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 //! [`Requirements::left_out`] names the solids of glass and the frosted glass of a scene, as does
@@ -29,6 +29,7 @@ mod environment;
 mod facet;
 mod film;
 mod ggx;
+pub mod glare;
 pub mod illuminance;
 mod layers;
 mod light;

@@ -24,6 +24,8 @@ pub struct Film {
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
+    /// Number of lights that shine from points and are not in the image.
+    pub unseen_lights: usize,
     /// The additional images: those of expressions in order, then the AOVs in order.
     pub layers: Vec<Layer>,
     /// The filtered image and an estimate of its bias, if requested. It is not an unbiased estimate.

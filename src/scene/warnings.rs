@@ -1,6 +1,6 @@
 //! Reasons to doubt that a scene is rendered as its author intended.
 
-use super::Scene;
+use super::{PunctualLight, Scene};
 use crate::warning::{Code, Warning};
 use glam::{DVec3, Vec3};
 
@@ -19,6 +19,9 @@ pub const MIN_EXTENT: f64 = 0.2;
 const USUAL_HEIGHT: f64 = 3.0;
 const USUAL_WIDTH: f64 = 6.0;
 
+/// Number of lights that a warning describes; further ones are counted.
+const MAX_LISTED: usize = 3;
+
 /// Units of modelling programs, in metres. [convention]
 const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimetre", 0.01), ("the inch", 0.0254)];
 
@@ -36,7 +39,7 @@ impl Scene {
                 "compare a rendering with the program that wrote the file; bake the feature into meshes and textures";
             Warning::new(Code::NotRendered, feature.count as f64, 0.0, feature.to_string(), advice)
         });
-        self.implausible_size().into_iter().chain(self.far_away()).chain(unrendered).collect()
+        self.implausible_size().into_iter().chain(self.far_away()).chain(unrendered).chain(self.not_in_picture()).collect()
     }
 
     /// A warning if positions are relative to an origin of the scene's own, or if they are so large that f32 has
@@ -66,6 +69,34 @@ impl Scene {
             },
             "store vertices relative to their nodes, and place the nodes by translations, or move the scene to the origin",
         )
+    }
+
+    /// The lights that shine from points, so that no picture shows them, with their positions.
+    pub fn unseen_lights(&self) -> impl Iterator<Item = (usize, &'static str, Vec3)> {
+        self.lights.iter().enumerate().filter_map(|(index, light)| match *light {
+            PunctualLight::Point { position, intensity } => {
+                (intensity.max_element() > 0.0).then_some((index, "point", position))
+            }
+            PunctualLight::Spot { position, intensity, .. } => {
+                (intensity.max_element() > 0.0).then_some((index, "spot", position))
+            }
+            PunctualLight::Luminaire { position, colour, .. } => {
+                (colour.max_element() > 0.0).then_some((index, "luminaire", position))
+            }
+            PunctualLight::Directional { .. } => None,
+        })
+    }
+
+    /// A warning if luminaires shine from points: of point and spot lights nobody expects to see a body.
+    fn not_in_picture(&self) -> Option<Warning> {
+        let luminaires = || self.unseen_lights().filter(|(_, kind, _)| *kind == "luminaire");
+        let count = luminaires().count();
+        let describe = |(index, kind, p): (usize, &str, Vec3)| format!("light {index}, a {kind} at {p}");
+        let mut listed: Vec<String> = luminaires().take(MAX_LISTED).map(describe).collect();
+        listed.extend((count > MAX_LISTED).then(|| format!("and {} more", count - MAX_LISTED)));
+        let message = format!("pictures do not show luminaires, which shine from points: {}", listed.join("; "));
+        let advice = "rate their glare with luxfer_scene_get_glare; luxfer_image_get_glare leaves them out";
+        (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
 
     /// A warning if the extent suggests a unit other than the metre: the first of height, width and smallness.
@@ -183,6 +214,23 @@ mod tests {
         let warnings = moved.warnings();
         assert_eq!((warnings[0].severity, warnings[0].limit), (5e5, 0.0));
         assert!(warnings[0].message.contains("(300000, 0, -400000)"), "{}", warnings[0]);
+    }
+
+    #[test]
+    fn lights_that_no_picture_shows_are_listed_with_their_places() {
+        let mut scene = room(3.0);
+        let position = Vec3::new(1.0, 2.5, 0.0);
+        scene.lights.push(PunctualLight::Directional { direction: Vec3::NEG_Y, illuminance: Vec3::ONE });
+        scene.lights.push(PunctualLight::Point { position, intensity: Vec3::ZERO });
+        assert_eq!(scene.warnings(), []);
+        scene.lights.push(PunctualLight::Point { position, intensity: Vec3::ONE });
+        assert_eq!((scene.warnings(), scene.unseen_lights().count()), (Vec::new(), 1));
+        let (axis, c0, colour) = (Vec3::NEG_Y, Vec3::X, Vec3::ONE);
+        scene.lights.extend([PunctualLight::Luminaire { position, axis, c0, colour, distribution: 0 }; 5]);
+        let warnings = scene.warnings();
+        assert_eq!((warnings[0].code, warnings[0].severity, warnings.len()), (Code::NotInPicture, 5.0, 1));
+        let message = &warnings[0].message;
+        assert!(message.contains("light 3, a luminaire at [1, 2.5, 0]") && message.ends_with("and 2 more"), "{message}");
     }
 
     #[test]

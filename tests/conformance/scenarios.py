@@ -300,6 +300,7 @@ def photometry() -> Scenario:
     s.call("colour_to_temperature", s.context, 1.0, 0.9, 0.7, ROOM, ROOM)
     s.call("temperature_to_colour", s.context, 3000.0, 0.0, ROOM)
     s.call("image_get_glare", s.image(32, 24), 1.0, 0.0, *report("glare_report"))
+    s.call("scene_get_glare", s.make("scene_create", s.context), array("float", 0, 0, 0, 0, 0, 1), 1, 16, 1, ROOM)
     s.make("image_false_colour", s.image(32, 24), struct("false_colour_params", maximum=2.0))
     led, white = array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0.8), array("double", 0.5, 0.4, 0.3)
     s.call("mix_primaries", s.context, led, 4, 1.0, white, ROOM, *report("mixture"))

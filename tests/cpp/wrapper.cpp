@@ -432,6 +432,10 @@ void lights_have_names() {
     CHECK(rgb[0] > 0.99 && rgb[0] < 1.01 && rgb[2] > 0.99 && rgb[2] < 1.01);
     CHECK_ERROR(luxfer::colour_temperature(context, 0, 0, 0), LUXFER_DEGENERATE);
     CHECK(ok(luxfer::glare(new_image(context), 1)).threshold >= 0);
+    const std::array<luxfer_observer, 2> observers = {{{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}}}};
+    const luxfer::Scene dark = ok(luxfer::Scene::create(context));
+    const std::vector<luxfer_observer_glare> ratings = ok(luxfer::glare(dark, observers, 16));
+    CHECK(ratings.size() == 2 && ratings[0].sources == 0 && ratings[1].ugr < 0);
     const auto mixture = ok(luxfer::mix_primaries(context, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0.5, 0.25, 2}, 1));
     CHECK(mixture.light.in_gamut == 0 && mixture.drives.size() == 3 && mixture.drives[2] == 1);
     CHECK_ERROR(luxfer::mix_primaries(context, {}, {1, 1, 1}), LUXFER_INVALID_ARGUMENT);

@@ -175,6 +175,15 @@ inline Result<std::array<double, 3>> colour_of_temperature(const Context &contex
     return detail::finish(context.get(), status, rgb);
 }
 
+/// The unified glare rating of each observer in a scene, from its luminaires.
+inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span<const luxfer_observer> observers,
+                                                        std::uint32_t samples = 4096, std::uint64_t seed = 1) {
+    std::vector<luxfer_observer_glare> ratings(observers.size());
+    const luxfer_status status =
+        luxfer_scene_get_glare(scene.get(), observers.data(), observers.size(), samples, seed, ratings.data());
+    return detail::finish(scene.context().get(), status, std::move(ratings));
+}
+
 /// The unified glare rating of a luminance image; threshold 0 is five times its mean.
 inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
     return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_get_glare, image.get(), fov_y,

@@ -1223,8 +1223,35 @@ class luxfer_glare_report(Structure):
         ("background", c_double),
         ("threshold", c_double),
         ("solid_angle", c_double),
+        ("unseen_lights", c_uint32),
+        ("reserved", c_uint32),
     ]
     result = types.GlareReport
+
+
+class luxfer_observer(Structure):
+    """An eye that looks in a direction. An element of arrays, so this struct never changes."""
+
+    _fields_ = [
+        ("position", c_float * 3),
+        ("direction", c_float * 3),
+    ]
+    result = types.Observer
+
+
+class luxfer_observer_glare(Structure):
+    """The glare of an observer. An element of arrays, so this struct never changes."""
+
+    _fields_ = [
+        ("ugr", c_double),
+        ("background", c_double),
+        ("background_error", c_double),
+        ("unrated_lux", c_double),
+        ("solid_angle", c_double),
+        ("sources", c_uint32),
+        ("outside_range", c_uint32),
+    ]
+    result = types.ObserverGlare
 
 
 class luxfer_false_colour_params(Structure):

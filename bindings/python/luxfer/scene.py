@@ -39,6 +39,12 @@ if TYPE_CHECKING:
 #: What intersect() returns of each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
 HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
 
+#: What glare() returns of each observer; ugr is -inf without a luminaire in view.
+GLARE = np.dtype(
+    [(name, "f8") for name in ("ugr", "background", "background_error", "unrated_lux", "solid_angle")]
+    + [("sources", "u4"), ("outside_range", "u4")]
+)
+
 
 class Scene(Handle):
     """Meshes, materials, textures, lights and cameras; metres, Y up, emission in cd/m².
@@ -307,6 +313,25 @@ class Scene(Handle):
         pointer = _arrays.pointer(rays, _abi.luxfer_ray)
         self._call("intersect", pointer, len(rays), _arrays.pointer(hits, _abi.luxfer_hit))
         return hits
+
+    def glare(
+        self, positions: ArrayLike, directions: ArrayLike, samples: int = 4096, seed: int = 1
+    ) -> NDArray[Any]:
+        """The unified glare rating of observers with positions (n, 3) and lines of sight (n, 3), from the scene's
+        luminaires: a structured array with the fields ugr, background, background_error, unrated_lux, solid_angle,
+        sources, outside_range.
+
+        >>> Scene.demo(context, "target-room").glare([[3, 1.2, 1]], [[0, 0, 1]], samples=16)["sources"].item()
+        0
+        """
+        eyes, ahead = _rows(positions, 3, np.float32, "positions"), _rows(directions, 3, np.float32, "directions")
+        observers = np.empty((max(len(eyes), len(ahead)), 6), np.float32)
+        observers[:, :3], observers[:, 3:] = eyes, ahead
+        ratings = np.empty(len(observers), GLARE)
+        pointer = _arrays.pointer(observers, _abi.luxfer_observer)
+        out = _arrays.pointer(ratings, _abi.luxfer_observer_glare)
+        self._call("get_glare", pointer, len(observers), samples, seed, out)
+        return ratings
 
     def requirements(self, error: float = 0.01) -> Requirements:
         """The features that the scene requires of the renderer; error is the share of light for the field bounces."""

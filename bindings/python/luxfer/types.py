@@ -1084,7 +1084,8 @@ class DistributionReport:
     watts: float
     """Electric power in watts; 0 if unknown."""
     size: tuple[float, float, float]
-    """Length, width and height of the luminous opening in metres; negative for round ones."""
+    """Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round
+    ones. These are the length, width and height of IES, and the width, length and height of EULUMDAT."""
 
 
 class LightParams(TypedDict, total=False):
@@ -1956,6 +1957,43 @@ class GlareReport:
     """Luminance in cd/m² above which a pixel counted as a glare source."""
     solid_angle: float
     """Solid angle of all sources in steradians."""
+    unseen_lights: int
+    """Number of lights of the rendered scene that shine from points: the image does not show them, and ugr
+    leaves them out; rate them with luxfer_scene_get_glare. Known for images of luxfer_render_get_image and
+    luxfer_render_get_layer; 0 for others, whose scene has WarningCode.NOT_IN_PICTURE."""
+
+
+@dataclass(frozen=True)
+class Observer:
+    """An eye that looks in a direction. An element of arrays, so this struct never changes."""
+
+    position: tuple[float, float, float]
+    """Position of the eye, in metres."""
+    direction: tuple[float, float, float]
+    """Line of sight; any length but 0, and not vertical."""
+
+
+@dataclass(frozen=True)
+class ObserverGlare:
+    """The glare of an observer. An element of arrays, so this struct never changes."""
+
+    ugr: float
+    """Unified glare rating: below 10 there is no glare, 19 is the limit for offices; -infinity without a
+    luminaire in view, infinity if the background is black."""
+    background: float
+    """Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi."""
+    background_error: float
+    """Standard error of background."""
+    unrated_lux: float
+    """Direct illuminance at the eye, in lux, by lights that ugr leaves out: luminaires whose file has no
+    dimensions, or that are seen edge-on, points, spots, directional lights, emissive surfaces and the
+    environment."""
+    solid_angle: float
+    """Solid angle of the visible parts of all rated luminaires in view, in steradians."""
+    sources: int
+    """Number of these luminaires."""
+    outside_range: int
+    """Number of these whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid."""
 
 
 class FalseColourParams(TypedDict, total=False):

@@ -6,6 +6,7 @@ mod energy;
 mod extremes;
 mod far;
 mod film;
+mod glare;
 mod illuminance;
 mod irradiance;
 mod layers;

@@ -1,0 +1,101 @@
+//! Glare of observers
+//!
+//! The unified glare rating (CIE 117) of observers in a scene, from its luminaires: their intensity over the area of
+//! their luminous openings, as seen from the eye.
+
+use super::guard::enter;
+use super::handle::Owned;
+use super::pointer::{bytes, bytes_mut};
+use super::query::size_of_all;
+use super::scene::luxfer_scene;
+use super::status::luxfer_status;
+use crate::error::Result;
+use crate::job::Monitor;
+use crate::render::glare::{self, Eye, Rating};
+use glam::Vec3;
+
+/// An eye that looks in a direction. An element of arrays, so this struct never changes.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_observer {
+    /// Position of the eye, in metres.
+    pub position: [f32; 3],
+    /// Line of sight; any length but 0, and not vertical.
+    pub direction: [f32; 3],
+}
+
+/// The glare of an observer. An element of arrays, so this struct never changes.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_observer_glare {
+    /// Unified glare rating: below 10 there is no glare, 19 is the limit for offices; -infinity without a luminaire in
+    /// view, infinity if the background is black.
+    pub ugr: f64,
+    /// Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi.
+    pub background: f64,
+    /// Standard error of background.
+    pub background_error: f64,
+    /// Direct illuminance at the eye, in lux, by lights that ugr leaves out: luminaires whose file has no dimensions,
+    /// or that are seen edge-on, points, spots, directional lights, emissive surfaces and the environment.
+    pub unrated_lux: f64,
+    /// Solid angle of the visible parts of all rated luminaires in view, in steradians.
+    pub solid_angle: f64,
+    /// Number of these luminaires.
+    pub sources: u32,
+    /// Number of these whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid.
+    pub outside_range: u32,
+}
+
+/// Rates the glare of count observers in a scene. samples is the number of paths per observer for the background, in
+/// [16, 16777216]; 4096 suit most rooms. Returns when the work is done, which takes as long as count * samples paths;
+/// the first call after a scene is loaded or changed also prepares it for tracing. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
+/// straight up or down, or is inside a luminaire: the message names it. Then no rating is written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_get_glare(
+    scene: *mut luxfer_scene,
+    observers: *const luxfer_observer,
+    count: usize,
+    samples: u32,
+    seed: u64,
+    ratings: *mut luxfer_observer_glare,
+) -> luxfer_status {
+    enter(scene, |object| {
+        if count == 0 {
+            return Ok(());
+        }
+        let observers = bytes(observers.cast(), size_of_all::<luxfer_observer>(count)?, "observers")?;
+        let places = bytes_mut(ratings.cast(), size_of_all::<luxfer_observer_glare>(count)?, "ratings")?;
+        let eyes: Vec<Eye> = observers.chunks_exact(size_of::<luxfer_observer>()).map(eye).collect();
+        let world = object.ready_world()?;
+        let (params, monitor) = (glare::Params { samples, seed }, Monitor::default());
+        let rated: Result<Vec<Rating>> =
+            object.context().quick.run(|| glare::rate(&world, &eyes, &params, monitor.job()));
+        for (place, rating) in places.chunks_exact_mut(size_of::<luxfer_observer_glare>()).zip(&rated?) {
+            place.copy_from_slice(bytemuck::cast_slice(&words(rating)));
+        }
+        Ok(())
+    })
+}
+
+fn eye(raw: &[u8]) -> Eye {
+    let mut fields = [0.0f32; 6];
+    for (field, raw) in fields.iter_mut().zip(raw.chunks_exact(4)) {
+        *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
+    }
+    let [px, py, pz, dx, dy, dz] = fields;
+    Eye { position: Vec3::new(px, py, pz), direction: Vec3::new(dx, dy, dz) }
+}
+
+/// The fields of a rating, as words in the order of `luxfer_observer_glare`.
+fn words(rating: &Rating) -> [u32; 12] {
+    let solid_angle = rating.sources.iter().map(|s| s.solid_angle).sum();
+    let numbers = [rating.ugr, rating.background, rating.background_error, rating.unrated_lux, solid_angle];
+    let mut words = [0; 12];
+    for (pair, number) in words.chunks_exact_mut(2).zip(numbers) {
+        pair.copy_from_slice(&bytemuck::cast::<f64, [u32; 2]>(number));
+    }
+    words[10] = rating.sources.len() as u32;
+    words[11] = rating.outside_range() as u32;
+    words
+}

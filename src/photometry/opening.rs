@@ -1,0 +1,195 @@
+//! The luminous opening of a luminaire: its shape, by the conventions of LM-63 for the signs of the dimensions, and its
+//! area as seen from a direction, by which an intensity becomes a luminance (CIE 117: `L = I / A_p`).
+//!
+//! Coordinates are those of the luminaire, in metres from the centre of the opening: x along C = 0, y along C = 90, z
+//! along the axis, towards γ = 0.
+
+use glam::DVec3;
+use std::f64::consts::FRAC_PI_4;
+
+/// Distance in metres within which a point counts as inside an opening. [convention]: no eye is closer to a lamp.
+const CONTACT: f64 = 1e-3;
+
+/// The shape of an opening.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Opening {
+    /// Sides of a box along x, y and z; a rectangle if the last is 0.
+    Box(DVec3),
+    /// A cylinder along coordinate axis `axis`, with diameters along the next two axes; a disc if the length is 0.
+    Cylinder { axis: usize, length: f64, diameters: [f64; 2] },
+    /// A ball of a diameter.
+    Ball(f64),
+}
+
+/// A plane part of the outline of an opening, as seen from a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    pub centre: DVec3,
+    /// The sides of a parallelogram, or the diameters of an ellipse.
+    pub sides: [DVec3; 2],
+    pub is_round: bool,
+}
+
+impl Face {
+    /// The area as seen from a unit direction.
+    pub fn projected_area(&self, direction: DVec3) -> f64 {
+        let share = if self.is_round { FRAC_PI_4 } else { 1.0 };
+        self.sides[0].cross(self.sides[1]).dot(direction).abs() * share
+    }
+
+    /// Maps the unit square to the face and keeps areas (Shirley and Chiu 1997 for ellipses).
+    pub fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
+        let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+        let (x, y) = match self.is_round {
+            false => (x, y),
+            true if x == 0.0 && y == 0.0 => (0.0, 0.0),
+            true if x.abs() > y.abs() => (x * (FRAC_PI_4 * y / x).cos(), x * (FRAC_PI_4 * y / x).sin()),
+            true => (y * (FRAC_PI_4 * x / y).sin(), y * (FRAC_PI_4 * x / y).cos()),
+        };
+        self.centre + (self.sides[0] * x + self.sides[1] * y) / 2.0
+    }
+}
+
+impl Opening {
+    /// The opening of dimensions along C = 0, along C = 90 and along the axis, negative for round ones; `None` for a
+    /// luminaire without area, which is a point.
+    pub fn new([x, y, z]: [f64; 3]) -> Option<Self> {
+        // A round opening may state one of its diameters only.
+        let (x, y) = match (x, y) {
+            (0.0, d) if d < 0.0 => (d, d),
+            (d, 0.0) if d < 0.0 => (d, d),
+            sides => sides,
+        };
+        let [a, b, c] = [x.abs(), y.abs(), z.abs()];
+        let opening = match (x < 0.0, y < 0.0, z < 0.0) {
+            (false, false, _) => Self::Box(DVec3::new(a, b, c)),
+            (true, true, true) => Self::Ball(a.max(b)),
+            (false, true, true) => Self::Cylinder { axis: 0, length: a, diameters: [b, c] },
+            (true, false, true) => Self::Cylinder { axis: 1, length: b, diameters: [c, a] },
+            (_, _, false) => Self::Cylinder { axis: 2, length: c, diameters: [a, b] },
+        };
+        let sides = [a * b, a * c, b * c];
+        (sides.iter().all(|s| s.is_finite()) && sides.iter().any(|s| *s > 0.0)).then_some(opening)
+    }
+
+    /// The faces that are seen from far away in a unit direction; their projections cover that of the opening once.
+    pub fn faces(&self, direction: DVec3) -> Vec<Face> {
+        match *self {
+            Self::Box(size) => (0..3)
+                .map(|axis| {
+                    let towards = DVec3::AXES[axis] * direction[axis].signum();
+                    let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
+                    let sides = [DVec3::AXES[next] * size[next], DVec3::AXES[last] * size[last]];
+                    Face { centre: towards * size[axis] / 2.0, sides, is_round: false }
+                })
+                .filter(|face| face.projected_area(direction) > 0.0)
+                .collect(),
+            Self::Cylinder { axis, length, diameters } => cylinder(axis, length, diameters, direction),
+            Self::Ball(diameter) => {
+                let sides = direction.any_orthonormal_pair();
+                let sides = [sides.0 * diameter, sides.1 * diameter];
+                vec![Face { centre: DVec3::ZERO, sides, is_round: true }]
+            }
+        }
+    }
+
+    /// The area as seen from a unit direction, in m².
+    pub fn projected_area(&self, direction: DVec3) -> f64 {
+        self.faces(direction).iter().map(|face| face.projected_area(direction)).sum()
+    }
+
+    /// Whether a point lies inside the opening or touches it.
+    pub fn contains(&self, point: DVec3) -> bool {
+        let within = |p: f64, size: f64| p.abs() <= size / 2.0 + CONTACT;
+        match *self {
+            Self::Box(size) => (0..3).all(|axis| within(point[axis], size[axis])),
+            Self::Cylinder { axis, length, diameters: [a, b] } => {
+                let [p, q] = [point[(axis + 1) % 3], point[(axis + 2) % 3]];
+                let [a, b] = [a / 2.0 + CONTACT, b / 2.0 + CONTACT];
+                within(point[axis], length) && (p / a).powi(2) + (q / b).powi(2) <= 1.0
+            }
+            Self::Ball(diameter) => point.length() <= diameter / 2.0 + CONTACT,
+        }
+    }
+}
+
+/// The end of a cylinder that faces a direction, and the rectangle that its side projects like.
+fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec<Face> {
+    let [along, first, second] = [axis, (axis + 1) % 3, (axis + 2) % 3].map(|i| DVec3::AXES[i]);
+    let end = along * (length / 2.0 * direction[axis].signum());
+    let mut faces = vec![Face { centre: end, sides: [first * a, second * b], is_round: true }];
+    let (u, v) = (direction.dot(first), direction.dot(second));
+    let across = u.hypot(v);
+    if length > 0.0 && across > 0.0 {
+        // Width of the ellipse perpendicular to the direction, and its point nearest to the observer.
+        let (u, v) = (u / across, v / across);
+        let width = (a * v).hypot(b * u);
+        let reach = (a * u).hypot(b * v).max(f64::MIN_POSITIVE);
+        let nearest = (first * (a * a * u) + second * (b * b * v)) / (2.0 * reach);
+        let tangent = second * u - first * v;
+        // The chord through the centre spans the width; move it to the near side along the direction.
+        let centre = (first * u + second * v) * nearest.dot(first * u + second * v);
+        faces.push(Face { centre, sides: [tangent * width, along * length], is_round: false });
+    }
+    faces.retain(|face| face.projected_area(direction) > 0.0);
+    faces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(size: [f64; 3], c: f64, gamma: f64) -> f64 {
+        let (c, gamma) = (c.to_radians(), gamma.to_radians());
+        let direction = DVec3::new(gamma.sin() * c.cos(), gamma.sin() * c.sin(), gamma.cos());
+        Opening::new(size).unwrap().projected_area(direction)
+    }
+
+    fn disc(diameter: f64) -> f64 {
+        FRAC_PI_4 * diameter * diameter
+    }
+
+    fn near(a: f64, b: f64) {
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
+
+    #[test]
+    fn projected_areas_are_closed_forms() {
+        near(seen([1.2, 0.3, 0.0], 30.0, 60.0), 0.36 * 0.5);
+        // From the side of a box along C = 0: the face of width times height.
+        near(seen([1.2, 0.3, 0.1], 0.0, 90.0), 0.3 * 0.1);
+        near(seen([1.2, 0.3, 0.1], 90.0, 90.0), 1.2 * 0.1);
+        near(seen([-0.4, -0.4, 0.0], 77.0, 60.0), disc(0.4) * 0.5);
+        near(seen([0.0, -0.4, 0.0], 77.0, 0.0), disc(0.4));
+        near(seen([-0.4, -0.4, 0.5], 77.0, 90.0), 0.4 * 0.5);
+        near(seen([-0.4, -0.4, -0.4], 12.0, 34.0), disc(0.4));
+        // A tube along C = 0: its end, and its side.
+        near(seen([1.2, -0.026, -0.026], 0.0, 90.0), disc(0.026));
+        near(seen([1.2, -0.026, -0.026], 90.0, 90.0), 1.2 * 0.026);
+        near(seen([1.2, -0.026, -0.026], 90.0, 0.0), 1.2 * 0.026);
+        near(seen([-0.6, 0.2, 0.0], 0.0, 0.0), FRAC_PI_4 * 0.6 * 0.2);
+    }
+
+    #[test]
+    fn luminaires_without_area_are_points() {
+        for size in [[0.0; 3], [0.0, 0.0, 0.3], [1.2, 0.0, 0.0], [f64::NAN, 1.0, 0.0]] {
+            assert_eq!(Opening::new(size), None, "{size:?}");
+        }
+    }
+
+    #[test]
+    fn points_of_faces_lie_on_their_opening() {
+        let direction = DVec3::new(0.3, -0.5, 0.8).normalize();
+        for size in [[1.2, 0.3, 0.1], [-0.4, -0.4, 0.0], [-0.4, -0.4, 0.5]] {
+            let opening = Opening::new(size).unwrap();
+            for face in opening.faces(direction) {
+                for uv in [[0.5, 0.5], [0.01, 0.02], [0.99, 0.4], [0.3, 0.98]] {
+                    assert!(size[2] > 0.0 || opening.contains(face.point(uv)), "{size:?} {face:?} {uv:?}");
+                }
+            }
+            assert!(opening.contains(DVec3::ZERO) && !opening.contains(DVec3::splat(1.0)));
+        }
+        let disc = Opening::new([-2.0, -2.0, 0.0]).unwrap();
+        assert!(disc.contains(DVec3::new(0.7, 0.7, 5e-4)) && !disc.contains(DVec3::new(0.8, 0.8, 0.0)));
+    }
+}

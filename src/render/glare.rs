@@ -1,0 +1,291 @@
+//! Unified glare rating of observers in a scene, from its luminaires (CIE 117:1995):
+//! `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)`.
+//!
+//! The luminance of a luminaire towards the eye is its intensity over the projected area of its opening, and its solid
+//! angle is that area over the squared distance, as in CIE 117. Hidden parts of an opening do not count: rays to a grid
+//! of points on it decide. The background luminance is `E / π`, with the indirect illuminance E at the eye on the plane
+//! that faces along the line of sight.
+//!
+//! Not modelled: emissive surfaces, the environment and lights without area as glare sources. Their direct illuminance
+//! at the eye is reported, because the rating leaves it out.
+
+use super::bsdf::{Lobes, ScatterKind};
+use super::contribution::LightSource;
+use super::facet::NONE;
+use super::path::{self, Observer, Strategy};
+use super::sampler::Sampler;
+use super::vertex::Vertex;
+use super::world::World;
+use crate::error::{Error, Result, check_range};
+use crate::exec;
+use crate::image::colour;
+use crate::job::Job;
+use crate::photometry::glare::position_index;
+use crate::photometry::opening::Opening;
+use crate::rng;
+use crate::scene::accel::Ray;
+use crate::scene::{PunctualLight, c90};
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+
+/// The place of an eye and the direction in which it looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eye {
+    pub position: Vec3,
+    /// Of any length but 0, and not vertical.
+    pub direction: Vec3,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Paths per observer for the background, in `[16, 1 << 24]`; rounded up to a multiple of 16.
+    pub samples: u32,
+    pub seed: u64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { samples: 4096, seed: 1 }
+    }
+}
+
+/// The glare of an observer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rating {
+    /// `-∞` without glare sources in view, `∞` if there are some before a black background.
+    pub ugr: f64,
+    /// Background luminance in cd/m², and its standard error.
+    pub background: f64,
+    pub background_error: f64,
+    /// Direct illuminance at the eye in lux by the lights that are not rated.
+    pub unrated_lux: f64,
+    pub sources: Vec<Source>,
+}
+
+/// A luminaire in view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Source {
+    /// Index among the lights of the scene.
+    pub light: usize,
+    /// Luminance in cd/m² of its visible part.
+    pub luminance: f64,
+    /// Solid angle of its visible part.
+    pub solid_angle: f64,
+    pub position_index: f64,
+}
+
+impl Rating {
+    /// Number of sources whose solid angle lies outside the range for which CIE 117 is valid.
+    pub fn outside_range(&self) -> usize {
+        let is_valid = |s: &&Source| (MIN_SOLID_ANGLE..=MAX_SOLID_ANGLE).contains(&s.solid_angle);
+        self.sources.len() - self.sources.iter().filter(is_valid).count()
+    }
+}
+
+/// Range of solid angles in steradian for which CIE 117 is valid. [convention]
+const MIN_SOLID_ANGLE: f64 = 3e-4;
+const MAX_SOLID_ANGLE: f64 = 0.1;
+/// Smallest cosine of a line of sight with the horizontal plane. [convention]: the position index needs an upright eye.
+const MIN_HORIZONTAL: f64 = 0.02;
+/// Smallest share of its largest face as which an opening is seen, below which it is edge-on. [rounding]
+const EDGE_ON: f64 = 1e-6;
+/// Rays across and down each face of an opening.
+const RAYS: usize = 16;
+/// Share of the distance to a face at which its rays end: a ceiling may lie in the plane of the face. [rounding]
+const NEARLY: f64 = 0.999;
+/// Number of independent estimates of the background; their variance gives its standard error.
+const BATCHES: u32 = 16;
+
+/// Rates observers. Call it on the library's own thread pool.
+///
+/// # Errors
+/// Parameters out of range; an observer that is not finite, looks straight up or down, or is inside a luminaire;
+/// cancelled.
+pub fn rate(world: &World, eyes: &[Eye], params: &Params, job: Job) -> Result<Vec<Rating>> {
+    check_range("samples", params.samples, BATCHES, 1 << 24)?;
+    let lamps = lamps(world);
+    for (i, eye) in eyes.iter().enumerate() {
+        check(eye, &lamps).map_err(|e| e.within(format_args!("observer {i}")))?;
+    }
+    let ratings = exec::map(eyes.len(), job, |i| rate_one(world, &eyes[i], &lamps, params, i as u64, job))?;
+    job.check()?;
+    Ok(ratings)
+}
+
+fn check(eye: &Eye, lamps: &[Lamp]) -> Result<()> {
+    let direction = eye.direction.as_dvec3().normalize_or_zero();
+    if !eye.position.is_finite() || direction.x.hypot(direction.z) < MIN_HORIZONTAL {
+        return Err(Error::argument(format!(
+            "position is {} and direction {}; both must be finite, and the direction neither 0 nor vertical",
+            eye.position, eye.direction
+        )));
+    }
+    match lamps.iter().find(|lamp| lamp.opening.contains(lamp.local(eye.position.as_dvec3() - lamp.position))) {
+        None => Ok(()),
+        Some(lamp) => Err(Error::argument(format!(
+            "position is {}; it lies in the luminous opening of light {}, and must be outside",
+            eye.position, lamp.light
+        ))),
+    }
+}
+
+/// A luminaire with an opening.
+struct Lamp {
+    light: usize,
+    position: DVec3,
+    /// Directions of C = 0, of C = 90 and of the axis.
+    frame: [DVec3; 3],
+    opening: Opening,
+    distribution: usize,
+    /// Luminance of its colour.
+    factor: f64,
+}
+
+/// A luminaire as an eye sees it, if nothing hides it.
+struct Sight {
+    towards: DVec3,
+    distance: f64,
+    area: f64,
+    candela: f64,
+}
+
+impl Lamp {
+    fn local(&self, v: DVec3) -> DVec3 {
+        DVec3::from_array(self.frame.map(|axis| axis.dot(v)))
+    }
+
+    fn in_scene(&self, p: DVec3) -> DVec3 {
+        self.position + self.frame[0] * p.x + self.frame[1] * p.y + self.frame[2] * p.z
+    }
+
+    /// `None` if the opening is seen edge-on.
+    fn sight(&self, world: &World, eye: DVec3) -> Option<Sight> {
+        let (towards, distance) = (self.position - eye).normalize_and_length();
+        let u = self.local(-towards);
+        let area = self.opening.projected_area(u);
+        let largest = DVec3::AXES.map(|axis| self.opening.projected_area(axis)).into_iter().fold(0.0, f64::max);
+        let (c, gamma) = (u.y.atan2(u.x).to_degrees(), u.x.hypot(u.y).atan2(u.z).to_degrees());
+        let candela = world.scene().distributions[self.distribution].intensity(c, gamma) * self.factor;
+        (area > largest * EDGE_ON).then_some(Sight { towards, distance, area, candela })
+    }
+
+    /// Visible share of the projected area, and the mean over that share of the squared transmittance.
+    fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
+        let u = self.local(-towards);
+        let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);
+        for face in self.opening.faces(u) {
+            let weight = face.projected_area(u);
+            for i in 0..RAYS * RAYS {
+                let uv = [i % RAYS, i / RAYS].map(|k| (k as f64 + 0.5) / RAYS as f64);
+                let path = (self.in_scene(face.point(uv)) - eye) * NEARLY;
+                let ray = Ray { t_max: 1.0, ..world.ray(eye.as_vec3(), path.as_vec3()) };
+                let share = f64::from(colour::luminance(world.transmittance(&ray, [NONE; 2], None)));
+                total += weight;
+                visible += if share > 0.0 { weight } else { 0.0 };
+                squares += weight * share * share;
+            }
+        }
+        if visible > 0.0 { (visible / total, squares / visible) } else { (0.0, 0.0) }
+    }
+}
+
+/// The luminaires with openings that emit.
+fn lamps(world: &World) -> Vec<Lamp> {
+    let scene = world.scene();
+    let lamp = |(light, kind): (usize, &PunctualLight)| {
+        let PunctualLight::Luminaire { position, axis, c0, colour, distribution } = *kind else { return None };
+        let opening = Opening::new(scene.distributions[distribution].size)?;
+        let factor = f64::from(colour::luminance(colour));
+        let frame = [c0, c90(axis, c0), axis].map(|v| v.as_dvec3());
+        let lamp = Lamp { light, position: position.as_dvec3(), frame, opening, distribution, factor };
+        (factor > 0.0).then_some(lamp)
+    };
+    scene.lights.iter().enumerate().filter_map(lamp).collect()
+}
+
+fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u64, job: Job) -> Rating {
+    let position = eye.position.as_dvec3();
+    let ahead = eye.direction.as_dvec3().normalize();
+    let right = ahead.cross(DVec3::Y).normalize();
+    let up = right.cross(ahead);
+    let (mut sources, mut rated) = (Vec::new(), Vec::new());
+    rated.resize(world.scene().lights.len(), false);
+    for lamp in lamps {
+        let Some(sight) = lamp.sight(world, position) else { continue };
+        rated[lamp.light] = true;
+        // Lights behind the eye do not glare.
+        if sight.candela <= 0.0 || sight.towards.dot(ahead) <= 0.0 {
+            continue;
+        }
+        let (visible, squared_share) = lamp.visibility(world, position, sight.towards);
+        if visible > 0.0 {
+            let towards = [right, up, -ahead].map(|axis| sight.towards.dot(axis));
+            sources.push(Source {
+                light: lamp.light,
+                luminance: sight.candela / sight.area * squared_share.sqrt(),
+                solid_angle: sight.area / sight.distance.powi(2) * visible,
+                position_index: position_index(DVec3::from_array(towards)),
+            });
+        }
+    }
+    let (background, background_error, unrated_lux) = background(world, eye, &rated, params, index, job);
+    let sum: f64 = sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position_index.powi(2)).sum();
+    let ugr = if sources.is_empty() { f64::NEG_INFINITY } else { 8.0 * (0.25 / background * sum).log10() };
+    Rating { ugr, background, background_error, unrated_lux, sources }
+}
+
+/// Background luminance with its standard error, and the direct illuminance by the lights that are not rated.
+fn background(world: &World, eye: &Eye, rated: &[bool], params: &Params, index: u64, job: Job) -> (f64, f64, f64) {
+    let vertex = Vertex::free(world, eye.position, eye.direction.normalize());
+    let per_batch = params.samples.div_ceil(BATCHES);
+    let (mut means, mut unrated) = ([0.0; BATCHES as usize], DVec3::ZERO);
+    for (batch, mean) in means.iter_mut().enumerate() {
+        let seed = rng::hash(params.seed, &[index, batch as u64]);
+        let mut indirect = DVec3::ZERO;
+        for sample in 0..per_batch {
+            if job.is_cancelled() {
+                return (0.0, 0.0, 0.0);
+            }
+            let mut split = Split { rated, scattered: false, indirect: DVec3::ZERO, unrated: DVec3::ZERO };
+            path::gather(world, &vertex, true, &mut Sampler::new(seed, sample), &mut split);
+            indirect += split.indirect;
+            unrated += split.unrated;
+        }
+        *mean = luminance(indirect) / f64::from(per_batch) / PI;
+    }
+    let n = f64::from(BATCHES);
+    let mean = means.iter().sum::<f64>() / n;
+    let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n * (n - 1.0));
+    (mean, variance.sqrt(), luminance(unrated) / f64::from(per_batch * BATCHES))
+}
+
+fn luminance(light: DVec3) -> f64 {
+    f64::from(colour::luminance(light.as_vec3()))
+}
+
+/// Splits the light of a path that ends at an eye into indirect light and direct light that is not rated.
+struct Split<'a> {
+    /// By the lights of the scene.
+    rated: &'a [bool],
+    /// Whether the path has met a surface other than a clear pane.
+    scattered: bool,
+    indirect: DVec3,
+    unrated: DVec3,
+}
+
+impl Observer for Split<'_> {
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
+        let light = (importance * emission).as_dvec3();
+        // A vertex of a mesh samples its light before it scatters the path; the eye belongs to no mesh.
+        let is_at_mesh = matches!(strategy, Strategy::LightSample { mesh, .. } if mesh != NONE);
+        match source {
+            _ if self.scattered || is_at_mesh => self.indirect += light,
+            LightSource::Punctual(i) if self.rated.get(i as usize) == Some(&true) => {}
+            _ => self.unrated += light,
+        }
+    }
+
+    fn scatter(&mut self, mesh: u32, kind: ScatterKind, _: Lobes) {
+        self.scattered |= mesh != NONE && !matches!(kind, ScatterKind::Pane);
+    }
+}

@@ -1,0 +1,186 @@
+//! Tests of the unified glare rating of observers against hand-computed cases and independent geometry.
+
+use super::*;
+use crate::exec::Pool;
+use crate::photometry::Luminaire;
+use crate::render::glare::{Eye, Params, Rating, rate};
+use crate::rng;
+use std::f64::consts::PI;
+
+fn luminaire(position: Vec3, axis: Vec3, c0: Vec3) -> PunctualLight {
+    PunctualLight::Luminaire { position, axis, c0, colour: Vec3::ONE, distribution: 0 }
+}
+
+/// A room of 6 × 3 × 8 m, whose corner is the origin, with luminaires of a distribution that hang from positions.
+fn room(distribution: Luminaire, places: &[Vec3]) -> Scene {
+    let (x, y, z) = (Vec3::X * 6.0, Vec3::Y * 3.0, Vec3::Z * 8.0);
+    let corners = [(Vec3::ZERO, z, x), (y, x, z), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y)];
+    Scene {
+        meshes: corners.map(|(corner, a, b)| Mesh::parallelogram(corner, a, b, 0)).into(),
+        materials: vec![matt(0.5, 0.0)],
+        lights: places.iter().map(|p| luminaire(*p, Vec3::NEG_Y, Vec3::X)).collect(),
+        distributions: vec![Arc::new(distribution)],
+        ..Scene::default()
+    }
+}
+
+fn rated(scene: Scene, eye: Eye, samples: u32) -> Rating {
+    let (world, params) = (world(scene), Params { samples, seed: 3 });
+    let rate = || rate(&world, &[eye], &params, Monitor::default().job()).unwrap();
+    Pool::new(1).unwrap().run(rate).remove(0)
+}
+
+fn panel() -> Luminaire {
+    Luminaire::lambertian("panel", 3000.0, [1.2, 0.3, 0.0])
+}
+
+const EYE: Eye = Eye { position: Vec3::new(3.0, 1.2, 7.5), direction: Vec3::NEG_Z };
+
+/// A Lambertian panel 3 m ahead and 1.5 m above the eye: `L = 3000 / π / 0.36`, `ω = 0.36 cos γ / r²`, and Guth's index
+/// for τ = 0 and σ = 26.565°.
+#[test]
+fn a_panel_rates_as_computed_by_hand() {
+    let rating = rated(room(panel(), &[Vec3::new(3.0, 2.7, 4.5)]), EYE, 1024);
+    let [source] = rating.sources[..] else { panic!("{rating:?}") };
+    assert!((source.luminance / 2652.58 - 1.0).abs() < 2e-3, "{source:?}");
+    // 0.36 × 0.447214 / 11.25 sr; p = exp(33.98e-3 × 26.565 + 21e-5 × 705.70) = exp(0.90268 + 0.14820) = 2.8602.
+    assert!(
+        (source.solid_angle - 0.014311).abs() < 1e-6 && (source.position_index - 2.8602).abs() < 2e-4,
+        "{source:?}"
+    );
+    let expected = 8.0 * (0.25 / rating.background * source.luminance.powi(2) * 0.014311 / 2.8602f64.powi(2)).log10();
+    assert!((rating.ugr - expected).abs() < 2e-3 && rating.ugr > 5.0, "{} {expected}", rating.ugr);
+    assert!(rating.unrated_lux == 0.0 && rating.outside_range() == 0, "{rating:?}");
+    assert!(rating.background_error < 0.05 * rating.background);
+}
+
+/// The formula with areas by the shoelace formula on the plane perpendicular to the line to the eye, and angles by
+/// their cosines.
+fn independent(eye: Eye, lights: &[PunctualLight], background: f64) -> f64 {
+    let ahead = eye.direction.as_dvec3().normalize();
+    let mut sum = 0.0;
+    for light in lights {
+        let PunctualLight::Luminaire { position, axis, c0, .. } = *light else { continue };
+        let (axis, c0) = (axis.as_dvec3(), c0.as_dvec3());
+        let (half_c0, half_c90) = (c0 * 0.6, c0.cross(axis) * 0.15);
+        let to_lamp = position.as_dvec3() - eye.position.as_dvec3();
+        let (r, sight) = (to_lamp.length(), to_lamp.normalize());
+        let (a, b) = sight.any_orthonormal_pair();
+        let corners = [half_c0 + half_c90, half_c0 - half_c90, -half_c0 - half_c90, half_c90 - half_c0];
+        let flat = corners.map(|c| [c.dot(a), c.dot(b)]);
+        let area = (0..4).map(|i| (flat[i], flat[(i + 1) % 4])).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>();
+        let area = area.abs() / 2.0;
+        let gamma = (-sight.dot(axis)).clamp(-1.0, 1.0).acos();
+        let candela = panel().intensity(0.0, gamma.to_degrees());
+        if candela == 0.0 || sight.dot(ahead) <= 0.0 {
+            continue;
+        }
+        let sigma = sight.dot(ahead).acos().to_degrees();
+        let upright = (DVec3::Y - ahead * ahead.y).normalize();
+        let tau = (sight - ahead * sight.dot(ahead)).normalize().dot(upright).acos().to_degrees();
+        assert!(tau <= 90.0, "all lamps are above the eye");
+        let p = ((35.2 - 0.31889 * tau - 1.22 * (-2.0 * tau / 9.0).exp()) * 1e-3 * sigma
+            + (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma)
+            .exp();
+        sum += (candela / area).powi(2) * area / (r * r) / (p * p);
+    }
+    8.0 * (0.25 / background * sum).log10()
+}
+
+#[test]
+fn twenty_rooms_agree_with_independent_geometry() {
+    let mut worst = 0.0f64;
+    for seed in 0..20 {
+        let random = |k: u64| (rng::hash(seed, &[k]) >> 40) as f32 / (1u64 << 24) as f32;
+        let mut scene = room(panel(), &[]);
+        for lamp in 0..2 + seed % 4 {
+            let at = |k: u64| random(10 * lamp + k);
+            let position = Vec3::new(1.0 + 4.0 * at(0), 2.2 + 0.6 * at(1), 1.0 + 6.0 * at(2));
+            let axis = Vec3::new(0.6 * at(3) - 0.3, -1.0, 0.6 * at(4) - 0.3).normalize();
+            let c0 = axis.cross(Vec3::new(at(5) - 0.5, 0.0, 1.0)).normalize();
+            scene.lights.push(luminaire(position, axis, c0));
+        }
+        let direction = Vec3::new(random(91) - 0.5, 0.0, random(92) - 0.5);
+        let eye = Eye { position: Vec3::new(1.0 + 4.0 * random(93), 1.2, 1.0 + 6.0 * random(94)), direction };
+        let lights = scene.lights.clone();
+        let rating = rated(scene, eye, 64);
+        let expected = independent(eye, &lights, rating.background);
+        assert_eq!(rating.ugr.is_finite(), expected.is_finite(), "{seed}: {rating:?}");
+        if expected.is_finite() {
+            worst = worst.max((rating.ugr - expected).abs());
+        }
+    }
+    assert!(worst < 1e-3, "{worst}");
+}
+
+/// The background is the indirect part of the illuminance at the eye, which a calculation grid gives with the direct
+/// part.
+#[test]
+fn the_background_is_the_indirect_illuminance() {
+    use crate::render::illuminance::{self, Place};
+    let at = Vec3::new(3.0, 2.7, 4.5);
+    let rating = rated(room(panel(), &[at]), EYE, 1 << 15);
+    let world = world(room(panel(), &[at]));
+    let (across, down) = (Vec3::X * 1e-4, Vec3::Y * 1e-4);
+    let place = Place::Grid { origin: EYE.position, across, down, normal: EYE.direction };
+    let params = illuminance::Params { columns: 1, rows: 1, samples: 1 << 15, seed: 9 };
+    let total = illuminance::run(&world, &place, &params, Monitor::default().job()).unwrap();
+    // Intensity 3000 / π × cos γ, at cosines of γ = 1.5 / r and of incidence 3 / r.
+    let direct = 3000.0 / PI * 1.5 * 3.0 / 11.25f64.powi(2);
+    let error = (PI * rating.background_error).hypot(total.mean_error);
+    let off = total.mean - direct - PI * rating.background;
+    assert!(off.abs() < 4.0 * error + 2e-3 * direct && error < 0.02 * total.mean, "{off} ± {error}");
+}
+
+#[test]
+fn hidden_parts_do_not_glare() {
+    let at = Vec3::new(3.0, 2.7, 4.5);
+    let whole = rated(room(panel(), &[at]), EYE, 16).sources[0];
+    // A screen between the eye and the left half of the panel.
+    let screened = |x: f32, width: f32| {
+        let mut scene = room(panel(), &[at]);
+        let screen = Mesh::parallelogram(Vec3::new(x, 1.0, 5.5), Vec3::X * width, Vec3::Y * 1.9, 0);
+        scene.meshes.push(screen);
+        rated(scene, EYE, 16)
+    };
+    let half = screened(1.0, 2.0).sources[0];
+    assert!((half.solid_angle / whole.solid_angle - 0.5).abs() < 1e-9, "{half:?} {whole:?}");
+    assert_eq!(half.luminance, whole.luminance);
+    let none = screened(1.0, 4.0);
+    assert!(none.sources.is_empty() && none.ugr == f64::NEG_INFINITY, "{none:?}");
+    // A panel in the plane of the ceiling is seen whole.
+    let flush = rated(room(panel(), &[Vec3::new(3.0, 3.0, 4.5)]), EYE, 16).sources[0];
+    let distance_squared = 9.0 + 1.8f64 * 1.8;
+    assert!((flush.solid_angle - 0.36 * 1.8 / distance_squared.powf(1.5)).abs() < 1e-7, "{flush:?}");
+}
+
+#[test]
+fn limits_have_clear_answers() {
+    let at = Vec3::new(3.0, 2.7, 4.5);
+    // Nothing in view: the luminaire is behind the eye.
+    let away = rated(room(panel(), &[at]), Eye { direction: Vec3::Z, ..EYE }, 64);
+    assert!(away.ugr == f64::NEG_INFINITY && away.sources.is_empty() && away.background > 0.0);
+    // A black room has a black background.
+    let mut black = room(panel(), &[at]);
+    black.materials[0] = matt(0.0, 0.0);
+    let black = rated(black, EYE, 64);
+    assert!(black.ugr == f64::INFINITY && black.background == 0.0, "{black:?}");
+    // A luminaire without dimensions, a point and an emissive surface are not rated, but reported.
+    let direct = 3000.0 / PI * 1.5 * 3.0 / 11.25f64.powi(2);
+    let point = rated(room(Luminaire { size: [0.0; 3], ..panel() }, &[at]), EYE, 64);
+    assert!(point.sources.is_empty() && (point.unrated_lux / direct - 1.0).abs() < 2e-3, "{point:?}");
+    let mut shining = room(panel(), &[]);
+    shining.materials.push(matt(0.0, 500.0));
+    shining.meshes.push(Mesh::parallelogram(Vec3::new(2.0, 2.5, 3.0), Vec3::X, Vec3::Z, 1));
+    assert!(rated(shining, EYE, 1024).unrated_lux > 1.0);
+    // Observers in a face, and those that look straight up, are refused by name.
+    let scene = Arc::new(room(panel(), &[at]));
+    let world = World::build(scene, Monitor::default().job()).unwrap();
+    let refused =
+        |eye: Eye| rate(&world, &[EYE, eye], &Params::default(), Monitor::default().job()).unwrap_err().message;
+    let inside = refused(Eye { position: at + Vec3::X * 0.5, ..EYE });
+    assert!(inside.contains("observer 1") && inside.contains("opening of light 0"), "{inside}");
+    for direction in [Vec3::Y, Vec3::ZERO, Vec3::splat(f32::NAN)] {
+        assert!(refused(Eye { direction, ..EYE }).contains("direction"), "{direction}");
+    }
+}

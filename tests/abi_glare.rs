@@ -1,0 +1,99 @@
+//! Glare of a room that a luminaire lights: its picture says that it lacks the luminaire, and the scene rates it.
+
+mod host;
+
+use host::{context, made, message, scene};
+use luxfer::ffi::*;
+use std::ffi::CStr;
+use std::ptr::null_mut;
+
+/// A panel of 0.6 m with cosine intensity: `1000 / 0.36` cd/m².
+const PANEL: &[u8] = b"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 7 1 1 2 0.6 0.6 0\n1 1 30\n0 15 30 45 60 75 90\n0\n\
+    1000 965.9258 866.0254 707.1068 500 258.819 0\n";
+
+/// A closed room with a luminaire below its ceiling.
+fn lit(context: *mut luxfer_context) -> *mut luxfer_scene {
+    let scene = scene(context);
+    unsafe {
+        let panel = made(|out| {
+            let (data, format) = (PANEL.as_ptr().cast(), LUXFER_DISTRIBUTION_IES);
+            luxfer_distribution_load_memory(context, data, PANEL.len(), format, out)
+        });
+        let mut params = std::mem::zeroed::<luxfer_luminaire_params>();
+        assert_eq!(luxfer_luminaire_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        params.position = [0.0, 1.5, -0.5];
+        assert_eq!(luxfer_scene_add_luminaire(scene, panel, &params, null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_release(panel.cast()), LUXFER_OK);
+    }
+    scene
+}
+
+fn rate(scene: *mut luxfer_scene, observers: &[luxfer_observer]) -> (luxfer_status, Vec<luxfer_observer_glare>) {
+    let mut ratings = vec![unsafe { std::mem::zeroed::<luxfer_observer_glare>() }; observers.len()];
+    let (count, out) = (observers.len(), ratings.as_mut_ptr());
+    (unsafe { luxfer_scene_get_glare(scene, observers.as_ptr(), count, 256, 1, out) }, ratings)
+}
+
+#[test]
+fn a_picture_says_that_it_lacks_the_luminaire() {
+    let context = context(2);
+    let scene = lit(context);
+    unsafe {
+        let warnings = made(|out| luxfer_get_warnings(scene.cast(), out));
+        let (mut count, mut warning) = (0, std::mem::zeroed::<luxfer_warning>());
+        assert_eq!(luxfer_warnings_get_count(warnings, &mut count), LUXFER_OK);
+        assert_eq!(luxfer_warnings_get(warnings, count - 1, &mut warning, size_of_val(&warning)), LUXFER_OK);
+        assert_eq!((warning.code, warning.severity), (LUXFER_WARNING_NOT_IN_PICTURE, 1.0));
+        let text = CStr::from_ptr(warning.message).to_str().unwrap();
+        assert!(text.contains("light 0, a luminaire at [0, 1.5, -0.5]"), "{text}");
+
+        let render = made(|out| luxfer_render_create(context, out));
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        assert_eq!(luxfer_render_set_aovs(render, LUXFER_AOV_LUMINANCE), LUXFER_OK);
+        let mut params = std::mem::zeroed::<luxfer_render_params>();
+        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        params = luxfer_render_params { width: 16, height: 12, samples: 4, ..params };
+        let job = made(|out| luxfer_render_start(render, &params, out));
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
+        let beauty = made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out));
+        let layer = made(|out| luxfer_render_get_layer(render, 0, out));
+        for (image, unseen) in [(beauty, 1), (layer, 1), (host::image(context, 4, 4, 1.0), 0)] {
+            let mut report = std::mem::zeroed::<luxfer_glare_report>();
+            let size = size_of_val(&report);
+            assert_eq!(luxfer_image_get_glare(image, 1.0, 0.0, &mut report, size), LUXFER_OK, "{}", message(context));
+            assert_eq!(report.unseen_lights, unseen);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+        }
+        [job.cast(), render.cast(), warnings.cast(), scene.cast(), context.cast()].map(|handle| {
+            assert_eq!(luxfer_release(handle), LUXFER_OK);
+        });
+    }
+}
+
+#[test]
+fn the_scene_rates_its_luminaires() {
+    let context = context(2);
+    let scene = lit(context);
+    let eye = luxfer_observer { position: [0.0, 1.0, 0.8], direction: [0.0, 0.0, -1.0] };
+    let away = luxfer_observer { direction: [0.0, 0.0, 1.0], ..eye };
+    let (status, ratings) = rate(scene, &[eye, away]);
+    assert_eq!(status, LUXFER_OK, "{}", message(context));
+    assert_eq!((ratings[0].sources, ratings[1].sources, ratings[1].ugr), (1, 0, f64::NEG_INFINITY));
+    // The opening is seen at cos γ = 0.5 / r from r² = 0.5² + 1.3².
+    let squared = 0.25 + 1.69f64;
+    assert!((ratings[0].solid_angle - 0.36 * 0.5 / squared.powf(1.5)).abs() < 1e-6, "{}", ratings[0].solid_angle);
+    assert!(ratings[0].ugr > 10.0 && ratings[0].ugr < 50.0 && ratings[0].background > 0.0, "{}", ratings[0].ugr);
+    // The emissive lamp of the room is reported as not rated.
+    assert!(ratings[0].unrated_lux > 0.0);
+    // A bad observer is named, and nothing is written.
+    let (status, ratings) = rate(scene, &[eye, luxfer_observer { position: [0.1, 1.5, -0.5], ..eye }]);
+    assert!(status == LUXFER_INVALID_ARGUMENT && message(context).contains("observer 1"), "{}", message(context));
+    assert_eq!(ratings[0].ugr, 0.0);
+    assert_eq!(rate(scene, &[]).0, LUXFER_OK);
+    unsafe {
+        let status = luxfer_scene_get_glare(scene, &eye, 1, 256, 1, null_mut());
+        assert_eq!(status, LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}
