@@ -10,6 +10,7 @@ use super::query::size_of_all;
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
 use crate::error::Result;
+use crate::image::try_vec;
 use crate::job::Monitor;
 use crate::render::glare::{self, Eye, Rating};
 use glam::Vec3;
@@ -66,7 +67,10 @@ pub unsafe extern "C" fn luxfer_scene_get_glare(
         }
         let observers = bytes(observers.cast(), size_of_all::<luxfer_observer>(count)?, "observers")?;
         let places = bytes_mut(ratings.cast(), size_of_all::<luxfer_observer_glare>(count)?, "ratings")?;
-        let eyes: Vec<Eye> = observers.chunks_exact(size_of::<luxfer_observer>()).map(eye).collect();
+        let mut eyes = try_vec(count, Eye { position: Vec3::ZERO, direction: Vec3::ZERO })?;
+        for (place, raw) in eyes.iter_mut().zip(observers.chunks_exact(size_of::<luxfer_observer>())) {
+            *place = eye(raw);
+        }
         let world = object.ready_world()?;
         let (params, monitor) = (glare::Params { samples, seed }, Monitor::default());
         let rated: Result<Vec<Rating>> =
