@@ -642,6 +642,19 @@ typedef struct luxfer_warning {
  */
 #define LUXFER_WARNING_PROPOSED 24
 
+/**
+ * A scene lies far from the origin. If its positions are relative to an origin of its own (luxfer_scene_get_origin),
+ * the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
+ * large that floats have rounded them, it is the step of the rounding in metres.
+ */
+#define LUXFER_WARNING_FAR_FROM_ORIGIN 25
+
+/**
+ * Luminaires of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not rate them; the
+ * severity is their number, and the message lists the first ones with their positions.
+ */
+#define LUXFER_WARNING_NOT_IN_PICTURE 26
+
 /** Counts the warnings of a list. Any thread. */
 luxfer_status luxfer_warnings_get_count(luxfer_warnings *warnings, uint32_t *count);
 

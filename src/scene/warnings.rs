@@ -39,7 +39,12 @@ impl Scene {
                 "compare a rendering with the program that wrote the file; bake the feature into meshes and textures";
             Warning::new(Code::NotRendered, feature.count as f64, 0.0, feature.to_string(), advice)
         });
-        self.implausible_size().into_iter().chain(self.far_away()).chain(unrendered).chain(self.not_in_picture()).collect()
+        self.implausible_size()
+            .into_iter()
+            .chain(self.far_away())
+            .chain(unrendered)
+            .chain(self.not_in_picture())
+            .collect()
     }
 
     /// A warning if positions are relative to an origin of the scene's own, or if they are so large that f32 has
@@ -230,7 +235,10 @@ mod tests {
         let warnings = scene.warnings();
         assert_eq!((warnings[0].code, warnings[0].severity, warnings.len()), (Code::NotInPicture, 5.0, 1));
         let message = &warnings[0].message;
-        assert!(message.contains("light 3, a luminaire at [1, 2.5, 0]") && message.ends_with("and 2 more"), "{message}");
+        assert!(
+            message.contains("light 3, a luminaire at [1, 2.5, 0]") && message.ends_with("and 2 more"),
+            "{message}"
+        );
     }
 
     #[test]
