@@ -136,7 +136,10 @@ fn light_too_bright_to_be_summed_is_refused_by_name() {
     refused(&|s| s.textures[0].image.data[20] = 1e14, "material 1");
     refused(&|s| s.lights = vec![PunctualLight::Point { position: Vec3::Y, intensity: Vec3::splat(3e38) }], "light 0");
     refused(&|s| s.environment = Some(Environment::Constant(Vec3::splat(3e38))), "environment");
-    refused(&|s| s.environment = Some(Environment::Image(Image::from_fn(4, 2, |_, _| [1e16; 3]).unwrap())), "environment");
+    refused(
+        &|s| s.environment = Some(Environment::Image(Image::from_fn(4, 2, |_, _| [1e16; 3]).unwrap())),
+        "environment",
+    );
     // The brightest light that is allowed gives a finite picture with a finite error.
     let mut scene = base.clone();
     scene.materials[1].emission = Vec3::splat(1e15);
