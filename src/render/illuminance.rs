@@ -126,8 +126,18 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
 /// The points at which light is gathered.
 enum Receivers {
     /// In world coordinates, in which neighbouring points differ however far away the scene is.
-    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3, columns: usize },
-    Texels { mesh: u32, front: bool, texels: Vec<Option<(u32, Vec2)>> },
+    Grid {
+        origin: Vec3,
+        across: Vec3,
+        down: Vec3,
+        normal: Vec3,
+        columns: usize,
+    },
+    Texels {
+        mesh: u32,
+        front: bool,
+        texels: Vec<Option<(u32, Vec2)>>,
+    },
 }
 
 impl Receivers {
