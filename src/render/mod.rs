@@ -56,9 +56,9 @@ pub use params::Params;
 pub use requirements::Requirements;
 pub use world::World;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::job::{Job, Monitor};
-use crate::scene::Camera;
+use crate::scene::{Camera, MAX_LIGHT};
 use film::{AdaptiveSampler, Canvas, Clock};
 use glam::{Vec2, Vec3};
 use params::check_camera;
@@ -116,8 +116,8 @@ pub fn irradiance_in_air<S: PathSink>(
 /// `film::adaptive`).
 ///
 /// # Errors
-/// Parameters out of range; a degenerate camera; no memory; cancelled. After a cancel the last published film is
-/// valid.
+/// Parameters out of range; a degenerate camera; lights so bright that pixels overflow; no memory; cancelled. After a
+/// cancel the last published film is valid.
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     params.check()?;
     check_camera(camera)?;
@@ -151,8 +151,20 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
         Some(film) => film,
         None => publish_film(&canvas, &mut clock)?,
     };
+    check_finite(&film)?;
     job.report(1.0);
     Ok(film)
+}
+
+/// Refuses a film whose sums have overflowed.
+fn check_finite(film: &Film) -> Result<()> {
+    match film.beauty.count_non_finite() {
+        0 => Ok(()),
+        n => Err(Error::argument(format!(
+            "{n} values of the picture are not finite: a light is too bright for the surfaces near it; lower emission, \
+             intensity or illuminance (at most {MAX_LIGHT:e}), or move the light away"
+        ))),
+    }
 }
 
 #[cfg(test)]

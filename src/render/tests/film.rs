@@ -218,7 +218,11 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
 
 #[test]
 fn paths_that_are_not_finite_are_dropped_and_counted() {
-    let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.9, f32::MAX)], ..Scene::default() };
+    // The square of the distance to the brightest lamp that is allowed takes the irradiance beyond the range of f32.
+    let radius = 1e-13;
+    let lamp = PunctualLight::Point { position: Vec3::Y * 0.3 * radius, intensity: Vec3::splat(1e15) };
+    let (meshes, materials) = (vec![inward_sphere(radius, 0)], vec![matt(0.9, 0.0)]);
+    let scene = Scene { meshes, materials, lights: vec![lamp], ..Scene::default() };
     let params = Params { width: 4, height: 4, samples: 16, ..Params::default() };
     let film = render(&world(scene), &Camera::look_at(Vec3::ZERO, Vec3::X, 1.0), &params);
     assert!(film.discarded > 0);
