@@ -64,9 +64,9 @@ fn a_picture_says_that_it_lacks_the_luminaire() {
             assert_eq!(report.unseen_lights, unseen);
             assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         }
-        [job.cast(), render.cast(), warnings.cast(), scene.cast(), context.cast()].map(|handle| {
+        for handle in [job.cast(), render.cast(), warnings.cast(), scene.cast(), context.cast()] {
             assert_eq!(luxfer_release(handle), LUXFER_OK);
-        });
+        }
     }
 }
 
