@@ -20,7 +20,10 @@ fn lit(context: *mut luxfer_context) -> *mut luxfer_scene {
             luxfer_distribution_load_memory(context, data, PANEL.len(), format, out)
         });
         let mut params = std::mem::zeroed::<luxfer_luminaire_params>();
-        assert_eq!(luxfer_luminaire_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(
+            luxfer_init(LUXFER_STRUCT_LUMINAIRE_PARAMS, (&raw mut params).cast(), size_of_val(&params)),
+            LUXFER_OK
+        );
         params.position = [0.0, 1.5, -0.5];
         assert_eq!(luxfer_scene_add_luminaire(scene, panel, &params, null_mut()), LUXFER_OK);
         assert_eq!(luxfer_release(panel.cast()), LUXFER_OK);
@@ -51,7 +54,7 @@ fn a_picture_says_that_it_lacks_the_luminaire() {
         assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
         assert_eq!(luxfer_render_set_aovs(render, LUXFER_AOV_LUMINANCE), LUXFER_OK);
         let mut params = std::mem::zeroed::<luxfer_render_params>();
-        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
         params = luxfer_render_params { width: 16, height: 12, samples: 4, ..params };
         let job = made(|out| luxfer_render_start(render, &params, out));
         assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));

@@ -568,6 +568,9 @@ class WarningCode(IntEnum):
     (luxfer_scene_get_origin), the severity is the distance of that origin in metres, above a limit of 0; if
     coordinates of its vertices are so large that floats have rounded them, it is the step of the rounding in
     metres."""
+    NOT_IN_PICTURE = 26
+    """Luminaires of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not rate
+    them; the severity is their number, and the message lists the first ones with their positions."""
 
 
 class IlluminanceImage(IntEnum):
