@@ -124,9 +124,9 @@ pub fn blend_measured(
 }
 
 /// The unwarped light, with the panes of a luminous ceiling parted along the bars between them.
-pub fn part_panes(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography) -> Result<Image> {
+pub fn part_panes(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography, job: Job) -> Result<Image> {
     let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
-    Ok(panes::part(&plane)?.unwrap_or(light))
+    Ok(panes::part(&plane, job)?.unwrap_or(light))
 }
 
 fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {

@@ -146,8 +146,9 @@ impl Transfer {
         // Warp the mask of the lights as the photo was.
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
-        let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.1))?;
-        let light = emission::part_panes(&unwarped.image, light, &unwarped.valid, unwarped.to_photo)?;
+        let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
+        let light =
+            emission::part_panes(&unwarped.image, light, &unwarped.valid, unwarped.to_photo, job.part(0.08, 0.1))?;
         let input = emission::Input {
             unwarped: &unwarped.image,
             light: &light,

@@ -8,6 +8,7 @@ use super::bars::{Bar, Lines, LitPlane};
 use crate::error::Result;
 use crate::image::colour::luminance;
 use crate::image::{Image, try_collect};
+use crate::job::Job;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -21,7 +22,7 @@ const LEADING: f64 = 0.06;
 
 /// The light of the panes without the bars between them; `None` where the plane is no luminous ceiling, or the light
 /// covers no bar.
-pub fn part(plane: &LitPlane) -> Result<Option<Image>> {
+pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     let pixels = plane.light.data.len();
     let valid = (0..pixels).filter(|&i| plane.is_valid(i)).count();
     let lit = (0..pixels).filter(|&i| plane.is_lit(i)).count();
@@ -32,7 +33,9 @@ pub fn part(plane: &LitPlane) -> Result<Option<Image>> {
     let luminances = try_collect(colours.map(|c| luminance(Vec3::new(c[0], c[1], c[2])).max(0.0)))?;
     let mut light = plane.light.try_clone()?;
     let (columns, cut_columns) = cut_bars(&Lines::new(plane, &luminances, true)?, &mut light);
+    job.check()?;
     let (rows, cut_rows) = cut_bars(&Lines::new(plane, &luminances, false)?, &mut light);
+    job.check()?;
     if !(cut_columns || cut_rows) {
         return Ok(None);
     }
@@ -131,6 +134,7 @@ mod tests {
     use super::super::components;
     use super::*;
     use crate::geometry::Homography;
+    use crate::job::Monitor;
 
     const SIDE: usize = 240;
 
@@ -156,7 +160,7 @@ mod tests {
 
     fn panes([unwarped, light, valid]: &[Image; 3]) -> Option<Vec<components::Component>> {
         let plane = LitPlane { unwarped, light, valid, to_photo: None };
-        let light = part(&plane).unwrap()?;
+        let light = part(&plane, Monitor::default().job()).unwrap()?;
         Some(components::find(SIDE, SIDE, |i| light.data[i] >= 0.5).unwrap().list)
     }
 
@@ -179,7 +183,7 @@ mod tests {
         let [unwarped, light, valid] = ceiling(fading);
         let towards = glam::DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.01, 0.0, 0.0, 1.0]);
         let plane = LitPlane { unwarped: &unwarped, light: &light, valid: &valid, to_photo: Some(Homography(towards)) };
-        let light = part(&plane).unwrap().unwrap();
+        let light = part(&plane, Monitor::default().job()).unwrap().unwrap();
         let panes = components::find(SIDE, SIDE, |i| light.data[i] >= 0.5).unwrap().list;
         assert_eq!(panes.len(), 36);
     }
