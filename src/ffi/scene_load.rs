@@ -38,13 +38,11 @@ pub struct luxfer_scene_load_params {
 }
 
 const SIZE: usize = 24;
-/// Before keep_origin.
-const FIRST_SIZE: usize = 16;
 
 /// Units that can be meant: a micrometre to a thousand kilometres. [convention]
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
-versioned!(luxfer_scene_load_params, [FIRST_SIZE, SIZE], {
+versioned!(luxfer_scene_load_params, [SIZE], {
     Self { struct_size: SIZE as u32, allow_external_files: 0, unit: 1.0, keep_origin: 0, reserved: 0 }
 });
 
