@@ -58,6 +58,10 @@ class Header:
             if kind == "struct":
                 self.fields[name] = generate.members(item["body"])
                 missing += [f"{name}.{f.name}" for f in self.fields[name] if not f.doc]
+        # An inline function stands beside its struct, and is described there.
+        inline = re.finditer(r"^static inline luxfer_status (luxfer_\w+)\((luxfer_\w+) \*", generate.header_text(), re.M)
+        self.inline = {match[1]: match[2] for match in inline}
+        self.pages.update({name: self.pages[struct] for name, struct in self.inline.items()})
         if missing:
             raise Undocumented("include/luxfer.h does not describe " + ", ".join(missing))
 
@@ -66,7 +70,7 @@ class Header:
     def link(self, name: str, page: str) -> str:
         """A name as code, and as a link to where it is described if that is anywhere."""
         known = self.pages.get(name)
-        return f"[`{name}`]({relative(known, page)}#{name})" if known else f"`{name}`"
+        return f"[`{name}`]({relative(known, page)}#{self.inline.get(name, name)})" if known else f"`{name}`"
 
     def prose(self, text: str, page: str) -> str:
         """A comment as Markdown: names become links, code becomes code, errors a paragraph of their own."""

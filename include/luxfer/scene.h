@@ -890,7 +890,7 @@ luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
  * Copies an attribute of a mesh's vertices into a packed array of the caller; capacity is a number of vertices. Any
  * thread.
  * LUXFER_NOT_FOUND if there is no such mesh or it lacks the attribute; LUXFER_INVALID_ARGUMENT if the attribute is
- * unknown, values is NULL or the capacity is too small.
+ * unknown, the capacity is too small, or values is NULL though the mesh has vertices.
  */
 luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
                                          uint32_t index,
@@ -901,7 +901,8 @@ luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
 /**
  * Copies the triangles of a mesh into a packed array of the caller, three vertex indices per triangle; capacity is a
  * number of triangles. Any thread.
- * LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if indices is NULL or the capacity is too small.
+ * LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if the capacity is too small, or indices is
+ * NULL though the mesh has triangles.
  */
 luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
                                           uint32_t index,

@@ -106,7 +106,7 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
 /// Copies an attribute of a mesh's vertices into a packed array of the caller; capacity is a number of vertices. Any
 /// thread.
 /// LUXFER_NOT_FOUND if there is no such mesh or it lacks the attribute; LUXFER_INVALID_ARGUMENT if the attribute is
-/// unknown, values is NULL or the capacity is too small.
+/// unknown, the capacity is too small, or values is NULL though the mesh has vertices.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_read_vertices(
     scene: *mut luxfer_scene,
@@ -138,7 +138,8 @@ pub unsafe extern "C" fn luxfer_scene_read_vertices(
 
 /// Copies the triangles of a mesh into a packed array of the caller, three vertex indices per triangle; capacity is a
 /// number of triangles. Any thread.
-/// LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if indices is NULL or the capacity is too small.
+/// LUXFER_NOT_FOUND if there is no such mesh; LUXFER_INVALID_ARGUMENT if the capacity is too small, or indices is
+/// NULL though the mesh has triangles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_read_triangles(
     scene: *mut luxfer_scene,
@@ -160,6 +161,9 @@ fn mesh(scene: &Scene, index: u32) -> Result<&Mesh> {
 /// Copies elements of some numbers each to the caller's array, which has room for `capacity` elements.
 fn copy<T: bytemuck::NoUninit>(data: &[T], numbers: usize, place: *mut T, capacity: usize, name: &str) -> Result<()> {
     let needed = data.len() / numbers;
+    if needed == 0 {
+        return Ok(());
+    }
     if place.is_null() {
         return Err(Error::argument(format!("the array for the {name} is NULL; it must have room for {needed}")));
     }

@@ -29,8 +29,9 @@ pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The detail of a scene is far from its other parts beyond this multiple of its own size. [convention]
 const FAR: f64 = 32.0;
-/// Number of corners of triangles that tell where the detail of a scene lies. [convention]
-const DETAIL_SAMPLES: usize = 4096;
+/// Number of triangles, or twice as many, whose corners tell where the detail of a scene lies: few enough for the
+/// reserve of memory. [convention]
+const DETAIL_SAMPLES: usize = 1024;
 /// Marks a missing triangle or emitter.
 pub const NONE: u32 = u32::MAX;
 /// Flag of a varying shading normal.

@@ -100,6 +100,7 @@ def scenes() -> Scenario:
     s.make("scene_load_memory", s.context, b'{"asset":{"version":"2.0"}}', 27, None, struct("scene_load_params", allow_external_files=1))
     s.call("scene_export_memory", scene, ["callback", "write"], None)
     s.call("scene_get_counts", scene, *report("scene_counts"))
+    s.call("scene_get_origin", scene, ROOM, ROOM, ROOM)
     s.call("scene_set_environment", scene, None, 0.1, 0.2, 0.3)
     s.call("scene_set_environment", scene, image, 1.0, 1.0, 1.0)
     s.call("scene_set_emission", scene, 0, 1.0, 2.0, 3.0)

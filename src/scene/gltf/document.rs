@@ -3,6 +3,7 @@
 
 use super::features;
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::try_collect;
 use crate::scene::unrendered::Unrendered;
 use glam::DVec3;
 use gltf::json::Root;
@@ -26,7 +27,7 @@ pub fn parse(json: &[u8]) -> Result<Document> {
     let mut document: Value = serde_json::from_slice(json).map_err(broken)?;
     check_version(&document)?;
     let unrendered = features::unrendered(&document);
-    let translations = translations(&document);
+    let translations = translations(&document)?;
     tidy(&mut document);
     if let Value::Object(root) = &mut document {
         complete(root);
@@ -35,7 +36,7 @@ pub fn parse(json: &[u8]) -> Result<Document> {
 }
 
 /// The translation of each node, or the last column of its matrix.
-fn translations(document: &Value) -> Vec<DVec3> {
+fn translations(document: &Value) -> Result<Vec<DVec3>> {
     let nodes = document.get("nodes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let number = |list: Option<&Value>, at: usize| list.and_then(|list| list.get(at)?.as_f64()).unwrap_or(0.0);
     let column = |node: &Value| {
@@ -45,7 +46,7 @@ fn translations(document: &Value) -> Vec<DVec3> {
             None => number(translation, axis),
         }))
     };
-    nodes.iter().map(column).collect()
+    try_collect(nodes.iter().map(column))
 }
 
 /// Refuses files of glTF 1, and files that require a version above 2.0.

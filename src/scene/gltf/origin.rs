@@ -8,6 +8,7 @@ use super::container::File;
 use super::instances::instances;
 use super::pose::node_transforms;
 use crate::error::Result;
+use crate::image::try_push;
 use crate::scene::origin::detail;
 use glam::{DMat4, DVec3};
 use gltf::json::mesh::{Primitive, Semantic};
@@ -20,8 +21,10 @@ pub const GRID: f64 = 256.0;
 /// A scene is far from the origin beyond this multiple of its own extent. [convention]
 const FAR: f64 = 4.0;
 
-/// Number of corners of bounding boxes after which the others change little. [convention]: bounds memory.
+/// Number of corners of bounding boxes after which the others change little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
+/// Number of these, or twice as many, that tell where the scene lies: few enough for the reserve of memory. [convention]
+const SAMPLES: usize = 4096;
 
 /// Where the coordinates of a file's scene should start, in the metres of `world`; zero for scenes near the origin.
 pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
@@ -34,12 +37,15 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
         // A broken list of instances is reported where the meshes are read.
         for transform in instances(file, node, transform).unwrap_or_default() {
             for [low, high] in mesh.primitives.iter().map(|primitive| bounds(file, primitive)) {
-                corners.extend([low, high].map(|corner| transform.transform_point3(corner)));
+                for corner in [low, high].map(|corner| transform.transform_point3(corner)) {
+                    try_push(&mut corners, corner)?;
+                }
             }
         }
     }
     corners.retain(|corner| corner.is_finite());
-    let Some((median, reach)) = detail(&corners) else { return Ok(DVec3::ZERO) };
+    let sampled: Vec<DVec3> = corners.iter().step_by((corners.len() / SAMPLES).max(1)).copied().collect();
+    let Some((median, reach)) = detail(&sampled) else { return Ok(DVec3::ZERO) };
     let is_near = median.abs().cmplt(DVec3::splat(GRID.max(FAR * reach)));
     Ok(DVec3::select(is_near, DVec3::ZERO, (median / GRID).round() * GRID))
 }
