@@ -59,8 +59,9 @@ class Header:
                 self.fields[name] = generate.members(item["body"])
                 missing += [f"{name}.{f.name}" for f in self.fields[name] if not f.doc]
         # An inline function stands beside its struct, and is described there.
-        inline = re.finditer(r"^static inline luxfer_status (luxfer_\w+)\((luxfer_\w+) \*", generate.header_text(), re.M)
-        self.inline = {match[1]: match[2] for match in inline}
+        pattern = re.compile(r"^static inline luxfer_status (luxfer_\w+)\((luxfer_\w+) \*", re.M)
+        headers = sorted((generate.HEADER.parent / "luxfer").glob("*.h"))
+        self.inline = dict(pair for header in headers for pair in pattern.findall(header.read_text()))
         self.pages.update({name: self.pages[struct] for name, struct in self.inline.items()})
         if missing:
             raise Undocumented("include/luxfer.h does not describe " + ", ".join(missing))
