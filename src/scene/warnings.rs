@@ -30,7 +30,7 @@ const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres"
 
 /// Spacing in metres of the coordinates of vertices above which walls, lamps and panes that lie close together merge.
 /// [convention]: half a millimetre, which f32 reaches 4 km from the origin.
-pub const MAX_SPACING: f64 = 5e-4;
+pub const MAX_SPACING: f64 = 0.0005;
 
 impl Scene {
     pub fn warnings(&self) -> Vec<Warning> {
