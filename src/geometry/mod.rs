@@ -1,4 +1,5 @@
-//! Plane and space geometry in `f64`: homographies, the pinhole camera and its vanishing points, small linear systems.
+//! Plane and space geometry in `f64`: homographies, the pinhole camera and its vanishing points, small linear systems, robust
+//! statistics.
 //!
 //! Image points are in pixels, x right, y down, with the centre of the top-left pixel at (0.5, 0.5). Camera space is x
 //! right, y down, z forward. Homogeneous points are divided only where necessary: a vanishing point may be at
@@ -8,6 +9,7 @@ pub mod homography;
 pub mod linear;
 pub mod perspective;
 pub mod polygon;
+pub mod robust;
 
 pub use homography::Homography;
 pub use perspective::{FocalSource, Perspective};

@@ -9,6 +9,7 @@
 
 use super::gradient::{Gradients, SIGMA};
 use crate::geometry::Segment;
+use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
 /// Radial distortion of a lens, expressed as displacement in the corners of the image.
@@ -164,7 +165,7 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     if estimates.len() < MIN_LINES {
         return None;
     }
-    let median = weighted_median(estimates.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
+    let median = weighted_median(estimates.iter().map(|s| (s.corner, s.weight.sqrt())).collect()).unwrap_or(0.0);
     let start = Distortion { corner: median, error: f64::INFINITY, lines: 0 };
     let found = (0..ROUNDS).fold(start, |found, _| m_estimate_step(estimates, found.corner));
     (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
@@ -174,7 +175,7 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
 /// from their scatter.
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
-    let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off)).max(1.0);
+    let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);
     let (mut weights, mut sum, mut squares, mut lines) = (0.0, 0.0, 0.0, 0);
     for s in estimates {
         let off = s.at_corner(corner) - corner;
@@ -190,19 +191,6 @@ fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
         error: ((SEGMENTS_PER_LINE * squares).sqrt() / weights).hypot(MODEL_ERROR),
         lines,
     }
-}
-
-fn weighted_median(mut values: Vec<(f64, f64)>) -> f64 {
-    values.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let half = 0.5 * values.iter().map(|v| v.1).sum::<f64>();
-    let mut sum = 0.0;
-    for (value, weight) in values {
-        sum += weight;
-        if sum >= half {
-            return value;
-        }
-    }
-    0.0
 }
 
 #[cfg(test)]

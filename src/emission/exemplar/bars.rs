@@ -1,21 +1,21 @@
 //! Bars of a luminous ceiling.
 //!
 //! The bars of a skylight or of a luminous ceiling run straight along the axes of the unwarped image. Far from the
-//! camera they are thinner than a photo pixel, or drown in the bloom of the panes. Yet a bar is darker than the panes on
-//! both sides of it over all of its length: the median over a whole line shows it where single pixels do not. Beyond
-//! the last bar that shows, bars go on by their period.
+//! camera they are thinner than a photo pixel, or drown in the bloom of the panes. Yet a bar is darker than the panes
+//! on both sides of it over all of its length: the median over a whole line shows it where single pixels do not.
+//! Beyond the last bar that shows, the period of the bars gives the next ones.
 
 use super::foreshortening::LocalMap;
 use crate::error::Result;
 use crate::geometry::Homography;
+use crate::geometry::robust::weighted_median;
 use crate::image::{Image, try_vec};
 use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Widest bar, as a share of the longer side of the unwarped image. [bench photos:tune]
 const WIDEST: f64 = 0.05;
-/// By what share of the panes' luminance a bar is darker than they are, at least, in the median along
-/// it. [bench photos:tune]
+/// Smallest share of the panes' luminance that a bar lacks, in the median along it. [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
 /// Share of the lines across a bar that must show light on both sides of it. [bench photos:tune]
 const MIN_LENGTH: f64 = 0.1;
@@ -111,29 +111,18 @@ impl<'a> Lines<'a> {
         1.0 / if self.is_column { pixel.x } else { pixel.y }
     }
 
-    /// Median depth along a position, weighed by the sharpness of the photo; `None` where fewer than `least` pixels have
-    /// light on both sides. A bar is dark over all of its length; what crosses the position is dark in a few places.
+    /// Median depth along a position, weighed by the sharpness of the photo; `None` where fewer than `least` pixels
+    /// have light on both sides. A bar is dark over all of its length, and a bar that crosses it in a few places only.
     fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
-        let mut depths: Vec<(f32, f64)> = Vec::new();
+        let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.stretch()) {
             let end = (start + self.stretch()).min(along.end);
             let sharpness = self.sharpness(u, (start + end) / 2).min(1.0);
             let known = (start..end).map(|v| self.depth[self.index(u, v)]).filter(|depth| depth.is_finite());
-            depths.extend(known.map(|depth| (depth, sharpness)));
+            depths.extend(known.map(|depth| (f64::from(depth), sharpness)));
         }
-        if depths.len() < least.max(1) {
-            return None;
-        }
-        depths.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let half = depths.iter().map(|d| d.1).sum::<f64>() / 2.0;
-        let mut sum = 0.0;
-        depths
-            .iter()
-            .find(|d| {
-                sum += d.1;
-                sum >= half
-            })
-            .map(|d| d.0)
+        let depth = if depths.len() < least { None } else { weighted_median(depths) };
+        depth.map(|depth| depth as f32)
     }
 
     fn stretch(&self) -> usize {
@@ -168,7 +157,7 @@ impl<'a> Lines<'a> {
         bars
     }
 
-    /// Bars beyond the last ones, by the period of those that show.
+    /// The bars that the period of the shown bars predicts beyond the first and the last one.
     pub fn beyond(&self, bars: &[Bar]) -> Vec<Bar> {
         let gaps: Vec<f64> = bars.windows(2).map(|pair| pair[1].centre() - pair[0].centre()).collect();
         let Some(&first) = gaps.first().filter(|_| gaps.len() >= 2) else { return Vec::new() };
@@ -188,8 +177,8 @@ impl<'a> Lines<'a> {
         beyond
     }
 
-    /// The stretches along a bar: where, how deep the bar is there, and how sharply the photo shows it.
-    fn stretches(&self, bar: &Bar) -> Vec<(Range<usize>, f32, f64)> {
+    /// The stretches along a bar.
+    pub fn stretches(&self, bar: &Bar) -> Vec<Stretch> {
         let middle = (bar.first + bar.last) / 2;
         let starts = (0..self.along).step_by(self.stretch());
         let alongs = starts.map(|start| start..(start + self.stretch()).min(self.along));
@@ -198,42 +187,46 @@ impl<'a> Lines<'a> {
                 let depths = (bar.first..=bar.last).filter_map(|u| self.median_depth(u, along.clone(), 1));
                 let depth = depths.fold(0.0, f32::max);
                 let sharpness = self.sharpness(middle, (along.start + along.end) / 2);
-                (along, depth, sharpness)
+                Stretch { along, depth, sharpness }
             })
             .collect()
     }
 
-    /// The bluntest view in which a bar shows.
-    pub fn bluntest(&self, bar: &Bar) -> f64 {
-        let stretches = self.stretches(bar);
-        let evident = stretches.iter().filter(|(_, depth, _)| *depth >= bar.depth / 2.0);
-        evident.map(|(_, _, sharpness)| *sharpness).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Takes a bar out of the light, but where a view at least as sharp as `bluntest` shows none.
-    pub fn cut(&self, bar: &Bar, bluntest: f64, light: &mut Image) -> bool {
-        let stretches = self.stretches(bar);
-        let is_absent =
-            |(_, depth, sharpness): &(Range<usize>, f32, f64)| *sharpness >= bluntest && *depth < ABSENT * bar.depth;
+    /// Takes a bar out of the light, except where a view at least as sharp as `bluntest` shows no bar.
+    pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
+        let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
         // Where another bar crosses, both are equally dark.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
         let mut is_changed = false;
-        for (n, (along, ..)) in stretches.into_iter().enumerate() {
+        for (n, stretch) in stretches.iter().enumerate() {
             if absent[n] && !crosses(n) {
                 continue;
             }
-            for v in along {
+            for v in stretch.along.clone() {
                 for u in bar.first..=bar.last {
                     let i = self.index(u, v);
-                    is_changed |= light.data[i] >= 0.5;
+                    is_changed |= light.data[i] >= super::LIT;
                     light.data[i] = 0.0;
                 }
             }
         }
         is_changed
     }
+}
+
+/// A stretch of a bar: its positions along, the depth of the bar there, and how sharply the photo shows it.
+pub struct Stretch {
+    along: Range<usize>,
+    depth: f32,
+    sharpness: f64,
+}
+
+/// The bluntest view in which a bar shows.
+pub fn bluntest(bar: &Bar, stretches: &[Stretch]) -> f64 {
+    let evident = stretches.iter().filter(|s| s.depth >= bar.depth / 2.0);
+    evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }
 
 /// For each position of a line the most light of the `count` positions before it, 0 without any.

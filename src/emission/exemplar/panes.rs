@@ -4,7 +4,7 @@
 //! leading where the camera is near. The bars ([`super::bars`]) say what a pane is, near and far.
 
 use super::LUMINOUS;
-use super::bars::{Bar, Lines, LitPlane};
+use super::bars::{self, Bar, Lines, LitPlane};
 use crate::error::Result;
 use crate::image::colour::luminance;
 use crate::image::{Image, try_collect};
@@ -53,14 +53,15 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     let mut is_changed = false;
     let mut bluntest = f64::INFINITY;
     for bar in &bars {
-        let own = lines.bluntest(bar);
+        let stretches = lines.stretches(bar);
+        let own = bars::bluntest(bar, &stretches);
         bluntest = bluntest.min(own);
-        is_changed |= lines.cut(bar, own, light);
+        is_changed |= lines.cut(bar, &stretches, own, light);
     }
     // Where the photo is sharper than in any view of a bar, one that follows by its period would show.
     let beyond = lines.beyond(&bars);
     for bar in &beyond {
-        is_changed |= lines.cut(bar, bluntest, light);
+        is_changed |= lines.cut(bar, &lines.stretches(bar), bluntest, light);
     }
     bars.extend(beyond);
     bars.sort_by_key(|bar| bar.first);
@@ -175,8 +176,8 @@ mod tests {
 
     #[test]
     fn bars_that_no_longer_show_go_on_by_their_period() {
-        // The bars across the columns show in the upper rows only. Without a photo all is equally sharp: the lower rows have
-        // no bars.
+        // The bars between rows show in the upper half only. Without a photo all is equally sharp, and the lower half
+        // has none.
         let fading = |x: usize, y: usize| if y < 150 || is_bar(x) { 0.5 } else { 1.0 };
         assert_eq!(panes(&ceiling(fading)).unwrap().len(), 24);
         // The photo shows the lower rows ever less sharply.

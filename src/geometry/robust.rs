@@ -1,0 +1,25 @@
+//! Robust statistics of measurements.
+
+/// The value at which half of the weight of `(value, weight)` pairs is reached, in rising order; `None` without any.
+pub fn weighted_median(mut values: Vec<(f64, f64)>) -> Option<f64> {
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * values.iter().map(|v| v.1).sum::<f64>();
+    let mut sum = 0.0;
+    let median = values.iter().find(|(_, weight)| {
+        sum += weight;
+        sum >= half
+    });
+    median.map(|(value, _)| *value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_the_weight_lies_at_or_below_the_median() {
+        assert_eq!(weighted_median(vec![(3.0, 1.0), (1.0, 1.0), (2.0, 1.0)]), Some(2.0));
+        assert_eq!(weighted_median(vec![(3.0, 5.0), (1.0, 1.0), (2.0, 1.0)]), Some(3.0));
+        assert_eq!(weighted_median(Vec::new()), None);
+    }
+}
