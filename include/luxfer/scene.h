@@ -212,9 +212,9 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
 
 /**
  * Gets the origin of a scene's positions in the coordinates of its file, x, y and z in metres: 0 for scenes near the
- * origin, for scenes that were created, and with keep_origin. All positions that this library takes and gives are
- * relative to it, such as those of vertices, cameras, lights, rays and measuring grids. A host that has positions in
- * the coordinates of the file subtracts it, in doubles. An exported file has the coordinates of the loaded file. Any
+ * origin, for scenes that were created, and with keep_origin. The library takes and gives all positions relative to
+ * this origin: vertices, cameras, lights, rays and measuring grids. Subtract it, in doubles, from positions in the
+ * coordinates of the file. An exported file has the coordinates of the loaded file. Any
  * thread.
  */
 luxfer_status luxfer_scene_get_origin(luxfer_scene *scene,

@@ -5,7 +5,7 @@
 
 use super::guard::enter;
 use super::handle::Owned;
-use super::pointer::{bytes, bytes_mut};
+use super::pointer::{bytes, bytes_mut, floats};
 use super::query::size_of_all;
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
@@ -83,11 +83,7 @@ pub unsafe extern "C" fn luxfer_scene_get_glare(
 }
 
 fn eye(raw: &[u8]) -> Eye {
-    let mut fields = [0.0f32; 6];
-    for (field, raw) in fields.iter_mut().zip(raw.chunks_exact(4)) {
-        *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
-    }
-    let [px, py, pz, dx, dy, dz] = fields;
+    let [px, py, pz, dx, dy, dz] = floats(raw);
     Eye { position: Vec3::new(px, py, pz), direction: Vec3::new(dx, dy, dz) }
 }
 

@@ -30,6 +30,15 @@ pub(super) fn set_optional<T>(place: *mut T, value: T) {
     }
 }
 
+/// The first `N` floats of bytes of the caller, at any alignment; 0 for those that the bytes lack.
+pub(super) fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
+    let mut values = [0.0; N];
+    for (value, raw) in values.iter_mut().zip(bytes.chunks_exact(4)) {
+        *value = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
+    }
+    values
+}
+
 /// A zero-terminated string in UTF-8.
 pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
     if text.is_null() {

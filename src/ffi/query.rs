@@ -5,7 +5,7 @@
 
 use super::guard::enter;
 use super::handle::Owned;
-use super::pointer::{bytes, bytes_mut};
+use super::pointer::{bytes, bytes_mut, floats};
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -87,11 +87,7 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
 
 /// The fields of the hit of a ray, as words in the order of `luxfer_hit`.
 fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
-    let mut fields = [0.0f32; 7];
-    for (field, raw) in fields.iter_mut().zip(ray.chunks_exact(4)) {
-        *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
-    }
-    let [ox, oy, oz, dx, dy, dz, t_max] = fields;
+    let [ox, oy, oz, dx, dy, dz, t_max] = floats(ray);
     // Scale the direction by a power of two near its length, so that any length works.
     let direction = Vec3::new(dx, dy, dz);
     let unit = f64::from_bits(f64::from(direction.abs().max_element()).to_bits() & f64::INFINITY.to_bits());

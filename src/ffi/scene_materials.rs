@@ -8,7 +8,7 @@ use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::params::{self, Report, Versioned, versioned};
-use super::pointer::{Out, bytes, set_optional};
+use super::pointer::{Out, bytes, floats, set_optional};
 use super::query::LUXFER_NONE;
 use super::scene::{colour, luxfer_scene, missing};
 use super::scene_parts::{optional_text, push};
@@ -383,12 +383,7 @@ fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     if pointer.is_null() {
         return Ok(None);
     }
-    let bytes = bytes(pointer.cast(), size_of::<[f32; 6]>(), "transform")?;
-    let mut values = [0.0; 6];
-    for (value, raw) in values.iter_mut().zip(bytes.chunks_exact(4)) {
-        *value = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
-    }
-    Ok(Some(values))
+    Ok(Some(floats(bytes(pointer.cast(), size_of::<[f32; 6]>(), "transform")?)))
 }
 
 /// The report of a texture's use.

@@ -1,8 +1,8 @@
 //! The luminous opening of a luminaire: its shape, by the conventions of LM-63 for the signs of the dimensions, and its
 //! area as seen from a direction, by which an intensity becomes a luminance (CIE 117: `L = I / A_p`).
 //!
-//! Coordinates are those of the luminaire, in metres from the centre of the opening: x along C = 0, y along C = 90, z
-//! along the axis, towards γ = 0.
+//! Points are in the luminaire's own coordinates, in metres from the centre of the opening: x along C = 0, y along
+//! C = 90, z along the axis, towards γ = 0.
 
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_4;

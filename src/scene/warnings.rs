@@ -76,28 +76,28 @@ impl Scene {
         )
     }
 
-    /// The lights that shine from points, so that no picture shows them, with their positions.
-    pub fn unseen_lights(&self) -> impl Iterator<Item = (usize, &'static str, Vec3)> {
-        self.lights.iter().enumerate().filter_map(|(index, light)| match *light {
-            PunctualLight::Point { position, intensity } => {
-                (intensity.max_element() > 0.0).then_some((index, "point", position))
+    /// Number of lights that shine from points, so that no picture shows them.
+    pub fn unseen_lights(&self) -> usize {
+        let is_unseen = |light: &&PunctualLight| match light {
+            PunctualLight::Point { intensity, .. } | PunctualLight::Spot { intensity, .. } => {
+                intensity.max_element() > 0.0
             }
-            PunctualLight::Spot { position, intensity, .. } => {
-                (intensity.max_element() > 0.0).then_some((index, "spot", position))
-            }
-            PunctualLight::Luminaire { position, colour, .. } => {
-                (colour.max_element() > 0.0).then_some((index, "luminaire", position))
-            }
-            PunctualLight::Directional { .. } => None,
-        })
+            PunctualLight::Luminaire { colour, .. } => colour.max_element() > 0.0,
+            PunctualLight::Directional { .. } => false,
+        };
+        self.lights.iter().filter(is_unseen).count()
     }
 
     /// A warning if luminaires shine from points: of point and spot lights nobody expects to see a body.
     fn not_in_picture(&self) -> Option<Warning> {
-        let luminaires = || self.unseen_lights().filter(|(_, kind, _)| *kind == "luminaire");
-        let count = luminaires().count();
-        let describe = |(index, kind, p): (usize, &str, Vec3)| format!("light {index}, a {kind} at {p}");
-        let mut listed: Vec<String> = luminaires().take(MAX_LISTED).map(describe).collect();
+        let luminaire = |(index, light): (usize, &PunctualLight)| match *light {
+            PunctualLight::Luminaire { position, colour, .. } if colour.max_element() > 0.0 => Some((index, position)),
+            _ => None,
+        };
+        let luminaires: Vec<_> = self.lights.iter().enumerate().filter_map(luminaire).collect();
+        let count = luminaires.len();
+        let describe = |(index, p): &(usize, Vec3)| format!("light {index}, a luminaire at {p}");
+        let mut listed: Vec<String> = luminaires.iter().take(MAX_LISTED).map(describe).collect();
         listed.extend((count > MAX_LISTED).then(|| format!("and {} more", count - MAX_LISTED)));
         let message = format!("pictures do not show luminaires, which shine from points: {}", listed.join("; "));
         let advice = "rate their glare with luxfer_scene_get_glare; luxfer_image_get_glare leaves them out";
@@ -229,7 +229,7 @@ mod tests {
         scene.lights.push(PunctualLight::Point { position, intensity: Vec3::ZERO });
         assert_eq!(scene.warnings(), []);
         scene.lights.push(PunctualLight::Point { position, intensity: Vec3::ONE });
-        assert_eq!((scene.warnings(), scene.unseen_lights().count()), (Vec::new(), 1));
+        assert_eq!((scene.warnings(), scene.unseen_lights()), (Vec::new(), 1));
         let (axis, c0, colour) = (Vec3::NEG_Y, Vec3::X, Vec3::ONE);
         scene.lights.extend([PunctualLight::Luminaire { position, axis, c0, colour, distribution: 0 }; 5]);
         let warnings = scene.warnings();

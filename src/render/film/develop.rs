@@ -25,7 +25,7 @@ impl Canvas<'_> {
             error: total.error(),
             relative_error: self.relative_total(job)?.error(),
             discarded: self.discarded.load(Ordering::Relaxed),
-            unseen_lights: self.world.scene().unseen_lights().count(),
+            unseen_lights: self.world.scene().unseen_lights(),
             preview: None,
         })
     }

@@ -23,7 +23,8 @@ const FAR: f64 = 4.0;
 
 /// Number of corners of bounding boxes after which the others change little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
-/// Number of these, or twice as many, that tell where the scene lies: few enough for the reserve of memory. [convention]
+/// Number of corners, or twice as many, that tell where the scene lies: few enough for the reserve of memory.
+/// [convention]
 const SAMPLES: usize = 4096;
 
 /// Where the coordinates of a file's scene should start, in the metres of `world`; zero for scenes near the origin.
