@@ -57,6 +57,8 @@ pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
 pub const LUXFER_FOCAL_ASSUMED: luxfer_focal_source = 2;
 /// Mainly from what the photo's file says; see luxfer_image_get_metadata.
 pub const LUXFER_FOCAL_FROM_METADATA: luxfer_focal_source = 3;
+/// From lamps that are alike, as their plane shows them (lighting transfer only).
+pub const LUXFER_FOCAL_FROM_LAMPS: luxfer_focal_source = 4;
 
 /// An image of a rectification: a LUXFER_RECTIFY_ value.
 pub type luxfer_rectify_image = i32;
@@ -251,6 +253,7 @@ impl luxfer_rectify_report {
                 FocalSource::VanishingPoints => LUXFER_FOCAL_FROM_VANISHING_POINTS,
                 FocalSource::Assumed => LUXFER_FOCAL_ASSUMED,
                 FocalSource::Metadata => LUXFER_FOCAL_FROM_METADATA,
+                FocalSource::Lamps => LUXFER_FOCAL_FROM_LAMPS,
             },
             focal: camera.focal,
             principal: camera.principal.to_array(),

@@ -373,7 +373,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_zones(
 }
 
 /// Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
-/// plane, the result of the stage UNWARP by that plane. Any thread.
+/// plane, the result of the stage UNWARP by that plane. The lamps do not change this camera. Any thread.
 /// LUXFER_NOT_READY if it has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_rectify(
@@ -384,6 +384,7 @@ pub unsafe extern "C" fn luxfer_transfer_use_rectify(
         let found = handle::borrow_in(stage.context(), rectify, "rectify")?.output()?;
         stage.replace(|results| {
             results.view = Some(found.view.clone());
+            (results.view_by_lines, results.view_is_given) = (None, true);
             if found.unwarped.is_some() {
                 results.unwarped = found.unwarped.clone();
             }

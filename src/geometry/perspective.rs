@@ -13,6 +13,8 @@ pub enum FocalSource {
     Assumed,
     /// Mainly from the metadata of the photo: the vanishing points are less accurate.
     Metadata,
+    /// From lamps that are alike, as their plane shows them.
+    Lamps,
 }
 
 /// Indices of the room axes: two horizontal ones and the vertical.

@@ -183,6 +183,11 @@ fn similar(a: &Triplet, b: &Triplet) -> bool {
     (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < 0.1
 }
 
+/// A camera that is known roughly, moved to agree with its lines.
+pub fn polished(lines: &[WeightedLine], axes: DMat3, focal: f64) -> Triplet {
+    refine_jointly(lines, Triplet { axes, focal, score: 0.0 }, None)
+}
+
 /// Joint Gauss-Newton refinement of a rotation vector and the logarithm of the focal length, iteratively reweighted.
 fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) -> Triplet {
     let mut best = Triplet { score: score(lines, &start), ..start };

@@ -6,6 +6,7 @@
 //!             └─▶ canny ─▶ hough ─┘        ├ manhattan ─ sphere
 //!                                          └ successive ─ metric
 //! View + mask ─▶ plane ─▶ quad ─▶ unwarp ─▶ resample ─▶ Unwarped
+//! View + masks of plane and lamps ─▶ shapes ─▶ View
 //! ```
 //!
 //! The paper's method (gradient-restricted Hough lines and successive RANSAC groups) is available as printed:
@@ -43,6 +44,7 @@ mod plane;
 mod quad;
 mod resample;
 pub mod segments;
+mod shapes;
 mod sphere;
 mod squareness;
 mod successive;

@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 /// than the prior of photos in general. [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// Maximum standard deviation of a room axis in radians. [judged on 38 photos]
-const MAX_DIRECTION_ERROR: f64 = 0.035;
+pub const MAX_DIRECTION_ERROR: f64 = 0.035;
 /// Maximum displacement of the photo's corners by the lens, as a share of their distance from the centre. [judged on
 /// 38 photos]
 const MAX_DISTORTION: f64 = 0.02;

@@ -156,6 +156,10 @@ pub struct LitScene {
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     pub view: Option<Arc<View>>,
+    /// The view by lines alone, where the lamps have shown another.
+    pub view_by_lines: Option<Arc<View>>,
+    /// Whether the caller has set the view, which then stays.
+    pub view_is_given: bool,
     pub features: Option<Arc<Features>>,
     /// Lamps that were found beyond the plane as it was laid out first. The room was enlarged to hold them, and they are
     /// examples of the plane.
@@ -220,7 +224,7 @@ impl Transfer {
         match stage {
             Stage::View => self.find_view(job),
             Stage::Features => {
-                self.results.beyond.clear();
+                self.results.forget_lamps();
                 self.compute_features(None, job)
             }
             Stage::Plane => self.segment_plane(job),

@@ -14,10 +14,13 @@ use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Factor by which a wall may move away to hold lamps beyond it: a layout by strokes is surer than one by lines alone.
-/// [bench photos:tune, photos:real]
+/// Factor by which a wall may move away to hold lamps beyond it: a layout by strokes is surer than one by lines alone,
+/// or by a camera that the lines do not determine. [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
-const MAX_GROWTH_PROPOSED: f64 = 4.0;
+const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
+
+/// How often the view is corrected: the second time by the lamps that the first correction showed. [bench photos:tune]
+const LAMP_ROUNDS: i32 = 2;
 
 impl Transfer {
     pub(super) fn find_view(&mut self, job: Job) -> Result<()> {
@@ -26,6 +29,7 @@ impl Transfer {
         let expected_focal = settings.expected_focal.or(self.input.photo_focal);
         let settings = rectify::Params { expected_focal, ..settings.clone() };
         self.results.view = Some(Arc::new(rectify::find_view(photo, &settings, job)?));
+        (self.results.view_by_lines, self.results.view_is_given) = (None, false);
         Ok(())
     }
 
@@ -71,9 +75,41 @@ impl Transfer {
         Ok(())
     }
 
+    /// Corrects the view where the lamps contradict it, enlarges the room if lamps lie beyond their plane as it was laid
+    /// out, and finds plane and lights anew.
+    pub(super) fn look_again(&mut self, job: Job) -> Result<()> {
+        for round in 0..LAMP_ROUNDS {
+            let part = job.part(0.3 * f64::from(round), 0.3 * f64::from(round + 1));
+            if !self.correct_view(part)? {
+                break;
+            }
+        }
+        self.enlarge_room(job.part(0.6, 1.0))
+    }
+
+    /// Takes the view in which the lamps are alike, where lines do not determine it; says whether it did.
+    fn correct_view(&mut self, job: Job) -> Result<bool> {
+        let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
+            return Ok(false);
+        };
+        if self.results.view_is_given {
+            return Ok(false);
+        }
+        let by_lines = self.results.view_by_lines.as_ref().unwrap_or(view).clone();
+        let Some(view) = by_lines.with_lamps_alike(&plane.mask, &lights.mask, job.part(0.0, 0.1))? else {
+            return Ok(false);
+        };
+        self.results.view = Some(Arc::new(view));
+        self.results.view_by_lines = Some(by_lines);
+        self.compute_features(None, job.part(0.1, 0.5))?;
+        self.segment_plane(job.part(0.5, 0.75))?;
+        self.segment_lights(job.part(0.75, 1.0))?;
+        Ok(true)
+    }
+
     /// Enlarges the room if lamps lie beyond their plane as it was laid out, and finds plane and lights in the larger
     /// room.
-    pub(super) fn look_again(&mut self, job: Job) -> Result<()> {
+    fn enlarge_room(&mut self, job: Job) -> Result<()> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results
         else {
@@ -86,7 +122,8 @@ impl Transfer {
         let beyond = lights.beyond.clone();
         let pixels = beyond.iter().flat_map(|lamp| &lamp.pixels).map(|&p| centre(p as usize));
         let (layout, growth) = layout.enlarged(face, &view.perspective, pixels);
-        let max_growth = if plane.is_proposed { MAX_GROWTH_PROPOSED } else { MAX_GROWTH };
+        let is_uncertain = plane.is_proposed || self.results.view_by_lines.is_some();
+        let max_growth = if is_uncertain { MAX_GROWTH_UNCERTAIN } else { MAX_GROWTH };
         if growth > max_growth {
             return Ok(());
         }
@@ -226,6 +263,16 @@ impl Transfer {
         self.results.film = results.film;
         self.results.film = Some(Arc::new(film?));
         Ok(())
+    }
+}
+
+impl Results {
+    /// Goes back to what was known before the lamps were found.
+    pub(super) fn forget_lamps(&mut self) {
+        self.beyond.clear();
+        if let Some(view) = self.view_by_lines.take() {
+            self.view = Some(view);
+        }
     }
 }
 

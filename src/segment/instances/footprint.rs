@@ -1,9 +1,10 @@
 //! The part of the room's surface that each pixel shows: lamps of one kind cover equal areas of it, in equal shapes, at
 //! any distance.
 
+use super::super::face::SAME_FACE;
 use crate::error::Result;
 use crate::exec;
-use crate::features::POSITION;
+use crate::features::{NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use glam::Vec3;
@@ -15,6 +16,8 @@ pub struct Footprint {
     pub area: Vec<f32>,
     /// Coordinates along the face.
     pub at: Vec<[f32; 2]>,
+    /// Whether a pixel shows the face itself, as the room was laid out.
+    pub is_on_face: Vec<bool>,
 }
 
 /// Least sine of the angle between a ray and the face that it meets. [rounding]
@@ -48,7 +51,9 @@ impl Footprint {
             let p = position(i % width, i / width);
             [p[(off + 1) % 3], p[(off + 2) % 3]]
         }))?;
-        Ok(Self { area, at })
+        let pixels = features.data.chunks_exact(features.channels);
+        let is_on_face = try_collect(pixels.map(|p| Vec3::from_slice(&p[NORMAL..]).dot(normal) > SAME_FACE))?;
+        Ok(Self { area, at, is_on_face })
     }
 }
 

@@ -88,6 +88,8 @@ impl Brightness {
 /// Sums over the pixels of each node on the surface of the room, each pixel weighed by the area that it shows.
 pub struct OnSurface {
     pub area: Vec<f64>,
+    /// Number of pixels that show the face itself, not its extension.
+    pub on_face: Vec<f64>,
     u: Vec<f64>,
     v: Vec<f64>,
     uu: Vec<f64>,
@@ -102,6 +104,7 @@ impl OnSurface {
         let blank = || try_vec(tree.len(), 0f64);
         let mut sums = Self {
             area: blank()?,
+            on_face: blank()?,
             u: blank()?,
             v: blank()?,
             uu: blank()?,
@@ -109,11 +112,13 @@ impl OnSurface {
             uv: blank()?,
             squares: blank()?,
         };
-        for ((&node, &area), at) in tree.node_of.iter().zip(&footprint.area).zip(&footprint.at) {
+        let shown = footprint.area.iter().zip(&footprint.at).zip(&footprint.is_on_face);
+        for (&node, ((&area, at), &is_on_face)) in tree.node_of.iter().zip(shown) {
             let (node, area, [u, v]) = (node as usize, f64::from(area), at.map(f64::from));
             // The root's shape is of no interest.
             if node != 0 {
                 sums.area[node] += area;
+                sums.on_face[node] += f64::from(is_on_face);
                 sums.u[node] += area * u;
                 sums.v[node] += area * v;
                 sums.uu[node] += area * u * u;
@@ -122,8 +127,8 @@ impl OnSurface {
                 sums.squares[node] += area * area;
             }
         }
-        let Self { area, u, v, uu, vv, uv, squares } = &mut sums;
-        [area, u, v, uu, vv, uv, squares].into_iter().for_each(|values| tree.accumulate(values));
+        let Self { area, on_face, u, v, uu, vv, uv, squares } = &mut sums;
+        [area, on_face, u, v, uu, vv, uv, squares].into_iter().for_each(|values| tree.accumulate(values));
         Ok(sums)
     }
 

@@ -41,12 +41,17 @@ const BROADER: f64 = 1.5;
 const CUT: f64 = 0.06;
 /// Share of the ring that must be plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
+/// Share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
+const ON_FACE: f64 = 0.9;
 /// Ratios to the area and to the aspect of a lamp within which a region off the plane is a lamp too: blur spreads far
 /// ones. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Share of a lamp's width by which lamps of one row may be off it. [bench photos:tune]
 const IN_ROW: f64 = 0.25;
+/// Ratio of its axes below which a lamp counts as round: such lamps are often scattered, others lie in rows.
+/// [bench photos:tune]
+const ROUND: f64 = 1.25;
 /// Difference of the colours of rings, in CIELAB, within which a region off the plane is surrounded by more of it.
 /// [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
@@ -69,7 +74,7 @@ pub struct Similar {
     pub found: Vec<u32>,
     /// Bright regions on the plane that differ from the painted lamps in one respect.
     pub doubtful: Vec<u32>,
-    /// Regions off the plane that would be like the painted lamps if the plane went on there.
+    /// Regions beyond the plane that would be like the painted lamps if the plane went on there.
     pub beyond: Vec<u32>,
 }
 
@@ -153,19 +158,22 @@ impl Search<'_> {
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
             let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
             let is_on_plane = ring.on_plane >= ON_PLANE;
-            let list = match () {
-                () if is_on_plane && likeness >= 1.0 => &mut similar.found,
-                () if is_on_plane && likeness >= NEARLY => &mut similar.doubtful,
-                () if likeness >= 1.0
-                    && model.is_beside(&ring)
-                    && self.continues(painted.iter().chain(&similar.found), node as usize) =>
-                {
-                    &mut similar.beyond
-                }
-                () => continue,
-            };
-            list.push(node);
-            chosen.choose(node);
+            let lamps = || painted.iter().chain(&similar.found);
+            let is_beside = likeness >= 1.0 && !is_on_plane && model.is_beside(&ring);
+            let is_in_hole = is_beside && self.is_on_face(node as usize) && self.is_like_one(lamps(), node as usize);
+            let is_in_row = is_beside && self.continues_row(lamps(), node as usize);
+            if is_in_hole || (is_on_plane && likeness >= 1.0) {
+                similar.found.push(node);
+            }
+            if is_in_row {
+                similar.beyond.push(node);
+            }
+            if is_on_plane && (NEARLY..1.0).contains(&likeness) {
+                similar.doubtful.push(node);
+            }
+            if is_in_hole || is_in_row || (is_on_plane && likeness >= NEARLY) {
+                chosen.choose(node);
+            }
         }
         Ok(similar)
     }
@@ -226,16 +234,38 @@ impl Search<'_> {
         area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
     }
 
-    /// Whether a node has nearly the size and the shape of one of the lamps, and lies in a row with it. Both are measured
-    /// on the face of a room that was laid out.
-    fn continues<'a>(&self, mut lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
-        let Some(surface) = &self.regions.surface else { return false };
-        let ratio = |of: &dyn Fn(usize) -> f64, lamp: u32| of(node) / of(lamp as usize);
-        lamps.any(|&lamp| {
-            EQUAL_AREA.contains(&ratio(&|n| surface.area[n], lamp))
-                && EQUAL_ASPECT.contains(&ratio(&|n| surface.aspect(n), lamp))
-                && surface.are_in_row(node, lamp as usize, IN_ROW)
+    /// The lamps that have nearly the size and the shape of a node, both measured on the face of a room that was laid
+    /// out.
+    fn like_ones<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> impl Iterator<Item = &'a u32> {
+        let alike = self.regions.surface.as_ref();
+        lamps.filter(move |&&lamp| {
+            alike.is_some_and(|surface| {
+                EQUAL_AREA.contains(&(surface.area[node] / surface.area[lamp as usize]))
+                    && EQUAL_ASPECT.contains(&(surface.aspect(node) / surface.aspect(lamp as usize)))
+            })
         })
+    }
+
+    /// Whether a node is round, and as large as one of the lamps, or lies in a row with one that it equals: round lamps
+    /// are often scattered, others lie in rows.
+    fn is_like_one<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
+        let is_round = self.regions.surface.as_ref().is_some_and(|surface| surface.aspect(node) <= ROUND);
+        self.like_ones(lamps, node).any(|&lamp| is_round || self.is_in_row(node, lamp))
+    }
+
+    /// Whether a node continues a row of lamps of its size and shape.
+    fn continues_row<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
+        self.like_ones(lamps, node).any(|&lamp| self.is_in_row(node, lamp))
+    }
+
+    fn is_in_row(&self, node: usize, lamp: u32) -> bool {
+        self.regions.surface.as_ref().is_some_and(|surface| surface.are_in_row(node, lamp as usize, IN_ROW))
+    }
+
+    /// Whether a node lies on the face that holds the lamps, as the room was laid out.
+    fn is_on_face(&self, node: usize) -> bool {
+        let surface = self.regions.surface.as_ref();
+        surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }
 
     /// 1 and more where a node is like the painted lamps in all respects but its surroundings; below it, how far it is from that in

@@ -1,0 +1,171 @@
+//! How much alike shapes of a plane are, once it is seen straight on.
+
+use crate::geometry::robust::weighted_median;
+use crate::image::Image;
+use crate::image::regions::Regions;
+use crate::{error::Result, image::try_vec};
+use glam::{DMat2, DVec2, DVec3};
+
+/// Uncertainty of the border of a region in photo pixels, by blur and bloom [bench photos:tune].
+const BORDER_ERROR: f64 = 0.7;
+/// Relative differences of lamps of one kind, of length or of width [bench photos:tune].
+const VARIETY: f64 = 0.08;
+/// Minimum number of pixels of a region: the form of smaller ones is that of the pixels [bench photos:tune].
+const MIN_PIXELS: f64 = 12.0;
+/// Maximum number of regions: more add time, not certainty [bench photos:tune].
+const MAX_SHAPES: usize = 32;
+/// Minimum sine of the angle between a plane and the ray through a shape's centre [bench photos:tune].
+const MIN_INCIDENCE: f64 = 0.05;
+/// Cost of a common stretch: two more parameters explain it, and most lamps have none [bench photos:tune].
+const STRETCH_COST: f64 = 6.0;
+/// Squared deviation, in variances, from which a shape counts as one of another kind [convention].
+const OUTLIER: f64 = 4.0;
+/// Variance of a position within a pixel [convention].
+const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
+
+/// Widths by which bloom may have widened all regions, in units of [`BLOOM_UNIT`], and the standard deviation of this
+/// width [bench photos:tune].
+const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
+const BLOOM_SPREAD: f64 = 1.5;
+/// Unit of bloom as a share of the photo's longer side: a pixel of 640 [convention].
+const BLOOM_UNIT: f64 = 1.0 / 640.0;
+/// Minimum semi-axis of a region without its bloom, in photo pixels [convention].
+const MIN_SEMIAXIS: f64 = 0.5;
+
+/// A region of the photo that shows one of the shapes whole.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    /// Relative to the principal point.
+    centre: DVec2,
+    /// Covariance of its pixels, without each of the [`BLOOMS`].
+    covariances: [DMat2; BLOOMS.len()],
+    /// Standard deviations of its size and of its stretch, as of [`Form`].
+    size_error: f64,
+    stretch_error: f64,
+}
+
+/// Size and form of an ellipse: the logarithm of the geometric mean of its axes, squared; and half the logarithm of
+/// the squared ratio of its axes, as a vector at twice the angle of the long axis.
+#[derive(Clone, Copy, Debug)]
+struct Form {
+    size: f64,
+    stretch: DVec2,
+}
+
+/// The variances along the axes of a covariance, and twice the angle of the first.
+fn axes(c: DMat2) -> ([f64; 2], DVec2) {
+    let (mean, half, cross) = (0.5 * (c.x_axis.x + c.y_axis.y), 0.5 * (c.x_axis.x - c.y_axis.y), c.x_axis.y);
+    let spread = half.hypot(cross);
+    ([mean + spread, (mean - spread).max(f64::EPSILON * mean)], DVec2::new(half, cross).normalize_or_zero())
+}
+
+/// The covariance of a uniform ellipse whose semi-axes are shorter by a width.
+fn without_border(covariance: DMat2, width: f64) -> DMat2 {
+    let (variances, double_angle) = axes(covariance);
+    let [a, b] = variances.map(|variance| ((2.0 * variance.sqrt() - width).max(MIN_SEMIAXIS) / 2.0).powi(2));
+    let (mean, spread) = (0.5 * (a + b), 0.5 * (a - b) * double_angle);
+    DMat2::from_cols(DVec2::new(mean + spread.x, spread.y), DVec2::new(spread.y, mean - spread.x))
+}
+
+impl Shape {
+    fn new(centre: DVec2, covariance: DMat2, bloom_unit: f64) -> Self {
+        let covariances = BLOOMS.map(|bloom| without_border(covariance, bloom * bloom_unit));
+        // A uniform ellipse has a quarter of its squared axes as variances.
+        let [a, b] = axes(covariance).0.map(|variance| BORDER_ERROR / (2.0 * variance.sqrt()));
+        let (size_error, stretch_error) = ((a + b).hypot(VARIETY), (0.5 * a.hypot(b)).hypot(VARIETY));
+        Self { centre, covariances, size_error, stretch_error }
+    }
+
+    /// The form on the plane at distance 1; `None` beyond its horizon.
+    fn on_plane(&self, normal: DVec3, focal: f64, bloom: usize) -> Option<Form> {
+        let ray = (self.centre / focal).extend(1.0);
+        let depth = normal.dot(ray);
+        if !(depth >= MIN_INCIDENCE * ray.length()) {
+            return None;
+        }
+        let (right, down) = normal.any_orthonormal_pair();
+        let derivative = |axis: DVec3| (axis - ray * (normal.dot(axis) / depth)) / (depth * focal);
+        let column = |axis: DVec3| DVec2::new(right.dot(derivative(axis)), down.dot(derivative(axis)));
+        let jacobian = DMat2::from_cols(column(DVec3::X), column(DVec3::Y));
+        let ([long, short], angle) = axes(jacobian * self.covariances[bloom] * jacobian.transpose());
+        Some(Form { size: 0.5 * (long * short).ln(), stretch: angle * (0.5 * (long / short).ln()) })
+    }
+}
+
+/// The largest regions of a mask that lie whole in the photo, at most [`MAX_SHAPES`].
+pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
+    #[derive(Clone, Copy, Default)]
+    struct Sums {
+        count: f64,
+        first: DVec2,
+        second: [f64; 3],
+        is_cut: bool,
+    }
+    let (width, height) = (mask.width, mask.height);
+    let regions = Regions::of(mask)?;
+    let mut sums = try_vec(regions.count, Sums::default())?;
+    for (pixel, &label) in regions.labels.iter().enumerate().filter(|(_, label)| **label > 0) {
+        let sum = &mut sums[label as usize - 1];
+        let at = mask.centre_of(pixel) - principal;
+        sum.count += 1.0;
+        sum.first += at;
+        sum.second = [sum.second[0] + at.x * at.x, sum.second[1] + at.x * at.y, sum.second[2] + at.y * at.y];
+        let (x, y) = (pixel % width, pixel / width);
+        sum.is_cut |= x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+    }
+    let bloom_unit = BLOOM_UNIT * width.max(height) as f64;
+    let mut whole: Vec<Sums> = sums.into_iter().filter(|sum| !sum.is_cut && sum.count >= MIN_PIXELS).collect();
+    whole.sort_by(|a, b| b.count.total_cmp(&a.count));
+    whole.truncate(MAX_SHAPES);
+    let shape = |sum: &Sums| {
+        let mean = sum.first / sum.count;
+        let [xx, xy, yy] = sum.second.map(|s| s / sum.count);
+        let cross = xy - mean.x * mean.y;
+        let (x, y) = (xx - mean.x * mean.x + PIXEL_VARIANCE, yy - mean.y * mean.y + PIXEL_VARIANCE);
+        Shape::new(mean, DMat2::from_cols(DVec2::new(x, cross), DVec2::new(cross, y)), bloom_unit)
+    };
+    Ok(whole.iter().map(shape).collect())
+}
+
+/// Deviation of the shapes on a plane from shapes that are alike: twice a negative logarithm of their likelihood.
+/// Infinite if one of them lies beyond the plane's horizon.
+pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
+    least_cost(shapes, normal, focal, 1)
+}
+
+/// As [`cost`], faster: with every third width of bloom.
+pub fn rough_cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
+    least_cost(shapes, normal, focal, 3)
+}
+
+fn least_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
+    let cost = |bloom: usize| (BLOOMS[bloom] / BLOOM_SPREAD).powi(2) + cost_without(shapes, normal, focal, bloom);
+    (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
+}
+
+/// The cost without one of the [`BLOOMS`].
+fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f64 {
+    let mut forms = Vec::with_capacity(shapes.len());
+    for shape in shapes {
+        let Some(form) = shape.on_plane(normal, focal, bloom) else { return f64::INFINITY };
+        forms.push((form, shape));
+    }
+    let median = |value: &dyn Fn(&Form) -> f64| {
+        let weighted = forms.iter().map(|(form, shape)| (value(form), shape.size_error.powi(-2)));
+        weighted_median(weighted.collect()).unwrap_or(0.0)
+    };
+    let size = median(&|form| form.size);
+    let stretch = DVec2::new(median(&|form| form.stretch.x), median(&|form| form.stretch.y));
+    let by_size: f64 = forms.iter().map(|(form, shape)| robust(((form.size - size) / shape.size_error).powi(2))).sum();
+    let by_stretch = |common: DVec2| -> f64 {
+        let square =
+            |form: &Form, shape: &Shape| (form.stretch - common).length_squared() / shape.stretch_error.powi(2);
+        forms.iter().map(|(form, shape)| robust(square(form, shape))).sum()
+    };
+    by_size + by_stretch(DVec2::ZERO).min(by_stretch(stretch) + STRETCH_COST)
+}
+
+/// A squared deviation in variances whose growth slows down from [`OUTLIER`] on (Cauchy's function).
+fn robust(square: f64) -> f64 {
+    OUTLIER * (square / OUTLIER).ln_1p()
+}

@@ -1,0 +1,99 @@
+//! The view with another tilt of its plane.
+
+use super::likeness::{self, Shape};
+use super::tilt::{Found, Tilt};
+use crate::geometry::{FocalSource, Perspective, Segment};
+use crate::rectify::sphere::{Frame, WeightedLine, deviation, project, refine, round_covariance};
+use crate::rectify::{VanishingPoint, View, camera, manhattan};
+use glam::{DMat3, DQuat, DVec3};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+
+/// How much worse the shapes may fit after the lines have corrected the tilt, and the minimum share of the lines that
+/// then run along the axes [bench photos:tune].
+const MAX_LOSS: f64 = 6.0;
+const MIN_EXPLAINED: f64 = 0.5;
+/// Steps of the rotation about the normal, in a right angle [convention].
+const ROTATIONS: usize = 360;
+/// Minimum number of segments that tell a direction [convention].
+const MIN_SUPPORT: usize = 3;
+
+impl View {
+    /// The view with the plane tilted as found, turned about its normal so that most lines run along the axes.
+    pub(super) fn retilted(&self, found: &Found, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
+        let frame = Frame::new(width, height, self.perspective.principal);
+        let segments: Vec<Segment> = self.segments.iter().map(|(segment, _)| *segment).collect();
+        let indexed = frame.weighted_lines(&segments);
+        let lines: Vec<WeightedLine> = indexed.iter().map(|(_, line)| *line).collect();
+
+        // Turn the axes along the lines, and let the lines correct them if they all agree.
+        let start = turned(&lines, found.tilt.normal, found.tilt.focal / frame.scale);
+        let corrected = manhattan::polished(&lines, start, found.tilt.focal / frame.scale);
+        let tilt = Tilt { normal: corrected.axes.col(0), focal: corrected.focal * frame.scale };
+        let cost = |tilt: &Tilt| likeness::cost(shapes, tilt.normal, tilt.focal);
+        let agrees = corrected.score > MIN_EXPLAINED && cost(&tilt) < cost(&found.tilt) + MAX_LOSS;
+        let (directions, Tilt { normal, focal }) = if agrees { (corrected.axes, tilt) } else { (start, found.tilt) };
+        let axes = named(directions);
+
+        let is_known = found.focal_spread < self.expected_focal.spread * FRAC_1_SQRT_2;
+        let focal_source = if is_known { FocalSource::Lamps } else { self.expected_focal.source };
+        let perspective = Perspective { focal, focal_source, axes, ..self.perspective };
+        let members = members(&indexed, &axes, focal / frame.scale, segments.len());
+        let vanishing_points = [0, 1, 2].map(|axis| {
+            let direction = axes.col(axis);
+            let support = members.iter().filter(|member| **member == Some(axis)).count();
+            let mut covariance = found.covariance;
+            if direction.dot(normal).abs() < FRAC_1_SQRT_2 {
+                // The direction in the plane is as certain as its normal and the lines along it.
+                let own = (support >= MIN_SUPPORT).then(|| refine(&lines, direction, focal / frame.scale)).flatten();
+                covariance += round_covariance(direction, own.map_or(camera::FREE_ERROR, |r| deviation(&r.covariance)));
+            }
+            let point = perspective.vanishing_point(axis).normalize();
+            VanishingPoint { point, support, error: deviation(&covariance), covariance }
+        });
+        let segments = segments.into_iter().zip(members).collect();
+        View { segments, vanishing_points, perspective, squareness: [None; 3], ..self.clone() }
+    }
+}
+
+/// For each segment the axis that it runs along, if any.
+fn members(lines: &[(usize, WeightedLine)], axes: &DMat3, focal: f64, count: usize) -> Vec<Option<usize>> {
+    let points = [0, 1, 2].map(|axis| project(axes.col(axis), focal));
+    let mut members = vec![None; count];
+    for (index, line) in lines {
+        let agreements = points.iter().map(|&point| line.agreement(point)).enumerate();
+        let best = agreements.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|best| best.1 > 0.0);
+        members[*index] = best.map(|(axis, _)| axis);
+    }
+    members
+}
+
+/// The normal and the two directions of its plane along which most of the lines run.
+fn turned(lines: &[WeightedLine], normal: DVec3, focal: f64) -> DMat3 {
+    let along = normal.any_orthonormal_vector();
+    let directions = |k: usize| {
+        let angle = k as f64 / ROTATIONS as f64 * FRAC_PI_2;
+        let right = DQuat::from_axis_angle(normal, angle) * along;
+        [right, normal.cross(right)]
+    };
+    let explained = |k: usize| -> f64 {
+        let points = directions(k).map(|d| project(d, focal));
+        lines.iter().map(|line| line.weight * points.iter().map(|&p| line.agreement(p)).fold(0.0, f64::max)).sum()
+    };
+    let best = (0..ROTATIONS).max_by(|&a, &b| explained(a).total_cmp(&explained(b))).unwrap_or(0);
+    let [right, down] = directions(best);
+    DMat3::from_cols(normal, right, down)
+}
+
+/// Orthogonal directions as room axes: the one nearest the image's vertical points down, and of the two others the one
+/// nearest the viewing direction ahead.
+fn named(directions: DMat3) -> DMat3 {
+    let mut directions = [0, 1, 2].map(|k| directions.col(k));
+    directions.sort_by(|a, b| b.y.abs().total_cmp(&a.y.abs()));
+    let [down, mut ahead, other] = directions;
+    if other.z.abs() > ahead.z.abs() {
+        ahead = other;
+    }
+    let down = if down.y < 0.0 { -down } else { down };
+    let ahead = if ahead.z < 0.0 { -ahead } else { ahead };
+    DMat3::from_cols(down.cross(ahead), down, ahead)
+}

@@ -1,0 +1,118 @@
+use super::*;
+use crate::geometry::Perspective;
+use crate::job::Monitor;
+use crate::rectify::focal::Expected;
+use crate::rectify::sphere::round_covariance;
+use crate::rectify::{Params, VanishingPoint};
+use glam::{DMat3, DVec2, DVec3};
+
+const SIZE: [usize; 2] = [640, 480];
+const FOCAL: f64 = 560.0;
+
+/// A ceiling seen from below, tilted as a raised camera shows it.
+fn true_normal() -> DVec3 {
+    DVec3::new(0.05, -0.8, 0.6).normalize()
+}
+
+fn camera(normal: DVec3, focal: f64) -> Perspective {
+    let down = -normal;
+    let ahead = (DVec3::Z - down * down.z).normalize();
+    let axes = DMat3::from_cols(down.cross(ahead), down, ahead);
+    let principal = DVec2::new(SIZE[0] as f64, SIZE[1] as f64) / 2.0;
+    Perspective { focal, focal_source: FocalSource::Assumed, principal, axes }
+}
+
+/// A view of a few lines: axes known up to `error` radians.
+fn view(normal: DVec3, error: f64) -> View {
+    let perspective = camera(normal, 500.0);
+    let point = |axis: usize| VanishingPoint {
+        point: perspective.vanishing_point(axis).normalize(),
+        support: 2,
+        error,
+        covariance: round_covariance(perspective.axes.col(axis), error),
+    };
+    View {
+        segments: Vec::new(),
+        vanishing_points: [0, 1, 2].map(point),
+        perspective,
+        squareness: [None; 3],
+        distortion: None,
+        expected_focal: Expected::new(&Params::default(), SIZE[0]),
+    }
+}
+
+/// The photo's mask of discs on the true plane at distance 1, each with its radius.
+fn discs(at: &[(DVec2, f64)]) -> Image {
+    let perspective = camera(true_normal(), FOCAL);
+    let (right, down) = (perspective.axes.col(0), perspective.axes.col(2));
+    Image::from_fn(SIZE[0], SIZE[1], |x, y| {
+        let ray = perspective.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        let depth = true_normal().dot(ray);
+        let point = DVec2::new(right.dot(ray), down.dot(ray)) / depth;
+        let is_lit = depth > 0.0 && at.iter().any(|(centre, radius)| point.distance(*centre) < *radius);
+        [f32::from(is_lit)]
+    })
+    .unwrap()
+}
+
+fn scattered(radius: impl Fn(usize) -> f64) -> Vec<(DVec2, f64)> {
+    let places = [[-0.5, 0.6], [0.1, 0.5], [0.45, 0.8], [-0.3, 1.0], [0.2, 1.2], [-0.6, 1.4], [0.6, 1.5]];
+    places.iter().enumerate().map(|(k, &[x, y])| (DVec2::new(x, y), radius(k))).collect()
+}
+
+fn corrected(view: &View, lamps: &Image) -> Option<View> {
+    let everywhere = Image::from_fn(SIZE[0], SIZE[1], |_, _| [1.0]).unwrap();
+    view.with_lamps_alike(&everywhere, lamps, Monitor::default().job()).unwrap()
+}
+
+fn angle(view: &View) -> f64 {
+    (-view.perspective.axes.col(1)).dot(true_normal()).min(1.0).acos()
+}
+
+#[test]
+fn equal_discs_show_the_tilt_of_their_plane_and_the_focal_length() {
+    let wrong = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.15);
+    let found = corrected(&wrong, &discs(&scattered(|_| 0.06))).expect("the discs contradict the lines");
+    let error = found.vanishing_points[1].error;
+    assert!(angle(&wrong) > 0.4);
+    assert!(angle(&found) < 0.02 && angle(&found) < 3.0 * error, "{} rad, stated {error}", angle(&found));
+    assert!((found.perspective.focal / FOCAL).ln().abs() < 0.05, "{}", found.perspective.focal);
+    assert_eq!(found.perspective.focal_source, FocalSource::Lamps);
+    let axes = found.perspective.axes;
+    assert!(
+        (axes.determinant() - 1.0).abs() < 1e-9
+            && (axes.transpose() * axes - DMat3::IDENTITY).abs_diff_eq(DMat3::ZERO, 1e-9)
+    );
+}
+
+#[test]
+fn a_view_that_lines_determine_stays() {
+    let wrong = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.01);
+    assert!(corrected(&wrong, &discs(&scattered(|_| 0.06))).is_none());
+}
+
+#[test]
+fn a_view_in_which_the_discs_are_alike_stays() {
+    assert!(corrected(&view(true_normal(), 0.15), &discs(&scattered(|_| 0.06))).is_none());
+}
+
+#[test]
+fn discs_of_many_sizes_show_nothing() {
+    let wrong = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.15);
+    let sizes = [0.03, 0.09, 0.05, 0.12, 0.04, 0.1, 0.06];
+    assert!(corrected(&wrong, &discs(&scattered(|k| sizes[k]))).is_none_or(|found| angle(&found) < 0.1));
+}
+
+#[test]
+fn masks_without_shapes_show_nothing() {
+    let wrong = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.15);
+    let one = discs(&scattered(|_| 0.06)[..1]);
+    let all = Image::from_fn(SIZE[0], SIZE[1], |_, _| [1.0]).unwrap();
+    for lamps in [discs(&[]), one, all] {
+        assert!(corrected(&wrong, &lamps).is_none());
+    }
+    let nowhere = discs(&[]);
+    assert!(
+        wrong.with_lamps_alike(&nowhere, &discs(&scattered(|_| 0.06)), Monitor::default().job()).unwrap().is_none()
+    );
+}

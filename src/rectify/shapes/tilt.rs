@@ -1,0 +1,187 @@
+//! The search for the tilt of a plane on which shapes are alike.
+
+use super::likeness::{self, Shape};
+use crate::error::Result;
+use crate::exec;
+use crate::geometry::linear;
+use crate::job::Job;
+use crate::rectify::camera::FREE_ERROR;
+use crate::rectify::focal::Expected;
+use crate::rectify::sphere::STRAIGHTNESS;
+use glam::{DMat3, DVec3};
+
+/// Number of directions tried over the sphere: 6 degrees apart [convention].
+const DIRECTIONS: usize = 1000;
+/// Focal lengths tried on either side of the expected one, and the logarithm of their ratio [convention].
+const FOCALS: i32 = 2;
+const FOCAL_STEP: f64 = 0.4;
+/// Standard deviation of the logarithm of a focal length below which it counts as known [bench photos:tune].
+const KNOWN_FOCAL: f64 = 0.1;
+/// Width of the differences that give the curvature at the least cost: wide ones smooth the kinks of medians and limits
+/// [bench photos:tune].
+const WIDTH: f64 = 0.02;
+/// First and last step of the refinement, in radians [convention].
+const FIRST_STEP: f64 = 0.05;
+const LAST_STEP: f64 = 1e-4;
+/// The most that a contradiction to the lines costs, in variances: the lines may be wrong altogether
+/// [bench photos:tune].
+const MAX_LINES_COST: f64 = 9.0;
+/// Standard deviation of the camera's roll, and the most that it costs: most cameras are held upright
+/// [bench photos:tune].
+const ROLL_ERROR: f64 = 0.15;
+const MAX_ROLL_COST: f64 = 9.0;
+/// Minimum cosine of the angle between the normal and that of the lines: the plane lies on the same side of the camera
+/// [bench photos:tune].
+const MIN_COSINE: f64 = 0.2;
+
+/// A plane by its normal, which points away from the camera, and the focal length in pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Tilt {
+    pub normal: DVec3,
+    pub focal: f64,
+}
+
+/// A tilt with what is known of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    pub tilt: Tilt,
+    /// Covariance of the normal in radians squared, and standard deviation of the logarithm of the focal length.
+    pub covariance: DMat3,
+    pub focal_spread: f64,
+}
+
+/// Cost of a tilt by its shapes and by what is expected of it.
+struct Total<'a> {
+    shapes: &'a [Shape],
+    /// The normal that the lines show, and its standard deviation in radians.
+    lines: DVec3,
+    lines_error: f64,
+    expected: Expected,
+}
+
+/// Cost of shapes on the plane of a normal at a focal length.
+type Cost = fn(&[Shape], DVec3, f64) -> f64;
+
+impl Total<'_> {
+    fn of(&self, tilt: &Tilt) -> f64 {
+        self.by(likeness::cost, tilt)
+    }
+
+    fn by(&self, cost: Cost, tilt: &Tilt) -> f64 {
+        let cosine = tilt.normal.dot(self.lines);
+        if cosine < MIN_COSINE {
+            return f64::INFINITY;
+        }
+        let by_focal = ((tilt.focal / self.expected.focal).ln() / self.expected.spread).powi(2);
+        let by_lines = (cosine.min(1.0).acos() / self.lines_error).powi(2).min(MAX_LINES_COST);
+        // The roll shows in planes above and below the camera, not in those ahead.
+        let roll = tilt.normal.x.atan2(tilt.normal.y.abs());
+        let is_level = self.lines.y.abs() > self.lines.x.abs().max(self.lines.z.abs());
+        let by_roll = if is_level { (roll / ROLL_ERROR).powi(2).min(MAX_ROLL_COST) } else { 0.0 };
+        cost(self.shapes, tilt.normal, tilt.focal) + by_focal + by_lines + by_roll
+    }
+}
+
+/// The tilt with the least cost, from the normal and focal length that the lines show; `None` if no tilt has all
+/// shapes before its horizon.
+pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected, job: Job) -> Result<Option<Found>> {
+    let total = Total { shapes, lines: by_lines.normal, lines_error: error, expected };
+    let is_known = expected.spread < KNOWN_FOCAL;
+    let steps = if is_known { 0 } else { FOCALS };
+    let focals = (-steps..=steps).map(|k| expected.focal * (FOCAL_STEP * f64::from(k)).exp());
+    let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
+
+    let best = exec::map(DIRECTIONS, job, |k| {
+        let normal = direction(k);
+        let tilts = focals.iter().map(|&focal| Tilt { normal, focal });
+        tilts.map(|tilt| (total.by(likeness::rough_cost, &tilt), tilt)).min_by(|a, b| a.0.total_cmp(&b.0))
+    })?;
+    let best = best.into_iter().flatten().chain([(total.by(likeness::rough_cost, &by_lines), by_lines)]);
+    let Some((_, start)) = best.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|b| b.0.is_finite()) else {
+        return Ok(None);
+    };
+    let tilt = refine(&total, start, is_known);
+    let (covariance, focal_spread) = covariance(&total, &tilt, is_known);
+    Ok(Some(Found { tilt, covariance, focal_spread }))
+}
+
+/// The k-th of [`DIRECTIONS`] directions spread evenly over the sphere (a Fibonacci lattice).
+fn direction(k: usize) -> DVec3 {
+    let z = (2 * k + 1) as f64 / DIRECTIONS as f64 - 1.0;
+    let golden_angle = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let (sin, cos) = (golden_angle * k as f64).sin_cos();
+    let radius = (1.0 - z * z).sqrt();
+    DVec3::new(radius * cos, radius * sin, z)
+}
+
+/// The tilt moved along two tangents of its normal and along the logarithm of its focal length.
+fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
+    let (a, b) = tilt.normal.any_orthonormal_pair();
+    Tilt { normal: (tilt.normal + a * right + b * down).normalize(), focal: tilt.focal * focal.exp() }
+}
+
+/// Descends by steps along all axes and diagonals, which shrink where none of them helps.
+fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> Tilt {
+    let mut least = total.of(&tilt);
+    let focal_moves: &[f64] = if is_known { &[0.0] } else { &[0.0, 2.0, -2.0] };
+    let around = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [0.0, 0.0]];
+    let mut step = FIRST_STEP;
+    while step > LAST_STEP {
+        let moves = around.iter().flat_map(|[x, y]| focal_moves.iter().map(move |f| [x * step, y * step, f * step]));
+        let tilts = moves.map(|by| moved(&tilt, by)).map(|tilt| (total.of(&tilt), tilt));
+        match tilts.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|next| next.0 < least) {
+            Some(next) => (least, tilt) = next,
+            None => step *= 0.5,
+        }
+    }
+    tilt
+}
+
+/// Covariance of the normal, and spread of the focal length, from the curvature of the cost: twice the inverse of its
+/// Hessian.
+fn covariance(total: &Total, tilt: &Tilt, is_known: bool) -> (DMat3, f64) {
+    let at = |by: [f64; 3]| total.of(&moved(tilt, by));
+    let unit = |k: usize, size: f64| std::array::from_fn(|i| if i == k { size } else { 0.0 });
+    let middle = at([0.0; 3]);
+    let mut hessian = [[0.0; 3]; 3];
+    for i in 0..3 {
+        hessian[i][i] = (at(unit(i, WIDTH)) + at(unit(i, -WIDTH)) - 2.0 * middle) / (WIDTH * WIDTH);
+        for j in 0..i {
+            let corner = |a: f64, b: f64| {
+                at(std::array::from_fn(|k| {
+                    if k == i {
+                        a
+                    } else if k == j {
+                        b
+                    } else {
+                        0.0
+                    }
+                }))
+            };
+            let mixed = corner(WIDTH, WIDTH) + corner(-WIDTH, -WIDTH) - corner(WIDTH, -WIDTH) - corner(-WIDTH, WIDTH);
+            hessian[i][j] = mixed / (4.0 * WIDTH * WIDTH);
+            hessian[j][i] = hessian[i][j];
+        }
+    }
+    if is_known {
+        hessian[2] = [0.0, 0.0, 2.0 / (total.expected.spread * total.expected.spread)];
+        (hessian[0][2], hessian[1][2]) = (0.0, 0.0);
+    }
+    let columns = [0, 1, 2].map(|k| linear::solve(hessian, unit(k, 2.0)));
+    let free = (FREE_ERROR * FREE_ERROR / 2.0, total.expected.spread);
+    let [Some(x), Some(y), Some(f)] = columns else { return (round(tilt.normal, free.0), free.1) };
+    let is_minimum = x[0] > 0.0 && y[1] > 0.0 && f[2] > 0.0 && x.iter().chain(&y).all(|v| v.is_finite());
+    if !is_minimum {
+        return (round(tilt.normal, free.0), free.1);
+    }
+    let (a, b) = tilt.normal.any_orthonormal_pair();
+    let outer = |p: DVec3, q: DVec3| DMat3::from_cols(p * q.x, p * q.y, p * q.z);
+    let of_shapes = outer(a, a) * x[0] + outer(b, b) * y[1] + (outer(a, b) + outer(b, a)) * x[1];
+    (of_shapes + round(tilt.normal, 0.5 * STRAIGHTNESS * STRAIGHTNESS), f[2].sqrt())
+}
+
+/// A covariance that is the same in all directions across the normal.
+fn round(normal: DVec3, variance: f64) -> DMat3 {
+    let along = DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
+    (DMat3::IDENTITY - along) * variance
+}
