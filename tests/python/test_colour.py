@@ -2,6 +2,7 @@
 
 import io
 import itertools
+import re
 import struct
 import tempfile
 import unittest
@@ -177,11 +178,13 @@ class Colours(Case):
         for path in CMYK_PROFILES:
             if path.exists():
                 profiles[path.name] = path.read_bytes()
-        for (name, icc), kind in itertools.product(profiles.items(), ("TIFF", "JPEG")):
+        for (name, icc), kind in itertools.product(profiles.items(), ("TIFF", "JPEG", "YCCK")):
             with self.subTest(name, kind=kind):
                 out = io.BytesIO()
-                options = {"quality": 100, "subsampling": 0} if kind == "JPEG" else {}
-                self.inks().save(out, kind, icc_profile=icc, **options)
+                options = {} if kind == "TIFF" else {"quality": 100, "subsampling": 0}
+                self.inks().save(out, "TIFF" if kind == "TIFF" else "JPEG", icc_profile=icc, **options)
+                if kind == "YCCK":  # the same numbers, said to be YCbCr and black
+                    out = io.BytesIO(re.sub(rb"(?s)(Adobe.{6})\0", lambda found: found[1] + b"\2", out.getvalue(), count=1))
                 with Pillow.open(out) as stored:
                     stored.load()
                 image = luxfer.Image.from_bytes(context(), out.getvalue())
