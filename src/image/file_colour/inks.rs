@@ -134,9 +134,10 @@ fn numbers(store: &LutStore) -> Result<Vec<f32>> {
     }
 }
 
-/// The value of a sampled curve over `[0, 1]`.
+/// The value of a sampled curve over `[0, 1]`; numbers outside, and NaN, count as its ends.
 fn curve(samples: &[f32], at: f32) -> f32 {
-    let along = at.clamp(0.0, 1.0) * (samples.len() - 1) as f32;
+    let within = if at > 0.0 { at.min(1.0) } else { 0.0 };
+    let along = within * (samples.len() - 1) as f32;
     let first = (along as usize).min(samples.len() - 2);
     samples[first] + (along - first as f32) * (samples[first + 1] - samples[first])
 }
@@ -180,6 +181,6 @@ mod tests {
         }
         // Between the grid points, and damaged amounts.
         assert!((inks.colour([0.25, 0.0, 0.0, 0.25]).y - ((65.625f32 + 16.0) / 116.0).powi(3)).abs() < 2e-3);
-        assert_eq!(inks.colour([f32::NAN, 2.0, -1.0, 0.0]), inks.colour([f32::NAN, 1.0, 0.0, 0.0]));
+        assert_eq!(inks.colour([f32::NAN, 2.0, -1.0, 0.0]), inks.colour([0.0, 1.0, 0.0, 0.0]));
     }
 }

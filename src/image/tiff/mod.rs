@@ -65,7 +65,7 @@ pub(super) fn has_inks(bytes: &[u8]) -> bool {
     layout(bytes).is_ok_and(|(layout, _)| matches!(layout.colour, Colour::Cmyk))
 }
 
-/// The amounts of the four inks of the first picture, in `[0, 1]`.
+/// The amounts of the four inks of the first picture; numbers in `[0, 1]`, unless the file is damaged.
 pub(super) fn decode_inks(bytes: &[u8], orientation: Orientation) -> Result<Image> {
     let (layout, order) = layout(bytes)?;
     read(&layout, order, layout.colours(), orientation)
@@ -107,7 +107,7 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
                 }
             }
             Colour::Cmyk if last == 3 => {
-                pixel.iter_mut().enumerate().for_each(|(c, ink)| *ink = value(x * stored + c).max(0.0).min(1.0));
+                pixel.iter_mut().enumerate().for_each(|(c, ink)| *ink = value(x * stored + c));
             }
             Colour::Cmyk => {
                 let black = value(x * stored + 3);
