@@ -90,6 +90,8 @@ class Program:
             return bytes([255 if kind == "null" else PATHS.index(bytes.fromhex(rest[0]).decode())])
         if is_record(f.type):
             return self.record(*rest) if kind == "struct" else bytes([0])
+        if kind == "struct" and f.type == "void":  # any struct, which the call fills
+            return struct.pack("<H", 0)
         if kind == "struct":
             raise SystemExit(f"{function}: {f.name} has no struct_size")
         if kind in ("null", "room"):
@@ -143,7 +145,7 @@ def table() -> str:
     for name, members in script.STRUCTS.items():
         if is_record(name):
             settings = script.HEADER.settings.get(name)
-            init = f"Some(|p| unsafe {{ luxfer_init({settings}, p, size_of::<{name}>()) }})" if settings else "None"
+            init = f"Some(|p| unsafe {{ luxfer_init({settings}, p.cast(), size_of::<{name}>()) }})" if settings else "None"
             places = ", ".join(f"(offset_of!({name}, {f.name}), {member(f)})" for f in members)
             out.append(f"static {name.upper()}: Record = Record {{ size: size_of::<{name}>(), init: {init}, members: &[{places}] }};")
     out.append("static CALLS: &[(&str, fn(&mut Arguments) -> luxfer_status)] = &[")

@@ -122,6 +122,32 @@ def webp(extended: bool) -> bytes:
     return b"RIFF" + struct.pack("<I", len(chunks) + 4) + b"WEBP" + chunks
 
 
+def profile(space: bytes, tables: dict[bytes, bytes]) -> bytes:
+    """A colour profile with these tags."""
+    start, entries, content = 132 + 12 * len(tables), b"", b""
+    for name, table in tables.items():
+        entries += name + struct.pack(">II", start + len(content), len(table))
+        content += table
+    head = struct.pack(">I4sI4s4s4s", start + len(content), b"\0" * 4, 2 << 24, b"mntr", space, b"Lab ").ljust(36, b"\0") + b"acsp"
+    return head.ljust(128, b"\0") + struct.pack(">I", len(tables)) + entries + content
+
+
+def inks() -> list[bytes]:
+    """JPEG files of four inks and of three colours, with profiles that have tables of two grid points."""
+    out = []
+    for channels, space in ((4, b"CMYK"), (3, b"RGB ")):
+        one = struct.pack(">i", 65536)
+        matrix = (one + bytes(12)) * 2 + one
+        ramps = struct.pack(">HH", 0, 65535)
+        head = b"mft2\0\0\0\0" + bytes([channels, 3, 2, 0]) + matrix + struct.pack(">HH", 2, 2)
+        points = bytes(v % 256 for v in range(6 * 2**channels))
+        icc = profile(space, {b"A2B0": head + ramps * channels + points + ramps * 3})
+        plain, segment = jpeg(channels), b"ICC_PROFILE\0\1\1" + icc
+        out.append(plain[:2] + struct.pack(">BBH", 0xFF, 0xE2, len(segment) + 2) + segment + plain[2:])
+    adobe = b"Adobe\0\x64\0\0\0\0\2"
+    return [*out, out[0][:2] + struct.pack(">BBH", 0xFF, 0xEE, len(adobe) + 2) + adobe + out[0][2:]]
+
+
 def photos() -> list[bytes]:
     """Pictures with notes of a camera, and formats of photos beside PNG and JPEG."""
     exif = b"Exif\0\0" + notes(6)
@@ -130,7 +156,7 @@ def photos() -> list[bytes]:
     kinds = [(1, 1, 0), (1, 4, 3), (1, 8, 1), (3, 8, 2), (4, 8, 5), (4, 16, 2), (3, 32, 2)]
     tiffs = [tiff(*kind, compression) for kind in kinds for compression in (1, 5, 8, 32773)]
     tiffs += [tiff(3, 8, 2, 8, 2, 16), tiff(3, 16, 2, 5, 2), tiff(3, 32, 2, 8, 3), tiff(3, 8, 2, 1, 1, 0, 2), tiff(3, 16, 2, 1, 1, 16, 2)]
-    return [camera, *tiffs, *map(bmp, (1, 4, 8, 16, 24, 32)), gif(), gif(1), webp(False), webp(True)]
+    return [camera, *inks(), *tiffs, *map(bmp, (1, 4, 8, 16, 24, 32)), gif(), gif(1), webp(False), webp(True)]
 
 
 def rasters() -> list[bytes]:

@@ -21,8 +21,8 @@ install python numpy 'setuptools>=70.1'
 install dask numpy distributed
 # What else reads and writes OpenEXR files.
 install exr OpenEXR numpy
-# Readers of pictures and scenes, to compare public files with.
-install corpora DracoPy networkx numpy OpenEXR Pillow trimesh
+# Readers of pictures, scenes and luminaires, to compare public files with.
+install corpora DracoPy eulumdat eulumdat-py networkx numpy OpenEXR photompy Pillow trimesh
 # Pixar's library for USD files, which the Python package reads and writes them with.
 install usd usd-core numpy
 # Another runtime for ONNX files.

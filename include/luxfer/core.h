@@ -516,9 +516,9 @@ typedef struct luxfer_photo_metadata {
 #define LUXFER_FILE_COLOUR_CONVERTED 3
 
 /**
- * A warning: the file states a colour space that the library cannot convert, such as a profile for CMYK or a damaged
- * profile. The colours were read as if the file stated none, so saturated colours may be wrong. Export the photo as
- * sRGB.
+ * A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the inks
+ * of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
+ * Export the photo as sRGB.
  */
 #define LUXFER_FILE_COLOUR_UNCONVERTED 4
 

@@ -23,9 +23,9 @@ pub const LUXFER_FILE_COLOUR_ASSUMED: luxfer_file_colour = 1;
 pub const LUXFER_FILE_COLOUR_STATED: luxfer_file_colour = 2;
 /// The file states another colour space. The colours were converted to linear Rec.709.
 pub const LUXFER_FILE_COLOUR_CONVERTED: luxfer_file_colour = 3;
-/// A warning: the file states a colour space that the library cannot convert, such as a profile for CMYK or a damaged
-/// profile. The colours were read as if the file stated none, so saturated colours may be wrong. Export the photo as
-/// sRGB.
+/// A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the inks
+/// of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
+/// Export the photo as sRGB.
 pub const LUXFER_FILE_COLOUR_UNCONVERTED: luxfer_file_colour = 4;
 /// The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged.
 pub const LUXFER_FILE_COLOUR_DATA: luxfer_file_colour = 5;

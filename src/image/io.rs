@@ -12,7 +12,7 @@ use crate::image::colour::linear_to_srgb;
 use crate::image::file_colour::{Conversion, FileColour, Space};
 use crate::image::format::Format;
 use crate::image::photo::{self, Orientation, PhotoMetadata};
-use crate::image::{Image, memory, openexr, radiance, raster, tiff, try_collect};
+use crate::image::{Image, inks, memory, openexr, radiance, raster, tiff, try_collect};
 use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
@@ -52,12 +52,16 @@ pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
     let (image, colour) = match format {
         Format::Exr => convert(openexr::decode(bytes)?, encoding)?,
         Format::Radiance => convert(radiance::decode(bytes)?, encoding)?,
-        Format::Tiff => convert_stored(Space::of(bytes, format, &exif)?, encoding, |encoding| {
-            tiff::decode(bytes, encoding, exif.orientation)
-        })?,
-        Format::Raster(raster) => convert_stored(Space::of(bytes, format, &exif)?, encoding, |encoding| {
-            raster::decode(bytes, raster, encoding, exif.orientation)
-        })?,
+        Format::Tiff | Format::Raster(_) => {
+            convert_stored(Space::of(bytes, format, &exif)?, encoding, |read| match (format, read) {
+                (Format::Tiff, Read::Inks) => tiff::decode_inks(bytes, exif.orientation),
+                (Format::Tiff, Read::Colours(encoding)) => tiff::decode(bytes, encoding, exif.orientation),
+                (Format::Raster(raster), Read::Colours(encoding)) => {
+                    raster::decode(bytes, raster, encoding, exif.orientation)
+                }
+                _ => inks::decode(bytes, exif.orientation),
+            })?
+        }
     };
     let metadata = PhotoMetadata::new(&exif, image.width, image.height, colour);
     Ok(Photo { image, metadata })
@@ -75,20 +79,30 @@ fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Im
             conversion.apply(&mut image)?;
             FileColour::Converted
         }
-        Space::Unusable => FileColour::Unconverted,
+        Space::Unusable | Space::Inks(_) => FileColour::Unconverted,
     };
     Ok((image, colour))
+}
+
+/// What is read from a file.
+enum Read {
+    Colours(Encoding),
+    /// Amounts of cyan, magenta, yellow and black.
+    Inks,
 }
 
 /// Reads a picture as stored, and converts it from the space that its file states, or from sRGB without a statement.
 fn convert_stored(
     space: Space,
     encoding: Encoding,
-    read: impl Fn(Encoding) -> Result<Image>,
+    read: impl Fn(Read) -> Result<Image>,
 ) -> Result<(Image, FileColour)> {
     let space = match space {
+        Space::Inks(inks) if encoding == Encoding::Srgb => {
+            return Ok((inks.apply(&read(Read::Inks)?)?, FileColour::Converted));
+        }
         Space::Other(conversion) if encoding == Encoding::Srgb => {
-            let mut image = read(Encoding::Linear)?;
+            let mut image = read(Read::Colours(Encoding::Linear))?;
             let fits = conversion.fits(image.channels);
             let conversion = if fits { conversion } else { Conversion::srgb()? };
             conversion.apply(&mut image)?;
@@ -96,7 +110,7 @@ fn convert_stored(
         }
         space => space,
     };
-    convert((read(encoding)?, space), encoding)
+    convert((read(Read::Colours(encoding))?, space), encoding)
 }
 
 /// Width, height and maximum number of channels of a picture file, from its header alone. The sides are those of the

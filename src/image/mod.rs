@@ -10,6 +10,7 @@ mod containers;
 pub mod file_colour;
 mod files;
 mod format;
+mod inks;
 pub mod io;
 mod limits;
 mod memory;

@@ -4,6 +4,7 @@
 use super::containers::png_chunks;
 use super::file_colour::{self, icc};
 use super::format::Format;
+use super::io::probe;
 use super::{memory, openexr, radiance, raster, tiff};
 use crate::error::Result;
 use image::ImageFormat;
@@ -19,8 +20,16 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
         Format::Raster(format) => raster::working_bytes(bytes, format)?,
     };
     let profile = file_colour::profile(bytes, format)?;
+    // Amounts of inks that a profile converts are a picture of four channels.
+    let inks = match &profile {
+        Some(_) if file_colour::has_inks(bytes, format) => {
+            let (width, height, _) = probe(bytes)?;
+            16 * width * height
+        }
+        _ => 0,
+    };
     let profile = profile.map_or(0, |profile| profile.len().saturating_add(icc::working_bytes(&profile)));
-    Ok(pixels.saturating_add(profile) as u64)
+    Ok(pixels.saturating_add(profile).saturating_add(inks) as u64)
 }
 
 /// For a PNG: its samples in the decoder's format, and its other chunks.

@@ -1,6 +1,8 @@
 """Colours of files against LCMS, as Pillow has it: within a code of 255."""
 
 import io
+import itertools
+import re
 import struct
 import tempfile
 import unittest
@@ -19,6 +21,8 @@ RED_GREEN_BLUE = {
     "Adobe RGB": [(0.64, 0.33), (0.21, 0.71), (0.15, 0.06)],
     "Rec.2020": [(0.708, 0.292), (0.170, 0.797), (0.131, 0.046)],
 }
+#: Profiles of the Debian package libgs-common, if it is installed.
+CMYK_PROFILES = [Path("/usr/share/color/icc/ghostscript") / f"{name}_cmyk.icc" for name in ("default", "ps")]
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 
 
@@ -59,6 +63,21 @@ def tables(size=17):
     ends = np.array([0, 65535] * 3, ">u2").tobytes()
     head = b"mft2\0\0\0\0" + bytes([3, 3, size, 0]) + fixed([1, 0, 0, 0, 1, 0, 0, 0, 1]) + struct.pack(">HH", 2, 2)
     return head + ends + stored.astype(">u2").tobytes() + ends
+
+
+def ink_tables(size):
+    """A lut16Type from inks to PCS Lab (version 2): a paper whose colours the inks filter, with curves at both ends."""
+    inks = np.stack(np.meshgrid(*[np.linspace(0, 1, size)] * 4, indexing="ij"), axis=-1).reshape(-1, 4)
+    c, m, y, k = inks.T
+    lightness = 95 * (1 - 0.4 * c) * (1 - 0.5 * m) * (1 - 0.1 * y) * (1 - 0.85 * k)
+    a, b = (70 * m - 35 * c) * (1 - k), (80 * y - 45 * c) * (1 - k)
+    lab = np.stack([lightness * 652.8, (a + 128) * 256, (b + 128) * 256], axis=1)
+    stored = np.round(np.clip(lab, 0, 65535)).astype(">u2")
+    codes = np.linspace(0, 1, 256)
+    gain = np.round(65535 * (0.7 * codes + 0.3 * codes**2)).astype(">u2").tobytes() * 4
+    ends = np.array([0, 65535] * 3, ">u2").tobytes()
+    head = b"mft2\0\0\0\0" + bytes([4, 3, size, 0]) + fixed([1, 0, 0, 0, 1, 0, 0, 0, 1]) + struct.pack(">HH", 256, 2)
+    return head + gain + stored.tobytes() + ends
 
 
 def profile(tags, space=b"RGB ", pcs=b"XYZ ", version=2):
@@ -148,12 +167,43 @@ class Colours(Case):
         self.assertEqual(image.metadata.colour, luxfer.types.FileColour.DATA)
         self.assertTrue(np.array_equal(np.round(np.asarray(image) * 255), self.pixels))
 
-    def test_profiles_for_inks_are_named(self):
-        out = io.BytesIO()
-        icc = profile(described({}), b"CMYK", b"Lab ")
-        Pillow.fromarray(self.pixels).convert("CMYK").save(out, "TIFF", icc_profile=icc)
-        image = luxfer.Image.from_bytes(context(), out.getvalue())
-        self.assertEqual(image.metadata.colour, luxfer.types.FileColour.UNCONVERTED)
+    def inks(self):
+        """Amounts of cyan, magenta, yellow and black: random ones, and the corners, in squares that JPEG keeps."""
+        inks = np.random.default_rng(8).integers(0, 256, (32, 32, 4), np.uint8)
+        inks[0, :16] = [[255 * (i >> c & 1) for c in range(4)] for i in range(16)]
+        return Pillow.fromarray(inks.repeat(8, axis=0).repeat(8, axis=1), "CMYK")
+
+    def test_profiles_for_inks(self):
+        profiles = {f"{size} points": profile(described({"A2B0": ink_tables(size)}), b"CMYK", b"Lab ") for size in (5, 9, 11, 16)}
+        for path in CMYK_PROFILES:
+            if path.exists():
+                profiles[path.name] = path.read_bytes()
+        for (name, icc), kind in itertools.product(profiles.items(), ("TIFF", "JPEG", "YCCK")):
+            with self.subTest(name, kind=kind):
+                out = io.BytesIO()
+                options = {} if kind == "TIFF" else {"quality": 100, "subsampling": 0}
+                self.inks().save(out, "TIFF" if kind == "TIFF" else "JPEG", icc_profile=icc, **options)
+                if kind == "YCCK":  # the same numbers, said to be YCbCr and black
+                    out = io.BytesIO(re.sub(rb"(?s)(Adobe.{6})\0", lambda found: found[1] + b"\2", out.getvalue(), count=1))
+                with Pillow.open(out) as stored:
+                    stored.load()
+                image = luxfer.Image.from_bytes(context(), out.getvalue())
+                self.assertEqual(image.metadata.colour, luxfer.types.FileColour.CONVERTED)
+                self.assertEqual(image.size[2], 3)
+                # LCMS without its own resampling of the profile's tables.
+                source, target = ImageCms.ImageCmsProfile(io.BytesIO(icc)), ImageCms.createProfile("sRGB")
+                intent, exact = ImageCms.Intent.RELATIVE_COLORIMETRIC, ImageCms.Flags.NOOPTIMIZE
+                transform = ImageCms.buildTransform(source, target, "CMYK", "RGB", intent, exact)
+                wanted = np.asarray(ImageCms.applyTransform(stored, transform)).astype(float)
+                self.assertLessEqual(np.abs(codes_of(np.asarray(image)) - wanted).max(), 1)
+
+    def test_inks_without_a_profile_are_named(self):
+        damaged, display = profile(described({}), b"CMYK", b"Lab "), matrix_profile(RED_GREEN_BLUE["Display P3"], "gamma")
+        for icc, kind in itertools.product((None, damaged, display), ("TIFF", "JPEG")):
+            out = io.BytesIO()
+            self.inks().save(out, kind, icc_profile=icc)
+            image = luxfer.Image.from_bytes(context(), out.getvalue())
+            self.assertEqual(image.metadata.colour, luxfer.types.FileColour.UNCONVERTED)
 
     def test_written_files_state_their_colours(self):
         image = luxfer.Image(context(), np.full((2, 2, 3), 0.5, np.float32))

@@ -79,9 +79,9 @@ class FileColour(IntEnum):
     CONVERTED = 3
     """The file states another colour space. The colours were converted to linear Rec.709."""
     UNCONVERTED = 4
-    """A warning: the file states a colour space that the library cannot convert, such as a profile for CMYK or
-    a damaged profile. The colours were read as if the file stated none, so saturated colours may be wrong.
-    Export the photo as sRGB."""
+    """A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or
+    has the inks of CMYK without a profile. The colours were read as if the file stated none, so saturated
+    colours may be wrong. Export the photo as sRGB."""
     DATA = 5
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 

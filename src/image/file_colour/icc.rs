@@ -1,10 +1,11 @@
 //! ICC profiles (ICC.1:2022) of picture files, by the crate `moxcms`: three curves and a matrix, one curve for greys,
-//! or tables for RGB.
+//! or tables for RGB and for inks.
 
 use super::chromaticities::{is_identity, of_colorants};
 use super::cicp;
 use super::conversion::Conversion;
 use super::curve::{Curve, is_srgb};
+use super::inks::Inks;
 use super::space::Space;
 use crate::error::Result;
 use crate::image::{memory, try_push, try_vec};
@@ -88,6 +89,7 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
         DataColorSpace::Rgb if intent(&profile).is_some() => tables(&profile),
         DataColorSpace::Rgb => curves_and_matrix(&profile),
         DataColorSpace::Gray => grey(&profile),
+        DataColorSpace::Cmyk => inks(&profile),
         _ => Ok(Space::Unusable),
     }
 }
@@ -170,4 +172,9 @@ fn tables(profile: &ColorProfile) -> Result<Space> {
         Ok(to_srgb) => Ok(Space::Other(Conversion::tables(to_srgb)?)),
         Err(_) => Ok(Space::Unusable),
     }
+}
+
+fn inks(profile: &ColorProfile) -> Result<Space> {
+    let Some(intent) = intent(profile) else { return Ok(Space::Unusable) };
+    Ok(Inks::new(profile, intent)?.map_or(Space::Unusable, Space::Inks))
 }

@@ -3,7 +3,7 @@
 //! | file | statement, the first that can be used |
 //! |---|---|
 //! | PNG | `cICP`, `iCCP`, `sRGB`, `gAMA` with `cHRM` (PNG specification, third edition, 4.3) |
-//! | JPEG, WebP, TIFF | ICC profile, then the colour space of the EXIF notes (sRGB, Adobe RGB) |
+//! | JPEG, WebP, TIFF | ICC profile, then the colour space of the EXIF notes (sRGB, Adobe RGB); of inks the profile alone |
 //! | GIF, BMP | ICC profile; of BMP the mark for sRGB |
 //! | OpenEXR | `chromaticities`, `adoptedNeutral` |
 //! | Radiance HDR | `PRIMARIES`, `EXPOSURE`, `COLORCORR`, `FORMAT` (RGB or XYZ) |
@@ -12,7 +12,7 @@
 //! than D65 are adapted with the Bradford matrix, as ICC profiles are.
 //!
 //! Not modelled: rendering intents other than relative colorimetric, gain maps, endpoints and linked profiles of BMP
-//! files, profiles for the inks of CMYK files. A file with a statement that cannot be used is read as one without, and
+//! files, black point compensation. A file with a statement that cannot be used is read as one without, and
 //! [`FileColour`] says so.
 
 mod chromaticities;
@@ -20,6 +20,7 @@ mod cicp;
 mod conversion;
 mod curve;
 pub(super) mod icc;
+mod inks;
 mod png;
 mod space;
 #[cfg(test)]
@@ -32,6 +33,7 @@ pub use space::{ExifColour, FileColour};
 
 use super::containers::{bmp_space, gif_extension, jpeg_segments, riff_chunks};
 use super::format::Format;
+use super::inks as ink_files;
 use super::photo::Exif;
 use super::tiff;
 use crate::error::Result;
@@ -49,13 +51,27 @@ impl Space {
         };
         // Floating-point numbers are encoded only if a profile says so.
         let is_float = format == Format::Tiff && tiff::is_float(bytes);
+        let has_inks = has_inks(bytes, format);
         match profile.map(|profile| icc::space(&profile)).transpose()? {
+            Some(space) if has_inks => Ok(if matches!(space, Self::Inks(_)) { space } else { Self::Unusable }),
+            Some(Self::Inks(_)) => Ok(Self::Unusable),
+            // Amounts of inks mean nothing without a profile.
+            None if has_inks => Ok(Self::Unusable),
             Some(Self::Native) if is_float => Ok(Self::Other(Conversion::srgb()?)),
             Some(space) => Ok(space),
             None if is_float => Ok(Self::Unstated),
             None if format == Format::Raster(ImageFormat::Bmp) => Ok(bmp(bytes)),
             None => exif.colour.space(),
         }
+    }
+}
+
+/// Whether the samples of a file are amounts of inks.
+pub fn has_inks(bytes: &[u8], format: Format) -> bool {
+    match format {
+        Format::Raster(ImageFormat::Jpeg) => ink_files::has_inks(bytes),
+        Format::Tiff => tiff::has_inks(bytes),
+        Format::Raster(_) | Format::Exr | Format::Radiance => false,
     }
 }
 

@@ -3,6 +3,7 @@
 use super::chromaticities::{Chromaticities, is_identity};
 use super::conversion::Conversion;
 use super::curve::Curve;
+use super::inks::Inks;
 use crate::error::Result;
 use glam::DMat3;
 
@@ -19,7 +20,7 @@ pub enum FileColour {
     Stated = 2,
     /// The file states another space, and its colours were converted.
     Converted = 3,
-    /// The file states a space that cannot be converted. It was read as if it stated none.
+    /// The file states a space that cannot be converted, or holds inks without a profile. It was read as if it stated none.
     Unconverted = 4,
     /// The caller requested the stored numbers without conversion.
     Data = 5,
@@ -31,6 +32,8 @@ pub(in crate::image) enum Space {
     /// sRGB for integers, linear Rec.709 for floating-point numbers.
     Native,
     Other(Conversion),
+    /// Amounts of cyan, magenta, yellow and black.
+    Inks(Inks),
     /// A space that cannot be converted.
     Unusable,
 }

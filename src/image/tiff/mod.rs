@@ -55,21 +55,37 @@ pub(super) fn profile(bytes: &[u8]) -> Option<&[u8]> {
 /// The first picture, as linear values.
 pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
     let (layout, order) = layout(bytes)?;
+    let mut image = read(&layout, order, layout.channels(), orientation)?;
+    decode_colours(&mut image, &layout, encoding);
+    Ok(image)
+}
+
+/// Whether the samples of the first picture are amounts of inks.
+pub(super) fn has_inks(bytes: &[u8]) -> bool {
+    layout(bytes).is_ok_and(|(layout, _)| matches!(layout.colour, Colour::Cmyk))
+}
+
+/// The amounts of the four inks of the first picture; numbers in `[0, 1]`, unless the file is damaged.
+pub(super) fn decode_inks(bytes: &[u8], orientation: Orientation) -> Result<Image> {
+    let (layout, order) = layout(bytes)?;
+    read(&layout, order, layout.colours(), orientation)
+}
+
+/// The samples of the first picture, still encoded. Inks are converted to RGB unless there are four channels.
+fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation) -> Result<Image> {
     memory::check_unpacking()?;
-    let mut out = Upright::new(layout.width, layout.height, layout.channels(), orientation)?;
+    let mut out = Upright::new(layout.width, layout.height, channels, orientation)?;
     let mut unpacked = try_vec(layout.chunk_bytes(), 0u8)?;
     let mut spare = try_vec(layout.row_bytes(), 0u8)?;
     for chunk in layout.chunks() {
         let rows = &mut unpacked[..layout.row_bytes() * chunk.height];
         unpack(layout.stored(&chunk)?, layout.compression, rows)?;
         for (y, row) in rows.chunks_exact_mut(layout.row_bytes()).enumerate() {
-            let order = undo_predictor(row, &mut spare, &layout, order);
-            put_row(&mut out, row, order, &layout, &Chunk { y: chunk.y + y, ..chunk });
+            let order = undo_predictor(row, &mut spare, layout, order);
+            put_row(&mut out, row, order, layout, &Chunk { y: chunk.y + y, ..chunk });
         }
     }
-    let mut image = out.image;
-    decode_colours(&mut image, &layout, encoding);
-    Ok(image)
+    Ok(out.image)
 }
 
 /// Writes the samples of a row of a chunk to their positions: colours first, alpha last, still encoded.
@@ -89,6 +105,9 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
                 for (c, channel) in pixel.iter_mut().enumerate() {
                     *channel = map.integer(c * size + index).unwrap_or(0) as f32 / 65_535.0;
                 }
+            }
+            Colour::Cmyk if last == 3 => {
+                pixel.iter_mut().enumerate().for_each(|(c, ink)| *ink = value(x * stored + c));
             }
             Colour::Cmyk => {
                 let black = value(x * stored + 3);

@@ -1,6 +1,6 @@
 use super::ifd::Order;
 use super::ifd::tests::{Entry, structure, writers};
-use super::{decode, probe};
+use super::{decode, decode_inks, has_inks, probe};
 use crate::error::ErrorKind;
 use crate::image::colour::srgb_to_linear;
 use crate::image::io::Encoding;
@@ -246,7 +246,15 @@ fn grey_bits_palettes_and_cmyk_are_converted() {
             });
         }
     }
-    Picture::new(4, 8, 1, 5).check(3, |p, x, y, c| (1.0 - sample(p, x, y, c)) * (1.0 - sample(p, x, y, 3)));
+    let inks = Picture::new(4, 8, 1, 5);
+    inks.check(3, |p, x, y, c| (1.0 - sample(p, x, y, c)) * (1.0 - sample(p, x, y, 3)));
+    // The amounts themselves.
+    let file = inks.file();
+    let amounts = decode_inks(&file, Orientation::UPRIGHT).unwrap();
+    assert!(has_inks(&file) && !has_inks(&Picture::new(4, 8, 1, 2).file()));
+    for (x, c) in [(0, 0), (1, 1), (2, 2), (2, 3)] {
+        assert!((amounts.pixel(x, 1)[c] - sample(&inks, x, 1, c)).abs() < 1e-6);
+    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Extensions that are read, and the parts of a file that are not rendered.
 
+use super::glossiness::is_convertible;
 use crate::scene::unrendered::{Unrendered, note};
+use gltf::json::extensions::material::PbrSpecularGlossiness;
 use serde_json::Value;
 
 /// Measured luminaires as IES files.
@@ -9,18 +11,23 @@ pub const IES: &str = "EXT_lights_ies";
 pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Primitives in Draco's compression.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
-/// Buffer views in meshoptimizer's compression.
-pub const MESHOPT: &str = "EXT_meshopt_compression";
+/// Buffer views in meshoptimizer's compression, under its two names.
+pub const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// Textures in WebP files.
 pub const WEBP: &str = "EXT_texture_webp";
 
+/// Materials of another workflow.
+const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+
 /// Extensions that a file may require. Of variants of materials the default ones are shown.
-pub const READ: [&str; 13] = [
+pub const READ: [&str; 15] = [
     DRACO,
     IES,
     INSTANCING,
-    MESHOPT,
+    MESHOPT[0],
+    MESHOPT[1],
     WEBP,
+    GLOSSINESS,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -38,13 +45,12 @@ const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_
 type Neutral = (&'static str, f64);
 
 /// Extensions of materials that are not rendered, with the missing effect and their neutral settings.
-const MATERIALS: [(&str, &str, &[Neutral]); 9] = [
+const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
     ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),
     ("KHR_materials_diffuse_transmission", "no light passes diffusely", &[("diffuseTransmissionFactor", 0.0)]),
     ("KHR_materials_dispersion", "all wavelengths are refracted alike", &[("dispersion", 0.0)]),
     ("KHR_materials_iridescence", "thin films have no colours", &[("iridescenceFactor", 0.0)]),
-    ("KHR_materials_pbrSpecularGlossiness", "the metallic-roughness values are used", &[]),
     ("KHR_materials_sheen", "there is no sheen of cloth", &[("sheenColorFactor", 0.0)]),
     (
         "KHR_materials_specular",
@@ -76,6 +82,7 @@ pub fn unrendered(document: &Value) -> Vec<Unrendered> {
             let place = || place(kind, index, object);
             extensions(&mut list, object, &place);
             match name {
+                "materials" => glossiness(&mut list, object, &place),
                 "meshes" => mesh(&mut list, object, &place),
                 "nodes" => weights(&mut list, object, shown(document, object), &place),
                 "textures" => texture(&mut list, object, &place),
@@ -130,6 +137,20 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
     !neutral.is_empty()
         && neutral.iter().all(|&(key, wanted)| settings.get(key).is_none_or(|value| is(value, wanted)))
         && !(is_factor && has_texture())
+}
+
+/// Notes a material of the other workflow that cannot be converted.
+fn glossiness(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> String) {
+    let settings = material.get("extensions").and_then(|e| e.get(GLOSSINESS));
+    let settings = settings.and_then(|s| serde_json::from_value::<PbrSpecularGlossiness>(s.clone()).ok());
+    if settings.is_some_and(|settings| !is_convertible(&settings)) {
+        note(
+            list,
+            GLOSSINESS,
+            "its textures differ in their coordinates; the metallic-roughness values are used",
+            place,
+        );
+    }
 }
 
 /// Textures in Basis Universal files.

@@ -2,19 +2,43 @@
 
 use super::Budget;
 use super::container::{File, missing};
+use super::glossiness::{self, Colours};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::image::io::{self, Encoding, MAX_PIXELS};
 use crate::scene::{AlphaMode, Material, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
+use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::validation::Checked;
-use gltf::json::{Index, extensions, material, texture};
+use gltf::json::{self, Index, extensions, material, texture};
 
 /// Location of an image's bytes. Exporters that do not share images often share their bytes.
 #[derive(Clone, Copy, PartialEq)]
 enum Source {
     View(usize),
     Image(usize),
+    /// Made here; the number tells them apart.
+    Converted(usize),
+}
+
+/// A texture of the file.
+struct Stored<'a> {
+    image: &'a json::Image,
+    index: usize,
+    source: Source,
+    wrap: [Wrap; 2],
+    name: String,
+}
+
+/// The parts of a material that both workflows give.
+#[derive(Default)]
+struct Surface {
+    base_color: Vec3,
+    alpha: f32,
+    base_color_texture: Option<TextureRef>,
+    metallic: f32,
+    roughness: f32,
+    metallic_roughness_texture: Option<TextureRef>,
 }
 
 /// The properties by which two texture uses share one texture.
@@ -36,27 +60,30 @@ impl<'a> Materials<'a> {
 
     /// Reads a material, clamping factors that lie slightly outside their range, as some exporters write.
     pub fn read(&mut self, index: usize, json: &material::Material) -> Result<Material> {
-        let pbr = &json.pbr_metallic_roughness;
-        let [r, g, b, alpha] = pbr.base_color_factor.0;
         let extensions = json.extensions.as_ref();
+        let glossiness = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref());
+        let surface = match glossiness.filter(|settings| glossiness::is_convertible(settings)) {
+            Some(settings) => self.glossiness(settings)?,
+            None => self.metallic_roughness(&json.pbr_metallic_roughness)?,
+        };
         let transmission = extensions.and_then(|e| e.transmission.as_ref()).map_or(0.0, |t| t.transmission_factor.0);
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
         // The extension allows 0 for surfaces that reflect everything; treat these as ordinary glass.
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),
-            base_color: Vec3::new(r, g, b).clamp(Vec3::ZERO, Vec3::ONE),
-            base_color_texture: self.optional(pbr.base_color_texture.as_ref(), Encoding::Srgb)?,
-            alpha: alpha.clamp(0.0, 1.0),
+            base_color: surface.base_color.clamp(Vec3::ZERO, Vec3::ONE),
+            base_color_texture: surface.base_color_texture,
+            alpha: surface.alpha.clamp(0.0, 1.0),
             alpha_mode: match &json.alpha_mode {
                 Checked::Valid(material::AlphaMode::Opaque) => AlphaMode::Opaque,
                 Checked::Valid(material::AlphaMode::Mask) => AlphaMode::Mask(json.alpha_cutoff.map_or(0.5, |c| c.0)),
                 Checked::Valid(material::AlphaMode::Blend) => AlphaMode::Blend,
                 Checked::Invalid => return Err(Error::format("its alphaMode is unknown")),
             },
-            metallic: pbr.metallic_factor.0.clamp(0.0, 1.0),
-            roughness: pbr.roughness_factor.0.clamp(0.0, 1.0),
-            metallic_roughness_texture: self.optional(pbr.metallic_roughness_texture.as_ref(), Encoding::Linear)?,
+            metallic: surface.metallic.clamp(0.0, 1.0),
+            roughness: surface.roughness.clamp(0.0, 1.0),
+            metallic_roughness_texture: surface.metallic_roughness_texture,
             normal_texture: match &json.normal_texture {
                 Some(normal) => self.reference(normal.index, normal.tex_coord, None, Encoding::Linear)?,
                 None => None,
@@ -70,10 +97,66 @@ impl<'a> Materials<'a> {
         })
     }
 
+    fn metallic_roughness(&mut self, pbr: &material::PbrMetallicRoughness) -> Result<Surface> {
+        let [r, g, b, alpha] = pbr.base_color_factor.0;
+        Ok(Surface {
+            base_color: Vec3::new(r, g, b),
+            alpha,
+            base_color_texture: self.optional(pbr.base_color_texture.as_ref(), Encoding::Srgb)?,
+            metallic: pbr.metallic_factor.0,
+            roughness: pbr.roughness_factor.0,
+            metallic_roughness_texture: self.optional(pbr.metallic_roughness_texture.as_ref(), Encoding::Linear)?,
+        })
+    }
+
+    /// The metallic-roughness of `KHR_materials_pbrSpecularGlossiness`, with textures of its own.
+    fn glossiness(&mut self, settings: &PbrSpecularGlossiness) -> Result<Surface> {
+        let [r, g, b, alpha] = settings.diffuse_factor.0;
+        let infos = [&settings.diffuse_texture, &settings.specular_glossiness_texture].map(Option::as_ref);
+        let diffuse_texture = infos[0].map_or(Ok(None), |info| self.separate(info.index))?;
+        let specular_texture = infos[1].map_or(Ok(None), |info| self.separate(info.index))?;
+        let colours = Colours {
+            diffuse: Vec3::new(r, g, b),
+            alpha,
+            specular: Vec3::from(settings.specular_factor.0),
+            glossiness: settings.glossiness_factor.0,
+            diffuse_texture: diffuse_texture.as_ref(),
+            specular_texture: specular_texture.as_ref(),
+        };
+        let (Some(size), Some(info)) = (colours.size(), infos[0].or(infos[1])) else {
+            let (base_color, metallic) = glossiness::convert(colours.diffuse, colours.specular);
+            let roughness = 1.0 - colours.glossiness;
+            return Ok(Surface { base_color, alpha, metallic, roughness, ..Surface::default() });
+        };
+        let pixels = 2 * size[0] as u64 * size[1] as u64;
+        self.count(pixels, pixels / 2 * 7)?;
+        let wrap =
+            [&diffuse_texture, &specular_texture].into_iter().flatten().next().map_or([Wrap::Repeat; 2], |t| t.wrap);
+        let place = place(info.tex_coord, transform(info))?;
+        let mut references = [None; 2];
+        for (reference, (image, name)) in
+            references.iter_mut().zip(colours.images(size)?.into_iter().zip(["base colour", "metallic-roughness"]))
+        {
+            *reference = Some(TextureRef { texture: self.textures.len(), ..place });
+            // No other use shares a converted texture.
+            self.keys.push((Source::Converted(self.keys.len()), Encoding::Linear, wrap));
+            self.textures.push(Texture { name: format!("Converted {name}"), image, wrap });
+        }
+        let [base_color_texture, metallic_roughness_texture] = references;
+        let (base_color, metallic, roughness) = (Vec3::ONE, 1.0, 1.0);
+        Ok(Surface { base_color, alpha: 1.0, base_color_texture, metallic, roughness, metallic_roughness_texture })
+    }
+
+    /// Decodes a texture for a conversion, without adding it to the scene.
+    fn separate(&mut self, index: Index<texture::Texture>) -> Result<Option<Texture>> {
+        let within = |e: Error| e.within(format_args!("texture {}", index.value()));
+        let Some(stored) = self.stored(index).map_err(within)? else { return Ok(None) };
+        self.load(&stored, Encoding::Srgb).map(Some).map_err(within)
+    }
+
     fn optional(&mut self, info: Option<&texture::Info>, encoding: Encoding) -> Result<Option<TextureRef>> {
         let Some(info) = info else { return Ok(None) };
-        let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
-        self.reference(info.index, info.tex_coord, transform, encoding)
+        self.reference(info.index, info.tex_coord, transform(info), encoding)
     }
 
     fn reference(
@@ -83,18 +166,27 @@ impl<'a> Materials<'a> {
         transform: Option<&extensions::texture::TextureTransform>,
         encoding: Encoding,
     ) -> Result<Option<TextureRef>> {
-        let uv_set = transform.and_then(|t| t.tex_coord).unwrap_or(uv_set) as usize;
-        if uv_set > 1 {
-            let message = format!("texCoord is {uv_set}; only the sets 0 and 1 are read");
-            return Err(Error::new(ErrorKind::Unsupported, message));
-        }
+        let place = place(uv_set, transform)?;
         let texture = self.texture(index, encoding).map_err(|e| e.within(format_args!("texture {}", index.value())))?;
-        let transform = transform.map_or(Mat3::IDENTITY, matrix);
-        Ok(texture.map(|texture| TextureRef { texture, uv_set, transform }))
+        Ok(texture.map(|texture| TextureRef { texture, ..place }))
     }
 
     /// The index of a texture in the scene, unless it has no image; decodes it at its first use.
     fn texture(&mut self, index: Index<texture::Texture>, encoding: Encoding) -> Result<Option<usize>> {
+        let Some(stored) = self.stored(index)? else { return Ok(None) };
+        let key = (stored.source, encoding, stored.wrap);
+        if let Some(known) = self.keys.iter().position(|k| *k == key) {
+            return Ok(Some(known));
+        }
+        // An image decoded with another encoding or wrapping becomes a separate texture.
+        let texture = self.load(&stored, encoding)?;
+        self.textures.push(texture);
+        self.keys.push(key);
+        Ok(Some(self.textures.len() - 1))
+    }
+
+    /// Finds a texture in the file; `None` if it has no image.
+    fn stored(&self, index: Index<texture::Texture>) -> Result<Option<Stored<'a>>> {
         let root = &self.file.root;
         let json = root.get(index).ok_or_else(|| missing("texture", index.value(), root.textures.len()))?;
         let wrap = match json.sampler {
@@ -110,23 +202,20 @@ impl<'a> Materials<'a> {
         }
         let image = root.get(json.source).ok_or_else(|| missing("image", json.source.value(), root.images.len()))?;
         let source = image.buffer_view.map_or(Source::Image(json.source.value()), |view| Source::View(view.value()));
-        let key = (source, encoding, wrap);
-        if let Some(known) = self.keys.iter().position(|k| *k == key) {
-            return Ok(Some(known));
-        }
+        let name = [&image.name, &json.name, &image.uri].into_iter().flatten().find(|n| !n.starts_with("data:"));
+        let name = name.cloned().unwrap_or_else(|| format!("Image {}", json.source.value()));
+        Ok(Some(Stored { image, index: json.source.value(), source, wrap, name }))
+    }
 
-        // An image decoded with another encoding or wrapping becomes a separate texture.
+    fn load(&mut self, stored: &Stored<'a>, encoding: Encoding) -> Result<Texture> {
+        let image = stored.image;
         let decoded = match (image.buffer_view, &image.uri) {
             (Some(view), _) => self.decode(self.file.view(view)?, encoding),
             (None, Some(uri)) => self.file.resolve(uri).and_then(|bytes| self.decode(&bytes, encoding)),
             (None, None) => Err(Error::format("it has neither a buffer view nor a URI")),
         };
-        let decoded = decoded.map_err(|e| e.within(format_args!("image {}", json.source.value())))?;
-        let name = [&image.name, &json.name, &image.uri].into_iter().flatten().find(|n| !n.starts_with("data:"));
-        let name = name.cloned().unwrap_or_else(|| format!("Image {}", json.source.value()));
-        self.textures.push(Texture { name, image: decoded, wrap });
-        self.keys.push(key);
-        Ok(Some(self.textures.len() - 1))
+        let decoded = decoded.map_err(|e| e.within(format_args!("image {}", stored.index)))?;
+        Ok(Texture { name: stored.name.clone(), image: decoded, wrap: stored.wrap })
     }
 
     /// Decodes an image after checking the size in its header against the budget.
@@ -142,14 +231,33 @@ impl<'a> Materials<'a> {
     fn decode_within(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
         let (width, height, channels) = io::probe(bytes)?;
         let pixels = width as u64 * height as u64;
+        self.count(pixels, pixels * channels as u64)?;
+        io::decode(bytes, encoding)
+    }
+
+    /// Counts the pixels and samples of a texture against the limits.
+    fn count(&mut self, pixels: u64, samples: u64) -> Result<()> {
         self.pixels += pixels;
         if self.pixels > MAX_PIXELS {
             let message = format!("the textures have more than {MAX_PIXELS} pixels in all");
             return Err(Error::new(ErrorKind::Unsupported, message));
         }
-        self.budget.keep(pixels * (channels * size_of::<f32>()) as u64)?;
-        io::decode(bytes, encoding)
+        self.budget.keep(samples * size_of::<f32>() as u64)
     }
+}
+
+fn transform(info: &texture::Info) -> Option<&extensions::texture::TextureTransform> {
+    info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref())
+}
+
+/// The coordinates of a texture, which is to be filled in.
+fn place(uv_set: u32, transform: Option<&extensions::texture::TextureTransform>) -> Result<TextureRef> {
+    let uv_set = transform.and_then(|t| t.tex_coord).unwrap_or(uv_set) as usize;
+    if uv_set > 1 {
+        let message = format!("texCoord is {uv_set}; only the sets 0 and 1 are read");
+        return Err(Error::new(ErrorKind::Unsupported, message));
+    }
+    Ok(TextureRef { texture: 0, uv_set, transform: transform.map_or(Mat3::IDENTITY, matrix) })
 }
 
 fn wrapping(mode: &Checked<texture::WrappingMode>) -> Result<Wrap> {

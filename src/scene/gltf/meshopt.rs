@@ -1,4 +1,5 @@
-//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`), decoded by the crate
+//! Buffer views in the compression of meshoptimizer (`EXT_meshopt_compression`, and `KHR_meshopt_compression` with the
+//! same settings), decoded by the crate
 //! meshoptimizer-rs.
 
 use super::features::MESHOPT;
@@ -26,8 +27,9 @@ pub struct Packed {
 impl Packed {
     /// The description of a view; `None` if it is not compressed.
     pub fn of(view: &View) -> Option<Result<Self>> {
-        let settings = view.extensions.as_ref()?.others.get(MESHOPT)?;
-        Some(Self::read(settings, view).map_err(|e| e.within(MESHOPT)))
+        let others = &view.extensions.as_ref()?.others;
+        let (name, settings) = MESHOPT.iter().find_map(|name| Some((name, others.get(*name)?)))?;
+        Some(Self::read(settings, view).map_err(|e| e.within(name)))
     }
 
     fn read(settings: &Value, parent: &View) -> Result<Self> {
@@ -37,7 +39,9 @@ impl Packed {
         let refused = |what: &str, e| Error::format(format!("its {what}: {e}"));
         let (mode, filter) = (text("mode", ""), text("filter", "NONE"));
         let mode = Mode::parse(mode).map_err(|_| Error::format(format!("its mode is {mode:?}")))?;
-        let filter = Filter::parse(filter).map_err(|_| Error::format(format!("its filter is {filter:?}")))?;
+        // The crate has no filter of colours, which the Khronos extension adds.
+        let kind = if filter == "COLOR" { ErrorKind::Unsupported } else { ErrorKind::Format };
+        let filter = Filter::parse(filter).map_err(|_| Error::new(kind, format!("its filter is {filter:?}")))?;
         let size = |key: &str| required(key).map(|n| usize::try_from(n).unwrap_or(usize::MAX));
         let view =
             BufferView::new(mode, filter, size("count")?, size("byteStride")?).map_err(|e| refused("layout", e))?;
@@ -72,13 +76,13 @@ impl Packed {
                 meshoptimizer_rs::Error::UnsupportedVersion => ErrorKind::Unsupported,
                 _ => ErrorKind::Format,
             };
-            Error::new(kind, format!("{MESHOPT}: {e}"))
+            Error::new(kind, format!("meshoptimizer: {e}"))
         })
     }
 }
 
 /// Whether a buffer is the fallback of compressed views, which need not have data.
 pub fn is_fallback(buffer: &Buffer) -> bool {
-    let settings = buffer.extensions.as_ref().and_then(|e| e.others.get(MESHOPT));
-    settings.and_then(|settings| settings.get("fallback")?.as_bool()) == Some(true)
+    let is = |name: &&str| buffer.extensions.as_ref()?.others.get(*name)?.get("fallback")?.as_bool();
+    MESHOPT.iter().any(|name| is(name) == Some(true))
 }

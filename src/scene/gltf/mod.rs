@@ -3,7 +3,7 @@
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
 //! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `_variants`
 //! (the default one), `KHR_mesh_quantization`, `KHR_draco_mesh_compression`, `EXT_meshopt_compression`,
-//! `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
+//! `KHR_meshopt_compression`, `EXT_mesh_gpu_instancing`, `EXT_texture_webp` and `EXT_lights_ies` (type C).
 //!
 //! Import: every node × instance × primitive becomes one mesh in world space, named after its node, with its morph
 //! targets mixed by their weights and its skin bent by the joints at rest. A vertex colour that all vertices share
@@ -28,6 +28,7 @@ mod document;
 mod draco;
 mod export;
 mod features;
+mod glossiness;
 mod import;
 mod instances;
 mod material;

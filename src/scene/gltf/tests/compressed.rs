@@ -234,6 +234,11 @@ fn buffer_views_of_meshoptimizer_are_decoded() {
         let scene = import(&meshopt_file(sequence, |_| ()), None).unwrap();
         assert!(scene.unrendered.is_empty(), "{:?}", scene.unrendered);
         assert_eq!(soup(&scene.meshes[0]), expected(), "sequence {sequence}");
+        // The same under the name of the Khronos extension.
+        let file = String::from_utf8(meshopt_file(sequence, |_| ())).unwrap();
+        let scene = import(file.replace("EXT_meshopt", "KHR_meshopt").as_bytes(), None).unwrap();
+        assert!(scene.unrendered.is_empty(), "{:?}", scene.unrendered);
+        assert_eq!(soup(&scene.meshes[0]), expected(), "sequence {sequence}");
     }
 }
 

@@ -160,6 +160,81 @@ fn each_feature_that_is_not_rendered_is_named() {
     assert!(unrendered(|_| ()).is_empty());
 }
 
+#[test]
+fn specular_and_glossiness_become_metallic_and_rough() {
+    let with = |edit: &dyn Fn(&mut Value)| {
+        let file = triangle_file(|f| {
+            f["extensionsRequired"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
+            // A PNG of one pixel, (0, 0, 0).
+            let uri = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGNgYGAAAAAEAAH2FzhVAAAAAElFTkSuQmCC";
+            f["images"] = json!([{ "uri": uri }]);
+            f["textures"] = json!([{ "source": 0 }]);
+            let settings =
+                json!({ "diffuseFactor": [0, 0, 0, 0.5], "specularFactor": [0.9, 0.5, 0.3], "glossinessFactor": 0.75 });
+            f["materials"] = json!([{ "extensions": { "KHR_materials_pbrSpecularGlossiness": settings } }]);
+            f["meshes"][0]["primitives"][0]["material"] = json!(0);
+            edit(&mut f["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"]);
+        });
+        import(&file, None).unwrap()
+    };
+    let scene = with(&|_| ());
+    let metal = &scene.materials[0];
+    assert!((metal.base_color - Vec3::new(0.9, 0.5, 0.3)).abs().max_element() < 0.01, "{metal:?}");
+    assert!(metal.metallic > 0.99 && metal.roughness == 0.25 && metal.alpha == 0.5, "{metal:?}");
+    assert!(scene.unrendered.is_empty() && scene.textures.is_empty());
+
+    // With a texture, base colour, roughness and metalness are textures too, and come back from a file that is written.
+    let scene = with(&|settings| settings["diffuseTexture"] = json!({ "index": 0, "texCoord": 1 }));
+    let metal = &scene.materials[0];
+    assert_eq!((metal.base_color, metal.metallic, metal.roughness, metal.alpha), (Vec3::ONE, 1.0, 1.0, 1.0));
+    assert_eq!(metal.base_color_texture.map(|t| (t.texture, t.uv_set)), Some((0, 1)));
+    assert_eq!(metal.metallic_roughness_texture.map(|t| t.texture), Some(1));
+    assert!((scene.textures[0].image.data[0] - 0.9).abs() < 0.01 && scene.textures[0].image.data[3] == 0.5);
+    assert_eq!(scene.textures[1].image.data[1], 0.25);
+    assert_eq!(import(&export(&scene).unwrap(), None).unwrap().textures.len(), 2);
+
+    // Textures with different coordinates are not converted.
+    let scene = with(&|settings| {
+        settings["diffuseTexture"] = json!({ "index": 0, "texCoord": 1 });
+        settings["specularGlossinessTexture"] = json!({ "index": 0 });
+    });
+    assert!(scene.textures.is_empty() && scene.unrendered.len() == 1, "{:?}", scene.unrendered);
+}
+
+#[test]
+fn extensions_that_are_required_are_rendered_or_refused_by_name() {
+    let rendered = [
+        "EXT_mesh_gpu_instancing",
+        "EXT_meshopt_compression",
+        "EXT_texture_webp",
+        "KHR_draco_mesh_compression",
+        "KHR_materials_pbrSpecularGlossiness",
+        "KHR_materials_variants",
+        "KHR_mesh_quantization",
+        "KHR_meshopt_compression",
+    ];
+    for name in rendered {
+        let scene = import(&triangle_file(|f| f["extensionsRequired"] = json!([name])), None).unwrap();
+        assert!(scene.unrendered.is_empty(), "{name}");
+    }
+    let refused = [
+        "KHR_materials_anisotropy",
+        "KHR_materials_clearcoat",
+        "KHR_materials_diffuse_transmission",
+        "KHR_materials_dispersion",
+        "KHR_materials_iridescence",
+        "KHR_materials_sheen",
+        "KHR_materials_specular",
+        "KHR_materials_volume",
+        "KHR_texture_basisu",
+        "VENDOR_glow",
+    ];
+    for name in refused {
+        let error = import(&triangle_file(|f| f["extensionsRequired"] = json!([name])), None).unwrap_err();
+        assert!(error.kind == ErrorKind::Unsupported && error.message.contains(name), "{name}: {error}");
+    }
+}
+
 /// Adds an accessor of floats in a buffer of its own; returns its index.
 pub fn add_floats(file: &mut Value, kind: &str, count: usize, numbers: &[f32]) -> usize {
     let raw: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();

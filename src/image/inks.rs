@@ -1,0 +1,80 @@
+//! Inks of JPEG files: cyan, magenta, yellow and black, for the colour profiles that describe them.
+//!
+//! The crate `image` converts inks to RGB without a profile; so this file uses the decoder below it, `zune-jpeg`.
+//! Writers store 255 for no ink, as Adobe Photoshop does and every reader assumes (libjpeg, `libjpeg.txt`, "Special
+//! color spaces"). YCCK is the YCbCr of the inverse of the stored cyan, magenta and yellow, with black unchanged.
+
+use super::Image;
+use super::containers::jpeg_segments;
+use super::limits::check_size;
+use super::memory;
+use super::photo::{Orientation, Upright};
+use crate::error::{Error, Result};
+use crate::image::try_vec;
+use image::ImageFormat;
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
+
+/// Whether the frame of a JPEG has four components.
+pub fn has_inks(bytes: &[u8]) -> bool {
+    // Frames have the markers C0 to CF but for tables (C4, CC) and an extension (C8); the sixth byte counts components.
+    jpeg_segments(bytes)
+        .find(|(marker, _)| matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc))
+        .is_some_and(|(_, frame)| frame.get(5) == Some(&4))
+}
+
+/// The amounts of the four inks in `[0, 1]`, upright.
+pub fn decode(bytes: &[u8], orientation: Orientation) -> Result<Image> {
+    let options = DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    let broken = |e| Error::format(format!("the file cannot be decoded: {e}"));
+    decoder.decode_headers().map_err(broken)?;
+    let stored = decoder.input_colorspace().filter(|space| matches!(space, ColorSpace::CMYK | ColorSpace::YCCK));
+    let (Some(stored), Some((width, height))) = (stored, decoder.dimensions()) else {
+        return Err(Error::format("the JPEG's four components are no inks"));
+    };
+    check_size(width as u64, height as u64)?;
+    // Keep the components as they are.
+    decoder.set_options(options.jpeg_set_out_colorspace(stored));
+    let mut raw = try_vec(4 * width * height, 0u8)?;
+    memory::check_pixels(bytes, ImageFormat::Jpeg, width, height, 4)?;
+    decoder.decode_into(&mut raw).map_err(broken)?;
+
+    let mut out = Upright::new(width, height, 4, orientation)?;
+    for (y, row) in raw.chunks_exact(4 * width).enumerate() {
+        for (x, &stored_pixel) in row.as_chunks().0.iter().enumerate() {
+            let inks = if stored == ColorSpace::YCCK { of_ycck(stored_pixel) } else { of_cmyk(stored_pixel) };
+            out.pixel(x, y).copy_from_slice(&inks);
+        }
+    }
+    Ok(out.image)
+}
+
+fn of_cmyk(stored: [u8; 4]) -> [f32; 4] {
+    stored.map(|v| 1.0 - f32::from(v) / 255.0)
+}
+
+/// YCbCr of JFIF (ITU-T T.871, 7): its R, G and B are the amounts of cyan, magenta and yellow.
+fn of_ycck([y, cb, cr, k]: [u8; 4]) -> [f32; 4] {
+    let (y, cb, cr) = (f32::from(y), f32::from(cb) - 128.0, f32::from(cr) - 128.0);
+    // [convention]: T.871, 7
+    let rgb = [y + 1.402 * cr, y - 0.344_136 * cb - 0.714_136 * cr, y + 1.772 * cb];
+    let [c, m, yellow] = rgb.map(|v| v.round().clamp(0.0, 255.0) / 255.0);
+    [c, m, yellow, 1.0 - f32::from(k) / 255.0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inks_are_amounts() {
+        assert_eq!(of_cmyk([255, 0, 255, 0]), [0.0, 1.0, 0.0, 1.0]);
+        assert_eq!(of_ycck([0, 128, 128, 255]), [0.0; 4]);
+        assert_eq!(of_ycck([255, 128, 128, 0]), [1.0; 4]);
+        // Cyan alone: the YCbCr of pure red.
+        assert_eq!(of_ycck([76, 85, 255, 255]), [254.0 / 255.0, 0.0, 0.0, 0.0]);
+    }
+}
