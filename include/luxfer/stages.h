@@ -203,6 +203,9 @@ typedef struct luxfer_rectify_report {
 /** Mainly from what the photo's file says; see luxfer_image_get_metadata. */
 #define LUXFER_FOCAL_FROM_METADATA 3
 
+/** From lamps that are alike, as their plane shows them (lighting transfer only). */
+#define LUXFER_FOCAL_FROM_LAMPS 4
+
 /** The plane in frontal view, linear RGB. */
 #define LUXFER_RECTIFY_UNWARPED 0
 

@@ -245,7 +245,7 @@ luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
 
 /**
  * Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
- * plane, the result of the stage UNWARP by that plane. Any thread.
+ * plane, the result of the stage UNWARP by that plane. The lamps do not change this camera. Any thread.
  * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,

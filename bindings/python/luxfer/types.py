@@ -253,6 +253,8 @@ class FocalSource(IntEnum):
     """Assumed: 0.85 times the width of the photo."""
     FROM_METADATA = 3
     """Mainly from what the photo's file says; see luxfer_image_get_metadata."""
+    FROM_LAMPS = 4
+    """From lamps that are alike, as their plane shows them (lighting transfer only)."""
 
 
 class DepthKind(IntEnum):
