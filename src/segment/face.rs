@@ -9,7 +9,7 @@ use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
 /// Cosine of the angle between normals of one face at most: half of a right angle. [convention]
-pub const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
+const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Share of the pixels that must lie on one face before the room is believed. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 

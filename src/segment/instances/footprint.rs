@@ -1,13 +1,13 @@
 //! The part of the room's surface that each pixel shows: lamps of one kind cover equal areas of it, in equal shapes, at
 //! any distance.
 
-use super::super::face::SAME_FACE;
 use crate::error::Result;
 use crate::exec;
 use crate::features::{NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use glam::Vec3;
+use std::f32::consts::FRAC_1_SQRT_2;
 
 /// The part of a face of the room that each pixel shows, in the unit of the positions. The face goes on beyond its
 /// edges: pixels of other faces show the part of its extension that lies on their rays.
@@ -16,7 +16,7 @@ pub struct Footprint {
     pub area: Vec<f32>,
     /// Coordinates along the face.
     pub at: Vec<[f32; 2]>,
-    /// Whether a pixel shows the face itself, as the room was laid out.
+    /// Whether a pixel shows the face itself, as the room was laid out: its normal lies within half a right angle.
     pub is_on_face: Vec<bool>,
 }
 
@@ -52,7 +52,7 @@ impl Footprint {
             [p[(off + 1) % 3], p[(off + 2) % 3]]
         }))?;
         let pixels = features.data.chunks_exact(features.channels);
-        let is_on_face = try_collect(pixels.map(|p| Vec3::from_slice(&p[NORMAL..]).dot(normal) > SAME_FACE))?;
+        let is_on_face = try_collect(pixels.map(|p| Vec3::from_slice(&p[NORMAL..]).dot(normal) > FRAC_1_SQRT_2))?;
         Ok(Self { area, at, is_on_face })
     }
 }
