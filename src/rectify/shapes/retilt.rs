@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 /// How much worse the shapes may fit after the lines have corrected the tilt, and the minimum share of the lines that
 /// then run along the axes [bench photos:tune].
-const MAX_LOSS: f64 = 6.0;
+const MAX_LOSS: f64 = 2.0;
 const MIN_EXPLAINED: f64 = 0.5;
 /// Steps of the rotation about the normal, in a right angle [convention].
 const ROTATIONS: usize = 360;

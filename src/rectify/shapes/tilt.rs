@@ -20,6 +20,8 @@ const KNOWN_FOCAL: f64 = 0.1;
 /// Width of the differences that give the curvature at the least cost: wide ones smooth the kinks of medians and limits
 /// [bench photos:tune].
 const WIDTH: f64 = 0.02;
+/// Number of tilts that are refined [bench photos:tune].
+const STARTS: usize = 12;
 /// First and last step of the refinement, in radians [convention].
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-4;
@@ -91,16 +93,17 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     let focals = (-steps..=steps).map(|k| expected.focal * (FOCAL_STEP * f64::from(k)).exp());
     let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
 
-    let best = exec::map(DIRECTIONS, job, |k| {
+    // The best tilt of every direction; refine the best of these, since shapes stretched alike make minima of their own.
+    let rough = exec::map(DIRECTIONS, job.part(0.0, 0.8), |k| {
         let normal = direction(k);
         let tilts = focals.iter().map(|&focal| Tilt { normal, focal });
         tilts.map(|tilt| (total.by(likeness::rough_cost, &tilt), tilt)).min_by(|a, b| a.0.total_cmp(&b.0))
     })?;
-    let best = best.into_iter().flatten().chain([(total.by(likeness::rough_cost, &by_lines), by_lines)]);
-    let Some((_, start)) = best.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|b| b.0.is_finite()) else {
-        return Ok(None);
-    };
-    let tilt = refine(&total, start, is_known);
+    let mut starts: Vec<(f64, Tilt)> = rough.into_iter().flatten().filter(|start| start.0.is_finite()).collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    starts.truncate(STARTS);
+    let refined = exec::map(starts.len(), job.part(0.8, 1.0), |k| refine(&total, starts[k].1, is_known))?;
+    let Some((_, tilt)) = refined.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)) else { return Ok(None) };
     let (covariance, focal_spread) = covariance(&total, &tilt, is_known);
     Ok(Some(Found { tilt, covariance, focal_spread }))
 }
@@ -120,8 +123,8 @@ fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
     Tilt { normal: (tilt.normal + a * right + b * down).normalize(), focal: tilt.focal * focal.exp() }
 }
 
-/// Descends by steps along all axes and diagonals, which shrink where none of them helps.
-fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> Tilt {
+/// Descends by steps along all axes and diagonals, which shrink where none of them helps; with the cost that is left.
+fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
     let mut least = total.of(&tilt);
     let focal_moves: &[f64] = if is_known { &[0.0] } else { &[0.0, 2.0, -2.0] };
     let around = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [0.0, 0.0]];
@@ -134,7 +137,7 @@ fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> Tilt {
             None => step *= 0.5,
         }
     }
-    tilt
+    (least, tilt)
 }
 
 /// Covariance of the normal, and spread of the focal length, from the curvature of the cost: twice the inverse of its
