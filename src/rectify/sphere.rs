@@ -137,7 +137,8 @@ pub fn round_covariance(direction: DVec3, error: f64) -> DMat3 {
     (DMat3::IDENTITY - outer(direction, direction)) * (0.5 * error * error)
 }
 
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
+/// The outer product `a bᵀ`.
+pub fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 

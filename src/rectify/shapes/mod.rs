@@ -1,6 +1,6 @@
 //! The camera from lamps that are alike, where the lines of a photo do not determine it. Seen straight on, shapes of one
 //! kind have one size and one form (Chum and Matas, "Planar Affine Rectification from Change of Scale", ACCV 2010). Most
-//! lamps are as long as wide; of the others those of one kind are stretched alike.
+//! lamps are as long as they are wide. Oblong lamps of one kind are equally long, and parallel.
 //!
 //! ```text
 //! mask of lamps ─▶ likeness ─▶ tilt of their plane, focal length ─▶ retilt: rotation about the normal ─▶ View

@@ -7,7 +7,7 @@ use crate::geometry::linear;
 use crate::job::Job;
 use crate::rectify::camera::FREE_ERROR;
 use crate::rectify::focal::Expected;
-use crate::rectify::sphere::STRAIGHTNESS;
+use crate::rectify::sphere::{STRAIGHTNESS, outer, round_covariance};
 use glam::{DMat3, DVec3};
 
 /// Number of directions tried over the sphere: 6 degrees apart [convention].
@@ -28,7 +28,7 @@ const LAST_STEP: f64 = 1e-4;
 /// The most that a contradiction to the lines costs, in variances: the lines may be wrong altogether
 /// [bench photos:tune].
 const MAX_LINES_COST: f64 = 9.0;
-/// Standard deviation of the camera's roll, and the most that it costs: most cameras are held upright
+/// Standard deviation of the camera's roll, and the maximum cost of a roll: photographers hold most cameras upright
 /// [bench photos:tune].
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
@@ -171,20 +171,13 @@ fn covariance(total: &Total, tilt: &Tilt, is_known: bool) -> (DMat3, f64) {
         (hessian[0][2], hessian[1][2]) = (0.0, 0.0);
     }
     let columns = [0, 1, 2].map(|k| linear::solve(hessian, unit(k, 2.0)));
-    let free = (FREE_ERROR * FREE_ERROR / 2.0, total.expected.spread);
-    let [Some(x), Some(y), Some(f)] = columns else { return (round(tilt.normal, free.0), free.1) };
+    let free = (round_covariance(tilt.normal, FREE_ERROR), total.expected.spread);
+    let [Some(x), Some(y), Some(f)] = columns else { return free };
     let is_minimum = x[0] > 0.0 && y[1] > 0.0 && f[2] > 0.0 && x.iter().chain(&y).all(|v| v.is_finite());
     if !is_minimum {
-        return (round(tilt.normal, free.0), free.1);
+        return free;
     }
     let (a, b) = tilt.normal.any_orthonormal_pair();
-    let outer = |p: DVec3, q: DVec3| DMat3::from_cols(p * q.x, p * q.y, p * q.z);
     let of_shapes = outer(a, a) * x[0] + outer(b, b) * y[1] + (outer(a, b) + outer(b, a)) * x[1];
-    (of_shapes + round(tilt.normal, 0.5 * STRAIGHTNESS * STRAIGHTNESS), f[2].sqrt())
-}
-
-/// A covariance that is the same in all directions across the normal.
-fn round(normal: DVec3, variance: f64) -> DMat3 {
-    let along = DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
-    (DMat3::IDENTITY - along) * variance
+    (of_shapes + round_covariance(tilt.normal, STRAIGHTNESS), f[2].sqrt())
 }
