@@ -84,7 +84,7 @@ fn convert((mut image, space): (Image, Space), encoding: Encoding) -> Result<(Im
     Ok((image, colour))
 }
 
-/// What is read from a file.
+/// The numbers that a decoder returns for a picture.
 enum Read {
     Colours(Encoding),
     /// Amounts of cyan, magenta, yellow and black.
