@@ -25,6 +25,13 @@ static int32_t on_progress(void *user, double fraction) {
 }
 /* --8<-- [end:progress] */
 
+/* --8<-- [start:work] */
+/* Runs on a thread of the library, with its result as that of the job. */
+static luxfer_status save(void *user) {
+    return luxfer_image_save(user, "progress_and_cancel.png", 1 / 450.0f);
+}
+/* --8<-- [end:work] */
+
 int main(void) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
@@ -59,7 +66,11 @@ int main(void) {
     /* The passes before the cancel give a picture, with its error. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
     check(luxfer_render_get_report(render, &report, sizeof report), "report");
-    check(luxfer_image_save(picture, "progress_and_cancel.png", 1 / 450.0f), "picture");
+    /* --8<-- [start:start] */
+    check(luxfer_job_start(context, save, picture, &job), "start");
+    check(luxfer_job_wait(job, -1, NULL, NULL), "picture");
+    luxfer_release(job);
+    /* --8<-- [end:start] */
     printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
     luxfer_release(picture);
 

@@ -83,7 +83,7 @@ class Program:
                 held.append(rest[0])
             return bytes([found[0]])
         if f.type in script.CALLBACKS:
-            return bytes([0 if kind == "null" else 1 if rest[0] in ("go", "write") else 2])
+            return bytes([0 if kind == "null" else 1 if rest[0] in ("go", "write", "work") else 2])
         if not f.stars:
             return b"".join(number(f.type, n) for n in (rest[1] if kind == "array" else rest))
         if f.name == "path":

@@ -35,6 +35,30 @@ pub enum ErrorKind {
     Unreachable = 13,
 }
 
+impl ErrorKind {
+    /// All kinds, in the order of their values, which start at 1.
+    const ALL: [Self; 13] = [
+        Self::Unknown,
+        Self::InvalidArgument,
+        Self::InvalidOperation,
+        Self::OutOfMemory,
+        Self::Unsupported,
+        Self::Cancelled,
+        Self::Io,
+        Self::Format,
+        Self::NotReady,
+        Self::Internal,
+        Self::Degenerate,
+        Self::NotFound,
+        Self::Unreachable,
+    ];
+
+    /// The kind with a value of `luxfer_status`.
+    pub fn from_value(value: i32) -> Option<Self> {
+        Self::ALL.into_iter().find(|&kind| kind as i32 == value)
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Error {
     pub kind: ErrorKind,

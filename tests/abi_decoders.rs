@@ -150,36 +150,87 @@ fn pictures() -> Vec<(&'static str, Vec<u8>)> {
         ("webp", file(&|f| WebPEncoder::new_lossless(f).encode(&rgb, width, height, colour).unwrap())),
         ("bmp", file(&|f| BmpEncoder::new(f).encode(&rgb, width, height, colour).unwrap())),
         ("gif", file(&|f| GifEncoder::new(f).encode_frame(Frame::new(rgba.clone())).unwrap())),
-        ("tiff", tiff(&rgb)),
+        ("tiff", tiff(SIZE, 3, rgb.as_raw(), None)),
+        ("tiff of inks", tiff(SIZE, 4, rgba.as_raw(), Some(&ink_profile()))),
         ("exr", exr),
         ("hdr", radiance),
     ]
 }
 
-/// An uncompressed TIFF of one strip.
-fn tiff(image: &RgbImage) -> Vec<u8> {
-    let [width, height] = [image.width(), image.height()];
-    let len = 3 * width * height;
-    // Width, height, bits, no compression, RGB, offset, samples, rows, length.
-    let tags: [(u16, u16, u32, u32); 9] = [
+/// An uncompressed TIFF of one strip, of colours or of inks, with a profile or without.
+fn tiff([width, height]: [u32; 2], samples: u32, pixels: &[u8], profile: Option<&[u8]>) -> Vec<u8> {
+    let tags = 9 + u32::from(profile.is_some());
+    let (bits, len) = (8 + 2 + tags * 12 + 4, samples * width * height);
+    let strip = bits + 2 * samples;
+    let photometric = if samples == 4 { 5 } else { 2 };
+    // Width, height, bits, no compression, colours, offset, samples, rows, length, profile.
+    let mut entries: Vec<(u16, u16, u32, u32)> = vec![
         (256, 4, 1, width),
         (257, 4, 1, height),
-        (258, 3, 3, 8 + 2 + 9 * 12 + 4),
+        (258, 3, samples, bits),
         (259, 3, 1, 1),
-        (262, 3, 1, 2),
-        (273, 4, 1, 8 + 2 + 9 * 12 + 4 + 6),
-        (277, 3, 1, 3),
+        (262, 3, 1, photometric),
+        (273, 4, 1, strip),
+        (277, 3, 1, samples),
         (278, 4, 1, height),
         (279, 4, 1, len),
     ];
-    let mut file = b"II*\0\x08\0\0\0\x09\0".to_vec();
-    for (tag, kind, count, value) in tags {
+    entries.extend(profile.map(|profile| (34_675, 7, profile.len() as u32, strip + len)));
+    let mut file = [b"II*\0\x08\0\0\0", &(tags as u16).to_le_bytes()[..]].concat();
+    for (tag, kind, count, value) in entries {
         file.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());
         file.extend([count.to_le_bytes(), value.to_le_bytes()].concat());
     }
-    file.extend([0, 0, 0, 0, 8, 0, 8, 0, 8, 0]);
-    file.extend(image.as_raw());
+    file.extend([0; 4]);
+    file.extend([8, 0].repeat(samples as usize));
+    file.extend(pixels);
+    file.extend(profile.unwrap_or_default());
     file
+}
+
+/// A profile that converts inks by a grid of two colours along each (ICC.1:2022, section 10.11, `lut8Type`).
+fn ink_profile() -> Vec<u8> {
+    let ramp: Vec<u8> = (0..=255).collect();
+    let mut table = b"mft1\0\0\0\0\x04\x03\x02\0".to_vec();
+    for entry in 0..9 {
+        table.extend(if entry % 4 == 0 { [0, 1, 0, 0] } else { [0; 4] });
+    }
+    table.extend(ramp.repeat(4));
+    table.extend((0..16u8).flat_map(|inks| [255 - 17 * inks, 128, 128]));
+    table.extend(ramp.repeat(3));
+    let mut profile = vec![0; 128];
+    profile[8] = 2;
+    profile[12..24].copy_from_slice(b"prtrCMYKLab ");
+    profile[36..40].copy_from_slice(b"acsp");
+    profile.extend([&1u32.to_be_bytes(), b"A2B0", &144u32.to_be_bytes(), &(table.len() as u32).to_be_bytes()].concat());
+    profile.extend(table);
+    let size = profile.len() as u32;
+    profile[..4].copy_from_slice(&size.to_be_bytes());
+    profile
+}
+
+#[test]
+fn the_profile_of_the_inks_is_used() {
+    let picture = |profile: Option<&[u8]>| {
+        let file = tiff([1, 1], 4, &[0, 0, 0, 255], profile);
+        let context = host::context(1);
+        let image = host::made(|out| unsafe {
+            luxfer_image_load_memory(context, file.as_ptr().cast(), file.len(), LUXFER_COLOUR_SRGB, out)
+        });
+        let mut pixel = [0.0; 3];
+        let view = host::view(1, 1, &mut pixel);
+        unsafe {
+            assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
+            assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
+            assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+        }
+        pixel
+    };
+    assert!(picture(None).iter().all(|&v| v < 0.01), "black ink without a profile");
+    // The last ink runs fastest: entry 1 of the grid has a lightness of 100 (1 - 17/255).
+    let [red, green, blue] = picture(Some(&ink_profile()));
+    let luminance = ((93.333f32 + 16.0) / 116.0).powi(3);
+    assert!((green - luminance).abs() < 0.01 && (red - blue).abs() < 0.01, "{red} {green} {blue}");
 }
 
 #[test]

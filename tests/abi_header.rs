@@ -31,7 +31,7 @@ const PARTS: &[Part] = &[
         name: "core",
         title: "version, status, settings, context, references, images, strokes and jobs",
         includes: &[],
-        groups: &["version", "status", "init", "context", "references", "image", "photo", "strokes", "job"],
+        groups: &["version", "status", "init", "context", "references", "image", "photo", "strokes", "job", "job_start"],
     },
     Part {
         name: "scene",

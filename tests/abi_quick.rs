@@ -202,7 +202,7 @@ unsafe extern "C" fn trace_one(scene: *mut c_void, _: f64) -> i32 {
 fn a_cancel_is_answered_while_a_progress_function_calls_the_library() {
     let context = context(1);
     let scene = scene(context);
-    for _ in 0..3 {
+    let quickest = (0..3).map(|_| {
         let endless = Endless::start(context);
         let job = endless.job as usize;
         let canceller = std::thread::spawn(move || {
@@ -213,11 +213,13 @@ fn a_cancel_is_answered_while_a_progress_function_calls_the_library() {
         let status = unsafe { luxfer_job_wait(endless.job, -1, Some(trace_one), scene.cast()) };
         let answered = Instant::now();
         assert_eq!(status, LUXFER_CANCELLED);
-        // The promise is 100 ms; a busy machine gets more before the test fails.
         let late = answered - canceller.join().unwrap();
-        assert!(late < Duration::from_millis(500), "{late:?}");
         endless.end();
-    }
+        late
+    });
+    // Other programs may occupy the processors for a while.
+    let quickest = quickest.min().unwrap();
+    assert!(quickest <= Duration::from_millis(100), "{quickest:?}");
     unsafe {
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);

@@ -257,6 +257,16 @@ impl Arguments<'_> {
         [None, Some(take as _), Some(refuse as _)][usize::from(self.number::<u8>() % 3)]
     }
 
+    fn work(&mut self) -> luxfer_work_fn {
+        extern "C" fn succeed(_: *mut c_void) -> luxfer_status {
+            LUXFER_OK
+        }
+        extern "C" fn fail(_: *mut c_void) -> luxfer_status {
+            LUXFER_FORMAT
+        }
+        [None, Some(succeed as _), Some(fail as _)][usize::from(self.number::<u8>() % 3)]
+    }
+
     /// Releases every handle that is left; all of these calls must succeed.
     fn release(&mut self) {
         for (kind, handles) in std::mem::take(&mut self.handles) {

@@ -624,7 +624,9 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
  * progress may be NULL; it receives user. Any thread; several threads may wait for one job.
  *
  * Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
- * request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues.
+ * request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if the
+ * function of the job waits for its own job. In the function of another job (luxfer_job_start), a cancel request to that
+ * job also cancels this one.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
@@ -645,6 +647,32 @@ luxfer_status luxfer_job_get_progress(luxfer_job *job,
  * request after the end has no effect. Any thread.
  */
 luxfer_status luxfer_job_cancel(luxfer_job *job);
+
+/* ====================================================================================================================
+ * Functions of the caller as jobs
+ *
+ * Calls that return when their work is done (files, warps, pictures of results) may take long for large inputs.
+ * luxfer_job_start runs any sequence of calls as a job, so that a user interface can show its progress and cancel it.
+ * ==================================================================================================================== */
+
+/**
+ * A function of the caller that runs as a job; it receives the pointer given to luxfer_job_start and returns the status
+ * with which the job ends. It must not throw an exception or leave by longjmp.
+ */
+typedef int32_t (*luxfer_work_fn)(void *user);
+
+/**
+ * Starts a function of the caller, which receives user, as a job on a thread of its own, with 4 MiB of stack. The
+ * function may call any function of the library. A cancel request to this job ends the calls that it makes in this
+ * context with LUXFER_CANCELLED, between the meshes or pictures of a file, and cancels the jobs that it waits for; the
+ * progress of this job is that of these calls and waits, and never falls. If the function returns an error, the message
+ * of the job is that of the last call that failed on the job's thread. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if work is NULL.
+ */
+luxfer_status luxfer_job_start(luxfer_context *context,
+                               luxfer_work_fn work,
+                               void *user,
+                               luxfer_job **job);
 
 #ifdef __cplusplus
 }

@@ -17,7 +17,6 @@ use super::status::luxfer_status;
 use crate::emission::{Composition, LampList, Tile};
 use crate::error::{Error, ErrorKind};
 use crate::image::Image;
-use crate::job::Monitor;
 
 /// Adds an exemplar whose lights replace lights of the first exemplar according to weights. unwarped, light and valid
 /// are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
@@ -110,8 +109,8 @@ pub unsafe extern "C" fn luxfer_emission_render_tile(
         plan.check(part)?;
         let context = stage.context();
         let image = Pixels::counted(context, part.width, part.height, 4, || {
-            let job = Monitor::default();
-            let render = || inputs.with(|input, styles| plan.tile(input, styles, part, job.job()));
+            let monitor = context.monitor();
+            let render = || inputs.with(|input, styles| plan.tile(input, styles, part, monitor.job()));
             let (texture, mask) = context.quick.run(render)?;
             let mut image = Image::new(part.width, part.height, 4)?;
             let texels = texture.data.chunks_exact(3).zip(&mask.data);

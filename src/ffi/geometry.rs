@@ -13,7 +13,6 @@ use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Homography;
 use crate::image::MAX_SIDE;
-use crate::job::Monitor;
 use crate::rectify;
 use glam::{DMat3, DVec2};
 
@@ -59,7 +58,7 @@ pub unsafe extern "C" fn luxfer_image_warp(
         check_range("height", height, 1, MAX_SIDE)?;
         let source = object.image();
         let image = Pixels::counted(object.context(), width, height, source.channels, || {
-            let monitor = Monitor::default();
+            let monitor = object.context().monitor();
             object.context().quick.run(|| rectify::warp(source, &map, width, height, monitor.job()))
         })?;
         out.set(handle::give(image));

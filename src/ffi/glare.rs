@@ -11,7 +11,6 @@ use super::scene::luxfer_scene;
 use super::status::luxfer_status;
 use crate::error::Result;
 use crate::image::try_vec;
-use crate::job::Monitor;
 use crate::render::glare::{self, Eye, Rating};
 use glam::Vec3;
 
@@ -72,7 +71,7 @@ pub unsafe extern "C" fn luxfer_scene_get_glare(
             *place = eye(raw);
         }
         let world = object.ready_world()?;
-        let (params, monitor) = (glare::Params { samples, seed }, Monitor::default());
+        let (params, monitor) = (glare::Params { samples, seed }, object.context().monitor());
         let rated: Result<Vec<Rating>> =
             object.context().quick.run(|| glare::rate(&world, &eyes, &params, monitor.job()));
         for (place, rating) in places.chunks_exact_mut(size_of::<luxfer_observer_glare>()).zip(&rated?) {

@@ -340,10 +340,13 @@ fn encoding(value: luxfer_colour_space) -> Result<io::Encoding> {
 
 /// Decodes a file once its picture, and what decoding takes beside it, are known to fit the budget.
 fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Result<Arc<Pixels>> {
+    let monitor = context.monitor();
     let _working = context.charge(io::working_bytes(bytes)?)?;
     let (width, height, channels) = io::probe(bytes)?;
     let charge = context.charge(cost(width, height, channels))?;
+    monitor.job().check()?;
     let photo = io::decode_photo(bytes, encoding)?;
+    monitor.job().check()?;
     Ok(Pixels::own(context, photo.image, charge, photo.metadata))
 }
 

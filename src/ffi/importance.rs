@@ -17,7 +17,6 @@ use super::scene::{colour, luxfer_scene};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::job::Monitor;
 use crate::relight::{self, Goal, Importance, MapParams, Place, Placement};
 use crate::scene::Texture;
 use glam::{DMat3, Mat3, Vec3};
@@ -261,7 +260,7 @@ fn respond(
         DMat3::from_cols_array(&numbers(placement, "placement")?).transpose().as_mat3()
     };
     let texture = Texture::new("texture", image.image().clone());
-    let monitor = Monitor::default();
+    let monitor = stage.context().monitor();
     let response = stage.context().quick.run(|| map.respond(&texture, &placement, monitor.job()))?;
     Ok((map, response))
 }

@@ -19,7 +19,7 @@ use crate::job::Monitor;
 use crate::quiet;
 use std::ffi::c_void;
 use std::sync::{Arc, Condvar, Mutex};
-use std::thread::JoinHandle;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// Work in progress. See luxfer_job_wait.
@@ -46,7 +46,7 @@ pub(super) struct Job {
 
 /// State shared by the working and the waiting threads.
 struct Shared {
-    monitor: Monitor,
+    monitor: Arc<Monitor>,
     result: Mutex<Option<Result<()>>>,
     finished: Condvar,
 }
@@ -70,15 +70,25 @@ impl Job {
         context: &Arc<Context>,
         work: impl FnOnce(crate::job::Job) -> Result<()> + Send + 'static,
     ) -> Result<Self> {
-        let shared =
-            Arc::new(Shared { monitor: Monitor::default(), result: Mutex::new(None), finished: Condvar::new() });
+        Self::on_thread(context, |context, monitor| {
+            let in_pool = monitor.clone();
+            let work = move || catch(|| work(in_pool.job()));
+            let result = context.pool.run_unless(work, || monitor.is_cancelled());
+            result.unwrap_or_else(|| Err(Error::cancelled()))
+        })
+    }
+
+    /// Runs `work` on a thread of its own. `work` must not panic.
+    pub(super) fn on_thread(
+        context: &Arc<Context>,
+        work: impl FnOnce(&Arc<Context>, &Arc<Monitor>) -> Result<()> + Send + 'static,
+    ) -> Result<Self> {
+        let shared = Arc::new(Shared { monitor: Arc::default(), result: Mutex::new(None), finished: Condvar::new() });
         let run = {
             let (context, shared) = (context.clone(), shared.clone());
             move || {
-                let in_pool = shared.clone();
-                let work = move || catch(|| work(in_pool.monitor.job()));
-                let result = context.pool.run_unless(work, || shared.monitor.is_cancelled());
-                *lock(&shared.result) = Some(result.unwrap_or_else(|| Err(Error::cancelled())));
+                let result = work(&context, &shared.monitor);
+                *lock(&shared.result) = Some(result);
                 shared.finished.notify_all();
             }
         };
@@ -102,7 +112,9 @@ impl Job {
 impl Drop for Job {
     fn drop(&mut self) {
         self.shared.monitor.cancel();
-        if let Some(thread) = lock(&self.thread).take() {
+        // A function that runs as a job may release that job: its thread cannot wait for itself.
+        let is_other = |thread: &JoinHandle<()>| thread.thread().id() != thread::current().id();
+        if let Some(thread) = lock(&self.thread).take().filter(is_other) {
             // The thread catches all panics, so it always ends well.
             let _ = thread.join();
         }
@@ -113,7 +125,9 @@ impl Drop for Job {
 /// progress may be NULL; it receives user. Any thread; several threads may wait for one job.
 ///
 /// Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
-/// request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues.
+/// request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if the
+/// function of the job waits for its own job. In the function of another job (luxfer_job_start), a cancel request to that
+/// job also cancels this one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
     job: *mut luxfer_job,
@@ -124,12 +138,22 @@ pub unsafe extern "C" fn luxfer_job_wait(
     enter(job, |job| {
         let deadline = u64::try_from(timeout_ms).ok().map(|ms| Instant::now() + Duration::from_millis(ms));
         let mut progress = progress;
+        let caller = job.context.calling_job();
+        if caller.as_ref().is_some_and(|caller| Arc::ptr_eq(caller, &job.shared.monitor)) {
+            return Err(Error::new(ErrorKind::InvalidOperation, "the function of a job cannot wait for its own job"));
+        }
         loop {
+            if caller.as_ref().is_some_and(|caller| caller.is_cancelled()) {
+                job.shared.monitor.cancel();
+            }
             // Sleep until the job ends, the next report is due, or time is up.
             let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
             let result = job.wait(left.min(REPORT_INTERVAL));
 
-            // Report the progress; 1 is reserved for the end.
+            // Report the progress, also as that of the job whose function waits; 1 is reserved for the end.
+            if let Some(caller) = &caller {
+                caller.job().report(job.shared.monitor.progress());
+            }
             let fraction = match &result {
                 Some(Ok(())) => Some(1.0),
                 Some(Err(_)) => None,

@@ -10,7 +10,6 @@ use super::scene::luxfer_scene;
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::exec;
-use crate::job::Monitor;
 use crate::render::World;
 use crate::scene::accel::Ray;
 use glam::Vec3;
@@ -75,7 +74,7 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
         let blocks = if count <= BLOCK {
             vec![block(0)]
         } else {
-            let monitor = Monitor::default();
+            let monitor = object.context().monitor();
             object.context().quick.run(|| exec::map(count.div_ceil(BLOCK), monitor.job(), block))?
         };
         for (place, hit) in hits.chunks_exact_mut(size_of::<luxfer_hit>()).zip(blocks.into_iter().flatten()) {

@@ -16,7 +16,6 @@ use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::FocalSource;
 use crate::image::Image;
-use crate::job::Monitor;
 use crate::rectify::{self, LineDetector, Metric, Search, UnwarpParams, Unwarped, View};
 use glam::DVec2;
 use std::sync::Arc;
@@ -422,7 +421,7 @@ pub unsafe extern "C" fn luxfer_rectify_warp(
         let unwarped = unwarped(&output)?;
         output.found_in.image().check_same_size("the photo", source.image(), "source")?;
         let (width, height) = (unwarped.image.width, unwarped.image.height);
-        let monitor = Monitor::default();
+        let monitor = stage.context().monitor();
         let quick = &stage.context().quick;
         let image = quick.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
         out.set(handle::give(Pixels::part(stage.context(), Arc::new(image), |image| image)));

@@ -16,7 +16,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::image::Image;
-use crate::job::{Job, Monitor};
+use crate::job::Job;
 use crate::render::{self, Film, Outputs, World, parts};
 use crate::scene::{Camera, Scene};
 use std::sync::Arc;
@@ -287,7 +287,8 @@ pub unsafe extern "C" fn luxfer_render_get_image(
             LUXFER_RENDER_INTERVAL => {
                 let (context, film) = (stage.context(), stage.output()?);
                 let (width, height) = (film.beauty.width, film.beauty.height);
-                let make = || context.quick.run(|| film.interval(Monitor::default().job()));
+                let monitor = context.monitor();
+                let make = || context.quick.run(|| film.interval(monitor.job()));
                 out.set(handle::give(Pixels::counted(context, width, height, 3, make)?));
                 return Ok(());
             }

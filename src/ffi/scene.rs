@@ -134,7 +134,7 @@ impl SceneObject {
         context: &Arc<Context>,
         read: impl FnOnce(&dyn gltf::Budget) -> Result<Scene>,
     ) -> Result<Arc<Self>> {
-        let charges = Charges { context, kept: RefCell::default() };
+        let charges = Charges { context, monitor: context.monitor(), kept: RefCell::default() };
         let scene = Arc::new(read(&charges)?);
         let state = State { scene, world: None, charges: charges.kept.into_inner() };
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
@@ -174,7 +174,10 @@ impl SceneObject {
         let scene = self.snapshot();
         match self.kept_world(&scene) {
             Some(world) => Ok(world),
-            None => self.context.quick.run(|| self.world(&scene, Monitor::default().job())),
+            None => {
+                let monitor = self.context.monitor();
+                self.context.quick.run(|| self.world(&scene, monitor.job()))
+            }
         }
     }
 
@@ -197,16 +200,19 @@ impl SceneObject {
 /// The budget of a context for a scene that is read.
 struct Charges<'a> {
     context: &'a Arc<Context>,
+    monitor: Arc<Monitor>,
     kept: RefCell<Vec<Charge>>,
 }
 
 impl gltf::Budget for Charges<'_> {
     fn keep(&self, bytes: u64) -> Result<()> {
+        self.monitor.job().check()?;
         self.kept.borrow_mut().push(self.context.charge(bytes)?);
         Ok(())
     }
 
     fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()> {
+        self.monitor.job().check()?;
         let _lent = self.context.charge(bytes)?;
         work()
     }

@@ -3,6 +3,7 @@
 use super::guard::lock;
 use crate::error::{Error, ErrorKind, Result};
 use crate::exec::{Pool, QuickPools};
+use crate::job::Monitor;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -20,6 +21,8 @@ pub(super) struct Context {
     budget: u64,
     used: AtomicU64,
     messages: Mutex<Messages>,
+    /// The threads that run functions of the caller as jobs, and the monitors of these jobs.
+    callers: Mutex<Vec<(ThreadId, Arc<Monitor>)>>,
     /// The process that created the context; a forked child has another id.
     process: u32,
 }
@@ -45,6 +48,7 @@ impl Context {
             budget,
             used: AtomicU64::new(0),
             messages: Mutex::default(),
+            callers: Mutex::default(),
             process: std::process::id(),
         })
     }
@@ -77,6 +81,24 @@ impl Context {
         read(messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str()))
     }
 
+    /// Makes `monitor` the monitor of all calls of this thread until the returned guard is dropped.
+    pub(super) fn watch_thread(&self, monitor: Arc<Monitor>) -> WatchedThread<'_> {
+        lock(&self.callers).push((thread::current().id(), monitor));
+        WatchedThread(self)
+    }
+
+    /// The monitor of the job whose function makes the present call.
+    pub(super) fn calling_job(&self) -> Option<Arc<Monitor>> {
+        let id = thread::current().id();
+        lock(&self.callers).iter().find(|(thread, _)| *thread == id).map(|(_, monitor)| monitor.clone())
+    }
+
+    /// The monitor of a call that finishes its work before it returns: that of the job whose function makes the call,
+    /// or one of its own.
+    pub(super) fn monitor(&self) -> Arc<Monitor> {
+        self.calling_job().unwrap_or_default()
+    }
+
     /// Charges `bytes` to the memory budget for the lifetime of the returned charge.
     pub(super) fn charge(self: &Arc<Self>, bytes: u64) -> Result<Charge> {
         let take = |used: u64| used.checked_add(bytes).filter(|&sum| self.budget == 0 || sum <= self.budget);
@@ -96,6 +118,16 @@ impl Context {
                 ))
             }
         }
+    }
+}
+
+/// A thread that runs a function of the caller as a job.
+pub(super) struct WatchedThread<'a>(&'a Context);
+
+impl Drop for WatchedThread<'_> {
+    fn drop(&mut self) {
+        let id = thread::current().id();
+        lock(&self.0.callers).retain(|(thread, _)| *thread != id);
     }
 }
 

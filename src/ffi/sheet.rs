@@ -11,7 +11,6 @@ use super::pointer::Out;
 use super::status::luxfer_status;
 use crate::error::{Error, check_range};
 use crate::image::MAX_SIDE;
-use crate::job::Monitor;
 use crate::sheet;
 use glam::DVec2;
 
@@ -102,7 +101,8 @@ pub unsafe extern "C" fn luxfer_sheet_print(
         let (context, picture) = (object.context(), object.image());
         let (width, height) = sheet::size(&params)?;
         let image = Pixels::counted(context, width, height, 3, || {
-            context.quick.run(|| sheet::print(picture, &params, Monitor::default().job()))
+            let monitor = context.monitor();
+            context.quick.run(|| sheet::print(picture, &params, monitor.job()))
         })?;
         out.set(handle::give(image));
         Ok(())
@@ -134,8 +134,8 @@ pub unsafe extern "C" fn luxfer_sheet_align(
         let (context, photo) = (object.context(), object.image());
         let mut numbers = luxfer_sheet_report::defaults();
         let image = Pixels::counted(context, width, height, 3, || {
-            let job = Monitor::default();
-            let aligned = context.quick.run(|| sheet::align(photo, width, height, &params, job.job()))?;
+            let monitor = context.monitor();
+            let aligned = context.quick.run(|| sheet::align(photo, width, height, &params, monitor.job()))?;
             numbers.marks = aligned.marks as u32;
             (numbers.residual, numbers.error) = (aligned.residual, aligned.error);
             numbers.to_photo = aligned.to_photo.0.transpose().to_cols_array();

@@ -85,7 +85,7 @@ mod tests {
             (LUXFER_NOT_FOUND, ErrorKind::NotFound),
             (LUXFER_UNREACHABLE, ErrorKind::Unreachable),
         ] {
-            assert_eq!(status, kind as i32);
+            assert_eq!(ErrorKind::from_value(status), Some(kind));
             // SAFETY: a static string.
             let name = unsafe { CStr::from_ptr(luxfer_status_get_name(status)) }.to_str().unwrap();
             let kind = format!("LUXFER_{kind:?}").replace('_', "").to_uppercase();

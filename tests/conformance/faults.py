@@ -79,7 +79,7 @@ def broken(field, right: Argument, others: list[Argument]) -> list[Argument]:
     if makes(field):
         return [["null"]]
     if field.type in CALLBACKS:
-        return [["null"], ["callback", "refuse" if "write" in field.type else "cancel"]]
+        return [["null"], ["callback", {"luxfer_write_fn": "refuse", "luxfer_work_fn": "fail"}.get(field.type, "cancel")]]
     if field.stars:
         if right[0] == "struct":
             return [["null"], *broken_fields(right)]

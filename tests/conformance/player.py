@@ -21,7 +21,7 @@ import sys
 import threading
 import time
 
-from script import FUNCTIONS, ROOM, STRUCTS, is_handle, is_release, is_retain, makes
+from script import CALLBACKS, FUNCTIONS, ROOM, STRUCTS, is_handle, is_release, is_retain, makes
 
 from luxfer import _abi as abi
 from luxfer._library import library as typed
@@ -81,6 +81,8 @@ class Player:
             "again": abi.luxfer_progress_fn(self.call_again),
             "write": abi.luxfer_write_fn(lambda user, data, size: 0),
             "refuse": abi.luxfer_write_fn(lambda user, data, size: 1),
+            "work": abi.luxfer_work_fn(lambda user: abi.LUXFER_OK),
+            "fail": abi.luxfer_work_fn(lambda user: abi.LUXFER_FORMAT),
         }
 
     # ------------------------------------------------------------------------------------------------- callbacks
@@ -172,7 +174,7 @@ class Player:
         values = [self.value(a) for a in arguments]
         # NULL is what ctypes has for a callback that is none.
         handed = [
-            getattr(abi, f.type)() if f.type in ("luxfer_progress_fn", "luxfer_write_fn") and v is None else v
+            getattr(abi, f.type)() if f.type in CALLBACKS and v is None else v
             for v, f in zip(values, fields)
         ]
         results = [(v, ctypes.string_at(v, RESULTS[a[0]])) for v, a in zip(values, arguments) if a[0] in RESULTS]

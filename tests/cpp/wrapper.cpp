@@ -4,6 +4,7 @@
 
 #include <luxfer.hpp>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -238,6 +239,19 @@ void jobs_report_and_are_cancelled() {
     CHECK_ERROR(job.wait([](double) { return false; }), LUXFER_CANCELLED);
     CHECK(ok(job.poll()).is_finished() && ok(job.poll()).outcome == LUXFER_CANCELLED);
     CHECK_ERROR(job.wait_for(std::chrono::milliseconds(-1)), LUXFER_CANCELLED);
+
+    // A function of the caller as a job: its result, its error, and a cancel that ends what it waits for.
+    std::atomic<int> runs{0};
+    OK(ok(Job::start(context, [&]() -> luxfer::Result<> {
+        ++runs;
+        return ok(render.start()).wait();
+    })).cancel());
+    const Job fails = ok(Job::start(context, [&]() -> luxfer::Result<> {
+        ++runs;
+        return luxfer::detail::finish(context.get(), luxfer_image_save(nullptr, "no.png", 1));
+    }));
+    CHECK_ERROR(fails.wait(), LUXFER_INVALID_ARGUMENT);
+    CHECK(runs >= 1);
 
     const Job other = start(render, endless);
     OK(other.cancel());

@@ -52,6 +52,42 @@ class Jobs(Case):
         self.assertTrue(job.finished)
         self.assertEqual(job.status, luxfer.types.Status.CANCELLED)
 
+    def test_a_function_is_a_job(self):
+        task = luxfer.Task(context(), lambda: luxfer.Image(context(), np.ones((4, 3, 1), np.float32)).size)
+        self.assertEqual(task.wait(), (3, 4, 1))
+        seen = []
+        rate = luxfer.Render(context(), lit_room())
+        task = luxfer.Task(context(), lambda: rate.run(width=64, height=48, samples=16) and 7)
+        self.assertEqual(task.wait(seen.append), 7)
+        self.assertEqual((seen, seen[-1]), (sorted(set(seen)), 1.0))
+
+    def test_a_function_raises_in_wait(self):
+        def work():
+            raise KeyError("mine")
+
+        task = luxfer.Task(context(), work)
+        with self.assertRaisesRegex(KeyError, "mine"):
+            task.wait()
+        self.assertEqual(task.status, luxfer.types.Status.UNKNOWN)
+        with self.assertRaises(errors.FileError):
+            luxfer.Task(context(), lambda: luxfer.Image.load(context(), "/no/such/file.png")).wait()
+
+    def test_cancelling_a_function_cancels_what_it_waits_for(self):
+        render = luxfer.Render(context(), lit_room())
+        begun = threading.Event()
+
+        def work():
+            job = render.start(**LONG)
+            begun.set()
+            job.wait()
+
+        with luxfer.Task(context(), work) as task:
+            begun.wait()
+            time.sleep(0.05)
+            task.cancel()
+            with self.assertRaises(errors.Cancelled):
+                task.wait()
+
     def test_time_outs(self):
         with luxfer.Render(context(), lit_room()).start(**LONG) as job:
             start = time.monotonic()

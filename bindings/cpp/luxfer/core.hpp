@@ -11,6 +11,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace luxfer {
@@ -279,6 +280,18 @@ class Job : public Handle<luxfer_job> {
 public:
     using Handle::Handle;
 
+    /// Starts a function of the caller as a job on a thread of its own; calls of the library that it makes in this
+    /// context end early when the job is cancelled. It fails with a Result's error, or throws one; any other exception
+    /// becomes LUXFER_UNKNOWN.
+    static Result<Job> start(const Context &context, std::function<Result<>()> work) {
+        auto kept = std::make_unique<std::function<Result<>()>>(std::move(work));
+        luxfer_job *made = nullptr;
+        const luxfer_status status = luxfer_job_start(context.get(), &run_and_delete, kept.get(), &made);
+        if (status == LUXFER_OK)
+            static_cast<void>(kept.release());
+        return detail::finish(context.get(), status, Job(context, made));
+    }
+
     /// Waits until the job has ended; if it fails, this call fails with its error.
     Result<> wait(const Progress &progress = {}) const {
         return detail::finish(context().get(), wait_c(get(), -1, progress));
@@ -314,6 +327,11 @@ private:
     static std::int32_t tell(void *user, double fraction) {
         Listener &listener = *static_cast<Listener *>(user);
         return listener.caught.run([&] { return listener.progress(fraction); });
+    }
+
+    static luxfer_status run_and_delete(void *user) {
+        const std::unique_ptr<std::function<Result<>()>> work(static_cast<std::function<Result<>()> *>(user));
+        return detail::status_of(*work);
     }
 
     // As luxfer_job_wait.

@@ -141,6 +141,19 @@ private:
     std::exception_ptr exception_;
 };
 
+/// Runs a function of the caller on a thread of the library; the status that stands for what it throws.
+template <class Function>
+luxfer_status status_of(const Function &function) noexcept {
+    try {
+        function();
+        return LUXFER_OK;
+    } catch (const Error &error) {
+        return error.status();
+    } catch (...) {
+        return LUXFER_UNKNOWN;
+    }
+}
+
 #else
 
 template <class T>
@@ -167,6 +180,13 @@ public:
     }
     void rethrow() {}
 };
+
+/// Runs a function of the caller on a thread of the library; the status of its Result.
+template <class Function>
+luxfer_status status_of(const Function &function) noexcept {
+    const Result<> result = function();
+    return result ? LUXFER_OK : result.error().status();
+}
 
 #endif
 

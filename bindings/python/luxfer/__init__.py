@@ -20,7 +20,7 @@ from .guides import Guides
 from .illuminance import Illuminance
 from .image import Image, homography
 from .importance import Importance
-from .job import Job
+from .job import Job, Task
 from .lamps import Lamps
 from .photometry import (
     Distribution,
@@ -69,6 +69,7 @@ __all__ = [
     "Strokes",
     "Stylize",
     "SurfaceCandidate",
+    "Task",
     "Transfer",
     "abi",
     "align_sheet",

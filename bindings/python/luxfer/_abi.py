@@ -381,6 +381,8 @@ class luxfer_demo_photo(Structure):
 
 luxfer_progress_fn = CFUNCTYPE(c_int32, c_void_p, c_double)
 
+luxfer_work_fn = CFUNCTYPE(c_int32, c_void_p)
+
 luxfer_write_fn = CFUNCTYPE(c_int32, c_void_p, c_void_p, c_size_t)
 
 
@@ -1516,6 +1518,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p)]),
     "luxfer_job_get_progress": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("outcome", POINTER(c_int32))]),
     "luxfer_job_cancel": (c_int32, [("job", POINTER(luxfer_job))]),
+    "luxfer_job_start": (c_int32, [("context", POINTER(luxfer_context)), ("work", luxfer_work_fn), ("user", c_void_p), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_scene_create": (c_int32, [("context", POINTER(luxfer_context)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_export": (c_int32, [("scene", POINTER(luxfer_scene)), ("path", c_char_p)]),
     "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from . import _abi
-from ._handle import Handle
+from ._handle import Handle, call
 from ._library import library
 from ._pointers import POINTER
-from .errors import error
+from .errors import Error, error
 from .types import Status
 
 if TYPE_CHECKING:
@@ -76,6 +76,9 @@ class Job(Handle, Generic[T]):
             raise error(status, self._context.last_error())
         if progress is not None:
             progress(1.0)
+        return self._result()
+
+    def _result(self) -> T:
         return self._owner
 
     def _stop(self) -> None:
@@ -113,6 +116,53 @@ class Job(Handle, Generic[T]):
     def __exit__(self, *_: Any) -> None:
         self._stop()
         self.close()
+
+
+class _Outcome(Generic[T]):
+    """What a function returned or raised."""
+
+    returned: T
+    raised: BaseException | None = None
+
+    def take(self, work: Callable[[], T]) -> int:
+        try:
+            self.returned = work()
+        except BaseException as raised:
+            self.raised = raised
+            return int(raised.status if isinstance(raised, Error) else Status.UNKNOWN)
+        return int(Status.OK)
+
+
+class Task(Job[T]):
+    """A function of yours as a job: for calls that have no job of their own, such as those that read and write files.
+
+    The calls of the library that it makes with objects of the context end early when the job is cancelled. wait() returns
+    what the function returns, and raises what it raises.
+
+    >>> task = Task(context, lambda: Image(context, [[0.25, 1.0]]).size)
+    >>> task.wait()
+    (2, 1, 1)
+    """
+
+    def __init__(self, context: Context, work: Callable[[], T]) -> None:
+        outcome = _Outcome[T]()
+        # The job does not keep what keeps the job, so that losing the last reference to it ends it at once.
+        self._outcome, self._run = outcome, _abi.luxfer_work_fn(lambda _: outcome.take(work))
+        pointer = POINTER(_abi.luxfer_job)()
+        call(context, "luxfer_job_start", context, self._run, None, pointer)
+        self._context, self._pointer = context, pointer
+
+    def wait(self, progress: Progress | None = None, timeout: float | None = None) -> T:
+        """As Job.wait."""
+        try:
+            return super().wait(progress, timeout)
+        except Error:
+            if self._outcome.raised is not None and self.finished:
+                raise self._outcome.raised from None
+            raise
+
+    def _result(self) -> T:
+        return self._outcome.returned
 
 
 class StageBase(Handle):
