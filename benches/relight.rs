@@ -12,7 +12,7 @@ use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{
-    Aspect, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, PlaceParams, Quantity, Sense,
+    Aspect, Constraint, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, PlaceParams, Quantity,
     Solution, lamp_responses, run, solve_groups,
 };
 use luxfer::render::World;
@@ -279,7 +279,7 @@ fn map(case: &Case) {
         quantity: Quantity::Outgoing,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
-        sense: [Sense::Exactly; 3],
+        constraint: [Constraint::Exactly; 3],
         weight: 1.0,
     };
     let (seconds, map) = time(Clock::Wall, || {
@@ -320,7 +320,7 @@ fn lamps() {
         quantity: Quantity::Incident,
         target: Vec3::splat(100.0),
         aspect: Aspect::Colour,
-        sense: [Sense::Exactly; 3],
+        constraint: [Constraint::Exactly; 3],
         weight: 1.0,
     }];
     let solve = |scene: &Arc<Scene>| {

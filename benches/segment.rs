@@ -53,8 +53,8 @@ fn main() {
 
 fn segmented(case: &Case, params: &Params) -> Segmentation {
     let monitor = Monitor::default();
-    let run = |strokes: &[Stroke], within: Option<&Image>, params: &Params| {
-        segment::run(&Input { features: &case.features, strokes, within }, params, monitor.job()).unwrap()
+    let run = |strokes: &[Stroke], region: Option<&Image>, params: &Params| {
+        segment::run(&Input { features: &case.features, strokes, region }, params, monitor.job()).unwrap()
     };
     match &case.plane {
         None => run(&case.strokes, None, params),
@@ -193,7 +193,7 @@ fn timing(case: &Case) -> f64 {
     let many: Vec<Stroke> = case.strokes.iter().flat_map(pieces).collect();
     let monitor = Monitor::default();
     let run = |strokes: &[Stroke]| {
-        let input = Input { features: &case.features, strokes, within: None };
+        let input = Input { features: &case.features, strokes, region: None };
         segment::run(&input, &Params::default(), monitor.job()).unwrap();
     };
     let timings =
@@ -238,21 +238,21 @@ impl Exchange {
         case: &Case,
         method: &str,
         strokes: &[Stroke],
-        within: Option<&Image>,
+        region: Option<&Image>,
     ) -> Result<(f64, Image), String> {
         let (width, height) = (case.photo.width, case.photo.height);
         let mut painted = vec![0u8; width * height];
         for stroke in strokes {
             stroke.pixels.iter().for_each(|&p| painted[p as usize] = 1 + u8::from(stroke.positive));
         }
-        let use_channels: Vec<usize> = (0..if within.is_some() { 3 } else { CHANNELS }).collect();
+        let use_channels: Vec<usize> = (0..if region.is_some() { 3 } else { CHANNELS }).collect();
         let mut job = serde_json::json!({
             "method": method, "width": width, "height": height, "channels": CHANNELS, "use": use_channels,
             "strokes": self.write("strokes", painted)?, "out": self.folder.join("out"),
             "features": self.folder.join("features"), "photo": self.folder.join("photo"),
         });
-        if let Some(within) = within {
-            let bytes = within.data.iter().map(|&v| u8::from(v > 0.5)).collect();
+        if let Some(region) = region {
+            let bytes = region.data.iter().map(|&v| u8::from(v > 0.5)).collect();
             job["within"] = self.write("within", bytes)?.to_string_lossy().into_owned().into();
         }
         let seconds = self.peer.ask(&job.to_string())?["seconds"].as_f64().ok_or("no time in the answer")?;

@@ -89,7 +89,7 @@ impl Error {
     }
 
     /// Prefixes the message with the place of the error: `texture 3: the file is truncated`.
-    pub fn within(self, place: impl fmt::Display) -> Self {
+    pub fn context(self, place: impl fmt::Display) -> Self {
         Self { message: format!("{place}: {}", self.message), ..self }
     }
 }

@@ -202,7 +202,9 @@ fn ink_profile() -> Vec<u8> {
     profile[8] = 2;
     profile[12..24].copy_from_slice(b"prtrCMYKLab ");
     profile[36..40].copy_from_slice(b"acsp");
-    profile.extend([&1u32.to_be_bytes(), b"A2B0", &144u32.to_be_bytes(), &(table.len() as u32).to_be_bytes()].concat());
+    for word in [1u32.to_be_bytes(), *b"A2B0", 144u32.to_be_bytes(), (table.len() as u32).to_be_bytes()] {
+        profile.extend(word);
+    }
     profile.extend(table);
     let size = profile.len() as u32;
     profile[..4].copy_from_slice(&size.to_be_bytes());

@@ -111,7 +111,7 @@ fn read(small: &Image, times: usize) -> Reading {
     let room = Some(RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[], layout: None });
     let input = features::Input { photo: &photo, depth: None, room };
     let (all, features) = cost(pixels, || features::run(&input, &Default::default(), monitor.job()).unwrap().image);
-    let input = Input { features: &features, strokes: &strokes, within: None };
+    let input = Input { features: &features, strokes: &strokes, region: None };
     let (mask, plane) = cost(pixels, || segment::run(&input, &Params::default(), monitor.job()).unwrap());
     Reading { costs: [lines, all, mask], view, plane }
 }

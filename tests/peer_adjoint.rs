@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
-use luxfer::relight::{Aspect, Goal, Importance, MapParams, Params, Place, Pose, Quantity, Sense};
+use luxfer::relight::{Aspect, Constraint, Goal, Importance, MapParams, Params, Place, Pose, Quantity};
 use luxfer::scene::{Camera, Material, Mesh, Scene, Texture, TextureRef, gltf};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -92,7 +92,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
         quantity: Quantity::Incident,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
-        sense: [Sense::Exactly; 3],
+        constraint: [Constraint::Exactly; 3],
         weight: 1.0,
     };
     // The texture has as many texels as there are cells: finer ones would be blurred to the size of cells.

@@ -155,10 +155,10 @@ fn ceilings_and_their_lights_are_found_in_real_photos() {
 
         let started = Instant::now();
         let examples = set.plane_examples();
-        let input = segment::Input { features: &features.image, strokes: &examples, within: None };
+        let input = segment::Input { features: &features.image, strokes: &examples, region: None };
         let plane = pool.run(|| segment::run(&input, &Default::default(), monitor.job())).unwrap();
         let plane_ms = started.elapsed().as_secs_f64() * 1e3;
-        let input = segment::Input { features: &features.image, strokes: &set.lights, within: Some(&plane.mask) };
+        let input = segment::Input { features: &features.image, strokes: &set.lights, region: Some(&plane.mask) };
         let lights = pool.run(|| segment::run(&input, &segment::Params::for_lights(), monitor.job())).unwrap();
 
         write_picture(&format!("{name}.png"), &overlay(&photo, &plane.mask, &lights.mask, &set));

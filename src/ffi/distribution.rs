@@ -109,7 +109,7 @@ pub unsafe extern "C" fn luxfer_distribution_load(
         let out = Out::new(distribution, "distribution")?;
         let path = text(path, "path")?;
         let format = format_of(Path::new(path))?;
-        let luminaire = read(&io::read_file(Path::new(path))?, format).map_err(|e| e.within(path))?;
+        let luminaire = read(&io::read_file(Path::new(path))?, format).map_err(|e| e.context(path))?;
         out.set(handle::give(Arc::new(Distribution {
             context: object.context().clone(),
             luminaire: Arc::new(luminaire),

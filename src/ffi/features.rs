@@ -233,7 +233,7 @@ fn network(path: &str, normalisation: luxfer_normalisation) -> Result<DepthNetwo
             return Err(Error::argument(format!("normalisation is {other}; it must be a LUXFER_NORMALISATION_ value")));
         }
     };
-    DepthNetwork::parse(&io::read_file(Path::new(path))?, normalisation).map_err(|error| error.within(path))
+    DepthNetwork::parse(&io::read_file(Path::new(path))?, normalisation).map_err(|error| error.context(path))
 }
 
 #[cfg(not(feature = "onnx"))]

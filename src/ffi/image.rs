@@ -308,7 +308,7 @@ pub unsafe extern "C" fn luxfer_image_load(
         let path = text(path, "path")?;
         let encoding = encoding(colour_space)?;
         let bytes = io::read_file(Path::new(path))?;
-        let decoded = decode(object.context(), &bytes, encoding).map_err(|e| e.within(path))?;
+        let decoded = decode(object.context(), &bytes, encoding).map_err(|e| e.context(path))?;
         out.set(handle::give(decoded));
         Ok(())
     })

@@ -171,7 +171,7 @@ pub unsafe extern "C" fn luxfer_importance_start(
                 quantity,
                 target: Vec3::ONE,
                 aspect: relight::Aspect::Colour,
-                sense: [relight::Sense::Exactly; 3],
+                constraint: [relight::Constraint::Exactly; 3],
                 weight: 1.0,
             };
             let map = Importance::trace(&scene, emitter.material as usize, &goal, &params, job)?;

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::image::try_collect;
-use crate::relight::{Aspect, Goal, Place, Quantity, Sense};
+use crate::relight::{Aspect, Constraint, Goal, Place, Quantity};
 use crate::scene::Scene;
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ pub(super) struct StoredGoal {
     pub quantity: Quantity,
     pub target: Vec3,
     pub aspect: Aspect,
-    pub sense: [Sense; 3],
+    pub constraint: [Constraint; 3],
     pub weight: f64,
 }
 
@@ -41,7 +41,7 @@ impl StoredGoal {
             Where::Mesh(_) => Place::Surface(triangles),
             Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
         };
-        let Self { quantity, target, aspect, sense, weight, .. } = *self;
-        Goal { place, quantity, target, aspect, sense, weight }
+        let Self { quantity, target, aspect, constraint, weight, .. } = *self;
+        Goal { place, quantity, target, aspect, constraint, weight }
     }
 }

@@ -14,7 +14,7 @@ use super::scene::{colour, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::relight::{Aspect, MAX_LEVELS, Quantity, Sense};
+use crate::relight::{Aspect, Constraint, MAX_LEVELS, Quantity};
 
 /// Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
 /// LUXFER_QUANTITY_ value; weight, >= 0, is relative to the other goals. Any thread.
@@ -31,8 +31,11 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
 ) -> luxfer_status {
     enter(lamps, |stage| {
         let (quantity, target) = (self::quantity(quantity)?, colour("target", red, green, blue)?);
-        let sense = [Sense::Exactly; 3];
-        add(stage, StoredGoal { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, sense, weight })
+        let constraint = [Constraint::Exactly; 3];
+        add(
+            stage,
+            StoredGoal { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, constraint, weight },
+        )
     })
 }
 
@@ -50,8 +53,8 @@ pub unsafe extern "C" fn luxfer_lamps_add_grid(
         let [origin, across, down, normal] = params::read(grid)?.vectors()?;
         let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
         let place = Where::Grid { origin, across, down, normal };
-        let (quantity, sense) = (Quantity::Incident, [Sense::Exactly; 3]);
-        add(stage, StoredGoal { place, quantity, target, aspect: Aspect::Luminance, sense, weight })
+        let (quantity, constraint) = (Quantity::Incident, [Constraint::Exactly; 3]);
+        add(stage, StoredGoal { place, quantity, target, aspect: Aspect::Luminance, constraint, weight })
     })
 }
 
@@ -85,16 +88,16 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
     blue: luxfer_constraint,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let senses = [constraint(red)?, constraint(green)?, constraint(blue)?];
+        let constraints = [constraint(red)?, constraint(green)?, constraint(blue)?];
         stage.change(|inputs| {
             let count = inputs.goals.len();
             let stored = inputs.goals.get_mut(goal as usize).ok_or_else(|| missing("goal", goal, count))?;
-            if stored.aspect == Aspect::Luminance && senses != [senses[0]; 3] {
+            if stored.aspect == Aspect::Luminance && constraints != [constraints[0]; 3] {
                 return Err(Error::argument(format!(
                     "goal {goal} is in lux; its channels must have equal constraints"
                 )));
             }
-            stored.sense = senses;
+            stored.constraint = constraints;
             Ok(())
         })
     })

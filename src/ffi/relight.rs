@@ -14,7 +14,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::try_collect;
-use crate::relight::{self, Fit, Quantity, Sense, Solution, TargetStatus};
+use crate::relight::{self, Constraint, Fit, Quantity, Solution, TargetStatus};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -169,11 +169,11 @@ pub(super) fn quantity(value: luxfer_quantity) -> Result<Quantity> {
     }
 }
 
-pub(super) fn constraint(value: luxfer_constraint) -> Result<Sense> {
+pub(super) fn constraint(value: luxfer_constraint) -> Result<Constraint> {
     match value {
-        LUXFER_CONSTRAINT_EQUAL => Ok(Sense::Exactly),
-        LUXFER_CONSTRAINT_AT_LEAST => Ok(Sense::AtLeast),
-        LUXFER_CONSTRAINT_AT_MOST => Ok(Sense::AtMost),
+        LUXFER_CONSTRAINT_EQUAL => Ok(Constraint::Exactly),
+        LUXFER_CONSTRAINT_AT_LEAST => Ok(Constraint::AtLeast),
+        LUXFER_CONSTRAINT_AT_MOST => Ok(Constraint::AtMost),
         other => Err(Error::argument(format!("the constraint is {other}; it must be a LUXFER_CONSTRAINT_ value"))),
     }
 }
@@ -207,7 +207,7 @@ impl luxfer_relight_report {
 pub(super) struct Inputs {
     emitter: Option<Emitter>,
     target: Option<Vec3>,
-    sense: [Sense; 3],
+    constraint: [Constraint; 3],
 }
 
 /// A scene, its material that emits, and its mesh that is the target, as a host has named them.
@@ -286,9 +286,9 @@ pub unsafe extern "C" fn luxfer_relight_set_constraint(
     blue: luxfer_constraint,
 ) -> luxfer_status {
     enter(relight, |stage| {
-        let senses = [constraint(red)?, constraint(green)?, constraint(blue)?];
+        let constraints = [constraint(red)?, constraint(green)?, constraint(blue)?];
         stage.change(|inputs| {
-            inputs.sense = senses;
+            inputs.constraint = constraints;
             Ok(())
         })
     })
@@ -325,7 +325,7 @@ pub unsafe extern "C" fn luxfer_relight_start(
 ) -> luxfer_status {
     enter(relight, |stage| {
         let inputs = stage.inputs();
-        let params = relight::Params { sense: inputs.sense, ..params::read(params)?.params()? };
+        let params = relight::Params { constraint: inputs.constraint, ..params::read(params)?.params()? };
         let emitter = need(&inputs.emitter, "luxfer_relight_set_scene")?.clone();
         let target = *need(&inputs.target, "luxfer_relight_set_target")?;
         let scene = emitter.scene.snapshot();

@@ -233,7 +233,7 @@ pub unsafe extern "C" fn luxfer_segment_start(
             let input = segment::Input {
                 features: need(&inputs.features, "luxfer_segment_set_features")?.image(),
                 strokes: &inputs.strokes.taken,
-                within: inputs.region.as_ref().map(|w| w.image()),
+                region: inputs.region.as_ref().map(|w| w.image()),
             };
             segment::run(&input, &params, job)
         })

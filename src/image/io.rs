@@ -29,7 +29,7 @@ pub struct Photo {
 
 /// Reads a file with 1, 3 or 4 channels as linear values, upright.
 pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
-    decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.within(path.display()))
+    decode_photo(&read_file(path)?, encoding).map(|photo| photo.image).map_err(|e| e.context(path.display()))
 }
 
 /// Reads a picture file in memory, with rows, columns and colour space as stored.

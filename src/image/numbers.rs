@@ -93,7 +93,7 @@ pub fn read_head(path: &Path) -> Result<Head> {
     check_regular(path)?;
     let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
     let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken);
-    meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.within(path.display()))
+    meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.context(path.display()))
 }
 
 /// Passes the numbers of each pixel to `pixel`. The file must have the given head; any other is refused before memory

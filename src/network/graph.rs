@@ -55,7 +55,7 @@ impl Network {
         }
         let mut nodes = Vec::new();
         for message in &model.nodes {
-            let place = |error: Error| error.within(format_args!("node {} ({})", message.name, message.kind));
+            let place = |error: Error| error.context(format_args!("node {} ({})", message.name, message.kind));
             let known = |name: &&str| values.numbers.get(name).and_then(|&n| values.constants[n].as_ref());
             let constants: Vec<Option<&Tensor>> = message.inputs.iter().map(known).collect();
             let op = Op::read(message, model.opset, &constants).map_err(place)?;

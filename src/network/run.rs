@@ -27,7 +27,7 @@ impl Network {
                 outputs: node.outputs.len(),
                 job,
             };
-            let made = node.op.run(&call).map_err(|error| error.within(format_args!("node {}", node.name)))?;
+            let made = node.op.run(&call).map_err(|error| error.context(format_args!("node {}", node.name)))?;
             for (number, tensor) in node.outputs.iter().zip(made) {
                 if let Some(number) = number {
                     used += tensor.bytes();

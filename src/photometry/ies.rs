@@ -97,7 +97,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let mut candela = words.list("an intensity", gammas * planes, 1e12)?;
     candela.iter_mut().for_each(|v| *v *= factor);
     (luminaire.planes, luminaire.candela) = unfold(&horizontal, candela, gammas, words.line)?;
-    luminaire.check().map_err(|e| e.within(format_args!("line {}", words.line)))?;
+    luminaire.check().map_err(|e| e.context(format_args!("line {}", words.line)))?;
     Ok(luminaire)
 }
 

@@ -101,7 +101,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         watts,
         size,
     };
-    luminaire.check().map_err(|e| e.within(format_args!("line {}", rows.line)))?;
+    luminaire.check().map_err(|e| e.context(format_args!("line {}", rows.line)))?;
     Ok(luminaire)
 }
 

@@ -5,14 +5,14 @@
 //! what the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without it). With
 //! one group and one goal this is the closed form of [`super::run`].
 //!
-//! A goal may be a limit, which counts only where it is violated ([`Sense`]).
+//! A goal may be a limit, which counts only where it is violated ([`Constraint`]).
 //!
 //! The residuals are those of goals, each a mean over many paths. Single texels are never compared: their noise would
 //! bias the powers towards dark.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
-use super::sided::{self, Problem, Sense};
+use super::sided::{self, Constraint, Problem};
 use super::solution::TargetStatus;
 use super::steps::Terms;
 use crate::error::{Error, ErrorKind, Result, check_range};
@@ -168,7 +168,7 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
             check_range("target", channel, 0.0, f32::MAX)?;
         }
         check_range("weight", goal.weight, 0.0, 1e12)?;
-        if goal.aspect == Aspect::Luminance && goal.sense != [goal.sense[0]; 3] {
+        if goal.aspect == Aspect::Luminance && goal.constraint != [goal.constraint[0]; 3] {
             return Err(Error::argument("a goal of luminance has limits that differ between channels; give it one"));
         }
     }
@@ -205,17 +205,17 @@ struct Equations {
     groups: usize,
     matrix: Vec<f64>,
     right: Vec<f64>,
-    senses: Vec<Sense>,
+    constraints: Vec<Constraint>,
 }
 
 impl Equations {
     fn solve(&self, upper: &[f64], regularisation: f64) -> Result<Vec<f64>> {
         // Regularise towards the best powers that are equal for all lamps.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
-        let equal = sided::common_power(&together, &self.right, &self.senses);
+        let equal = sided::common_power(&together, &self.right, &self.constraints);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
-        let Self { matrix, right, senses, .. } = self;
-        Problem { matrix, right, senses, regularisation, preferred: &preferred, upper }.solve()
+        let Self { matrix, right, constraints, .. } = self;
+        Problem { matrix, right, constraints, regularisation, preferred: &preferred, upper }.solve()
     }
 }
 
@@ -277,8 +277,8 @@ impl System<'_> {
         levels.sort_by(f64::total_cmp);
         let round = |channels: &[usize]| {
             let x: Vec<f64> = whole.iter().map(|x| x[channels[0]]).collect();
-            let Equations { matrix, right, senses, .. } = &self.equations(measured, channels);
-            Ok(Terms { matrix, right, senses }.round(&x, &levels, &upper))
+            let Equations { matrix, right, constraints, .. } = &self.equations(measured, channels);
+            Ok(Terms { matrix, right, constraints }.round(&x, &levels, &upper))
         };
         // `round` returns no errors.
         self.by_channels(round).map_or_else(|_| whole.to_vec(), |powers| powers.colours())
@@ -307,18 +307,18 @@ impl System<'_> {
         let mut equations = Equations { groups: self.responses.lamps(), ..Equations::default() };
         for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
             let target = goal.target.as_dvec3();
-            let terms: Vec<(DVec3, Sense)> = match goal.aspect {
-                Aspect::Colour => channels.iter().map(|&c| (DVec3::AXES[c], goal.sense[c])).collect(),
-                Aspect::Luminance => vec![(LUMINANCE, goal.sense[0])],
+            let terms: Vec<(DVec3, Constraint)> = match goal.aspect {
+                Aspect::Colour => channels.iter().map(|&c| (DVec3::AXES[c], goal.constraint[c])).collect(),
+                Aspect::Luminance => vec![(LUMINANCE, goal.constraint[0])],
             };
             // Relate a goal of darkness to the light of all lamps.
             let bright = target.max_element();
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };
-            for (part, sense) in terms {
+            for (part, constraint) in terms {
                 equations.matrix.extend(row.iter().map(|r| r.dot(part) * weight));
                 equations.right.push((target - background).dot(part) * weight);
-                equations.senses.push(sense);
+                equations.constraints.push(constraint);
             }
         }
         equations
@@ -334,9 +334,9 @@ impl System<'_> {
         let goal_of = &self.goals[goal];
         let target = goal_of.target.as_dvec3();
         let brightest = target.max_element();
-        let judge = |part: DVec3, sense: Sense| {
+        let judge = |part: DVec3, constraint: Constraint| {
             let batches: [f64; BATCHES] = std::array::from_fn(|b| light(b).dot(part));
-            let miss = sense.miss(mean(&batches) - target.dot(part));
+            let miss = constraint.miss(mean(&batches) - target.dot(part));
             let allowed = self.params.tolerance * brightest + STUDENT_T * standard_error(&batches);
             let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r.dot(part) == 0.0));
             match () {
@@ -347,8 +347,8 @@ impl System<'_> {
             }
         };
         let status = match goal_of.aspect {
-            Aspect::Colour => std::array::from_fn(|c| judge(DVec3::AXES[c], goal_of.sense[c])),
-            Aspect::Luminance => [judge(LUMINANCE, goal_of.sense[0]); 3],
+            Aspect::Colour => std::array::from_fn(|c| judge(DVec3::AXES[c], goal_of.constraint[c])),
+            Aspect::Luminance => [judge(LUMINANCE, goal_of.constraint[0]); 3],
         };
         Ok(Outcome { achieved: all.mean, half_width: all.half_width(), status })
     }
@@ -361,10 +361,10 @@ impl System<'_> {
         let &first = missed.first()?;
         let outcome = &outcomes[first];
         let channel = outcome.status.iter().position(|r| *r != TargetStatus::Met)?;
-        let side = match self.goals[first].sense[channel] {
-            Sense::Exactly => "",
-            Sense::AtLeast => "at least ",
-            Sense::AtMost => "at most ",
+        let side = match self.goals[first].constraint[channel] {
+            Constraint::Exactly => "",
+            Constraint::AtLeast => "at least ",
+            Constraint::AtMost => "at most ",
         };
         let (name, part) = match self.goals[first].aspect {
             Aspect::Colour => (["red", "green", "blue"][channel], DVec3::AXES[channel]),

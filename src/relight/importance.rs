@@ -12,7 +12,7 @@ use super::bins::{Bins, Division};
 use super::estimate::BATCHES;
 use super::params::Params;
 use super::responses::{Estimate, Goal};
-use super::sided::Sense;
+use super::sided::Constraint;
 use super::solution::Solution;
 use super::solve::{self, Measured};
 use super::target::Sampler;
@@ -190,7 +190,7 @@ impl Importance {
         }
         let (response, background) = (response.measured.clone(), self.background.clone());
         let measured = Measured { response, background, pairs: None, paths: self.paths };
-        solve::run(&measured, target.as_dvec3(), [Sense::Exactly; 3])
+        solve::run(&measured, target.as_dvec3(), [Constraint::Exactly; 3])
     }
 
     /// Mean emission of each cell.

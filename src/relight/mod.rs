@@ -42,7 +42,7 @@ pub use params::{Fit, Params, Place, Quantity};
 pub use placement::{Aim, PlaceParams, Placement, Pose};
 pub use primaries::{MAX_PRIMARIES, Mixture, mix_primaries};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
-pub use sided::Sense;
+pub use sided::Constraint;
 pub use solution::{Solution, TargetStatus};
 pub use transport::{FIRST_ROUND, FORECAST_MARGIN};
 
@@ -86,7 +86,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     let mut growth = f64::INFINITY;
     loop {
         batches.trace_round(growth, stop.max_paths, job)?;
-        let solution = solve::run(&whole(&batches, params.fit), input.target.as_dvec3(), params.sense);
+        let solution = solve::run(&whole(&batches, params.fit), input.target.as_dvec3(), params.constraint);
         let error = solution.as_ref().map_or(f64::INFINITY, Solution::error);
         match stop.growth(error, batches.paths()) {
             Some(more) => growth = more,

@@ -1,6 +1,6 @@
 //! The parameters of relighting, and the geometry of a target.
 
-use super::sided::Sense;
+use super::sided::Constraint;
 use crate::error::{Result, check_range};
 use glam::Vec3;
 
@@ -39,11 +39,11 @@ pub enum Place<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub quantity: Quantity,
-    /// Used by [`super::run`] only, like `sense`.
+    /// Used by [`super::run`] only, like `constraint`.
     pub fit: Fit,
     /// Whether the target of each channel is exact or a limit; clipped pixels of a photo give lower limits. A channel
     /// with a limit gets the mean scale of the exact channels if that satisfies the limit, and its limit otherwise.
-    pub sense: [Sense; 3],
+    pub constraint: [Constraint; 3],
     /// Largest number of paths, in `[1024, 1 << 30]`.
     pub paths: u32,
     /// Stop when the largest relative half-width of the 95 % intervals is below this value, in `[0, 1]`; 0 = never.
@@ -58,7 +58,7 @@ impl Default for Params {
         Self {
             quantity: Quantity::Outgoing,
             fit: Fit::Mean,
-            sense: [Sense::Exactly; 3],
+            constraint: [Constraint::Exactly; 3],
             paths: 1 << 20,
             target_error: 0.01,
             time_budget_ms: 0,

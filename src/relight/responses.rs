@@ -4,7 +4,7 @@ use super::bins::{Bins, Division};
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::lamps::Lamps;
 use super::params::{Params, Place, Quantity};
-use super::sided::Sense;
+use super::sided::Constraint;
 use super::target::Sampler;
 use super::transport::{Batches, Means, Stop};
 use crate::error::{Error, Result};
@@ -31,7 +31,7 @@ pub struct Goal<'a> {
     pub target: Vec3,
     pub aspect: Aspect,
     /// Whether the target of each channel is exact or a limit; equal for all channels of a luminance goal.
-    pub sense: [Sense; 3],
+    pub constraint: [Constraint; 3],
     /// Weight of the relative error of this goal beside other goals, ≥ 0.
     pub weight: f64,
 }

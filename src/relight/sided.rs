@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// Whether a target is exact or a limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sense {
+pub enum Constraint {
     /// An exact target.
     #[default]
     Exactly,
@@ -22,7 +22,7 @@ pub enum Sense {
     AtMost,
 }
 
-impl Sense {
+impl Constraint {
     /// The residual of a value that exceeds the target by `over`.
     pub(super) fn miss(self, over: f64) -> f64 {
         match self {
@@ -38,7 +38,7 @@ pub(super) struct Problem<'a> {
     pub matrix: &'a [f64],
     pub right: &'a [f64],
     /// One per row.
-    pub senses: &'a [Sense],
+    pub constraints: &'a [Constraint],
     /// `λ` relative to the mean square of a row, positive.
     pub regularisation: f64,
     /// `p`, one value per unknown.
@@ -91,10 +91,10 @@ impl Problem<'_> {
             let (light, right) = (dot(self.row(i), x), self.right[i]);
             let over = light - right;
             let edge = ROUNDING * (light.abs() + right.abs());
-            match self.senses[i] {
-                Sense::Exactly => true,
+            match self.constraints[i] {
+                Constraint::Exactly => true,
                 _ if over.abs() <= edge => before[i],
-                sense => sense.miss(over) != 0.0,
+                constraint => constraint.miss(over) != 0.0,
             }
         };
         (0..self.right.len()).map(is_active).collect()
@@ -117,14 +117,14 @@ impl Problem<'_> {
         let step: Vec<f64> = to.iter().zip(from).map(|(b, a)| b - a).collect();
         let away: f64 = from.iter().zip(self.preferred).zip(&step).map(|((x, p), d)| (x - p) * d).sum();
         let mut slope = Slope { start: lambda * away, growth: lambda * dot(&step, &step), changes: Vec::new() };
-        for (i, sense) in self.senses.iter().enumerate() {
+        for (i, constraint) in self.constraints.iter().enumerate() {
             let (over, rise) = (dot(self.row(i), from) - self.right[i], dot(self.row(i), &step));
-            slope.start += sense.miss(over) * rise;
+            slope.start += constraint.miss(over) * rise;
             let edge = -over / rise;
-            let (first, last) = match (sense, rise > 0.0) {
-                (Sense::Exactly, _) => (f64::NEG_INFINITY, f64::INFINITY),
-                (Sense::AtLeast, true) | (Sense::AtMost, false) => (f64::NEG_INFINITY, edge),
-                (Sense::AtLeast, false) | (Sense::AtMost, true) => (edge, f64::INFINITY),
+            let (first, last) = match (constraint, rise > 0.0) {
+                (Constraint::Exactly, _) => (f64::NEG_INFINITY, f64::INFINITY),
+                (Constraint::AtLeast, true) | (Constraint::AtMost, false) => (f64::NEG_INFINITY, edge),
+                (Constraint::AtLeast, false) | (Constraint::AtMost, true) => (edge, f64::INFINITY),
             };
             if rise != 0.0 {
                 slope.add(first, last, rise * rise);
@@ -138,31 +138,37 @@ impl Problem<'_> {
 /// The common power `q ≥ 0` of all lamps that minimises `½ Σ ψ(a q − b)²`, with `a ≥ 0`, in closed form. Among several
 /// minima it returns the smallest, which uses the least light; if no term requires light, the one nearest to 1, the
 /// current power.
-pub(super) fn common_power(responses: &[f64], right: &[f64], senses: &[Sense]) -> f64 {
-    let rows =
-        || responses.iter().zip(right).zip(senses).map(|((a, b), sense)| (*a, *b, *sense)).filter(|row| row.0 > 0.0);
+pub(super) fn common_power(responses: &[f64], right: &[f64], constraints: &[Constraint]) -> f64 {
+    let rows = || {
+        responses
+            .iter()
+            .zip(right)
+            .zip(constraints)
+            .map(|((a, b), constraint)| (*a, *b, *constraint))
+            .filter(|row| row.0 > 0.0)
+    };
     // The minimum lies below the largest of the ratios b / a.
     let last = rows().map(|(a, b, _)| b / a).fold(0.0, f64::max);
     let mut slope = Slope { start: 0.0, growth: 0.0, changes: Vec::new() };
-    for (a, b, sense) in rows() {
-        slope.start += sense.miss(-b) * a;
-        let (first, end) = match sense {
-            Sense::Exactly => (0.0, f64::INFINITY),
-            Sense::AtLeast => (0.0, b / a),
-            Sense::AtMost => (b / a, f64::INFINITY),
+    for (a, b, constraint) in rows() {
+        slope.start += constraint.miss(-b) * a;
+        let (first, end) = match constraint {
+            Constraint::Exactly => (0.0, f64::INFINITY),
+            Constraint::AtLeast => (0.0, b / a),
+            Constraint::AtMost => (b / a, f64::INFINITY),
         };
         slope.add(first / last, end / last, a * a * last);
     }
-    let open = slope.start == 0.0 && rows().all(|(_, _, sense)| sense != Sense::Exactly);
+    let open = slope.start == 0.0 && rows().all(|(_, _, constraint)| constraint != Constraint::Exactly);
     if !open {
         return last * slope.zero();
     }
-    rows().filter(|row| row.2 == Sense::AtMost).map(|(a, b, _)| b / a).fold(1.0, f64::min)
+    rows().filter(|row| row.2 == Constraint::AtMost).map(|(a, b, _)| b / a).fold(1.0, f64::min)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Sense::{AtLeast, AtMost, Exactly};
+    use super::Constraint::{AtLeast, AtMost, Exactly};
     use super::*;
     use crate::rng::Rng;
 
@@ -170,9 +176,9 @@ mod tests {
 
     #[test]
     fn closed_forms() {
-        let solve = |matrix: &[f64], right: &[f64], senses: &[Sense], preferred: &[f64]| {
+        let solve = |matrix: &[f64], right: &[f64], constraints: &[Constraint], preferred: &[f64]| {
             let upper = vec![FREE; preferred.len()];
-            Problem { matrix, right, senses, regularisation: 1e-9, preferred, upper: &upper }.solve().unwrap()
+            Problem { matrix, right, constraints, regularisation: 1e-9, preferred, upper: &upper }.solve().unwrap()
         };
         let near = |x: Vec<f64>, expected: &[f64]| {
             assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-6), "{x:?}, expected {expected:?}");
@@ -198,12 +204,18 @@ mod tests {
     fn a_jump_from_bound_to_bound_does_not_end_the_search() {
         let (a, b) = ([0.64, 0.44, 0.37], [0.06, 0.92, 0.2]);
         let (matrix, right) = ([a, a, a, b, b].concat(), [1.07, 0.0, 0.59, 0.81, 1.11]);
-        let senses = [AtLeast, AtMost, AtLeast, AtMost, AtLeast];
+        let constraints = [AtLeast, AtMost, AtLeast, AtMost, AtLeast];
         let (preferred, upper) = (&[1.0, 1.0, 0.1], &[1.18, 1.2, 0.1]);
-        let problem =
-            Problem { matrix: &matrix, right: &right, senses: &senses, regularisation: 7e-9, preferred, upper };
+        let problem = Problem {
+            matrix: &matrix,
+            right: &right,
+            constraints: &constraints,
+            regularisation: 7e-9,
+            preferred,
+            upper,
+        };
         let x = problem.solve().unwrap();
-        let misses: Vec<f64> = (0..5).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
+        let misses: Vec<f64> = (0..5).map(|i| constraints[i].miss(dot(problem.row(i), &x) - right[i])).collect();
         for j in 0..3 {
             let slope: f64 = (0..5).map(|i| matrix[i * 3 + j] * misses[i]).sum();
             let held = x[j] == 0.0 && slope > 0.0 || x[j] == upper[j] && slope < 0.0;
@@ -213,7 +225,7 @@ mod tests {
 
     #[test]
     fn one_power_for_all() {
-        let alike = |rows: &[(f64, f64, Sense)]| {
+        let alike = |rows: &[(f64, f64, Constraint)]| {
             let [a, b] = [0, 1].map(|i| rows.iter().map(|r| [r.0, r.1][i]).collect::<Vec<_>>());
             common_power(&a, &b, &rows.iter().map(|r| r.2).collect::<Vec<_>>())
         };
@@ -245,7 +257,7 @@ mod tests {
                 matrix.copy_within((i - 1) * n..i * n, i * n);
             }
             let right: Vec<f64> = (0..m).map(|_| rng.next_f64() * n as f64 * 0.5).collect();
-            let senses: Vec<Sense> = (0..m).map(|_| [Exactly, AtLeast, AtMost][rng.below(3)]).collect();
+            let constraints: Vec<Constraint> = (0..m).map(|_| [Exactly, AtLeast, AtMost][rng.below(3)]).collect();
             let preferred: Vec<f64> = (0..n).map(|_| rng.next_f64()).collect();
             let upper: Vec<f64> =
                 (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 2.0 * rng.next_f64() }).collect();
@@ -253,14 +265,14 @@ mod tests {
             let problem = Problem {
                 matrix: &matrix,
                 right: &right,
-                senses: &senses,
+                constraints: &constraints,
                 regularisation,
                 preferred: &preferred,
                 upper: &upper,
             };
             let x = problem.solve().unwrap();
             let lambda = regularisation * dot(&matrix, &matrix) / m as f64;
-            let misses: Vec<f64> = (0..m).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
+            let misses: Vec<f64> = (0..m).map(|i| constraints[i].miss(dot(problem.row(i), &x) - right[i])).collect();
             for j in 0..n {
                 let slope = (0..m).map(|i| matrix[i * n + j] * misses[i]).sum::<f64>() + lambda * (x[j] - preferred[j]);
                 let small = 1e-6 * (lambda + dot(&right, &right).sqrt());

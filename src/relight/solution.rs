@@ -1,6 +1,6 @@
 //! The solution of relighting: the scale of the emission.
 
-use super::sided::Sense;
+use super::sided::Constraint;
 use glam::DVec3;
 
 /// Whether the target is met in one colour channel, and if not, why.
@@ -26,7 +26,7 @@ pub struct Solution {
     pub half_width: DVec3,
     pub status: [TargetStatus; 3],
     /// Whether the target of each channel was exact or a limit.
-    pub sense: [Sense; 3],
+    pub constraint: [Constraint; 3],
     /// Mean radiance of the target under the unscaled emission, in cd/m².
     pub response: DVec3,
     /// Mean radiance of the target under all other light, in cd/m².

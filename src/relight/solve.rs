@@ -1,7 +1,7 @@
 //! The closed-form solution and its confidence interval, from the means of independent batches.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error, without};
-use super::sided::Sense;
+use super::sided::Constraint;
 use super::solution::{Solution, TargetStatus};
 use super::transport::Pairs;
 use crate::error::{Error, ErrorKind, Result};
@@ -35,7 +35,7 @@ struct Answer {
     deviations: [f64; BATCHES],
 }
 
-pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Result<Solution> {
+pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3]) -> Result<Solution> {
     let channels: [Channel; 3] = std::array::from_fn(|c| Channel {
         response: std::array::from_fn(|b| measured.response[b][c]),
         background: std::array::from_fn(|b| measured.background[b][c]),
@@ -45,7 +45,7 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
             .map(|pairs| [std::array::from_fn(|b| pairs[b].own[c]), std::array::from_fn(|b| pairs[b].cross[c])]),
     });
     let mut answers: [Answer; 3] = std::array::from_fn(|c| channels[c].solve(target[c]));
-    keep_sides(&mut answers, sense);
+    keep_sides(&mut answers, constraint);
     let status = answers.each_ref().map(|a| a.status);
     if status.iter().all(|&r| r != TargetStatus::Met) {
         return Err(Error::new(ErrorKind::Unreachable, explain(&status)));
@@ -58,12 +58,13 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
     let background = DVec3::from(channels.each_ref().map(|c| mean(&c.background)));
     // The achieved light: the target in exact channels, the scaled light in channels with limits.
     let light = background + DVec3::from(scale) * response;
-    let seen = DVec3::from(std::array::from_fn(|c| if sense[c] == Sense::Exactly { target[c] } else { light[c] }));
+    let seen =
+        DVec3::from(std::array::from_fn(|c| if constraint[c] == Constraint::Exactly { target[c] } else { light[c] }));
     Ok(Solution {
         scale: DVec3::from(scale),
         half_width: DVec3::from(answers.each_ref().map(|a| a.half_width)),
         status,
-        sense,
+        constraint,
         response,
         background,
         delta_e: colour_interval(&answers, response, seen),
@@ -73,14 +74,14 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
 
 /// Adjusts channels with limits: they get the mean scale of the exact channels, which preserves the colour of the
 /// lamps, unless that violates the limit. Without exact channels, all stay at their limits.
-fn keep_sides(answers: &mut [Answer; 3], sense: [Sense; 3]) {
+fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
     // A lower limit is met if other light alone exceeds it.
-    for (answer, _) in answers.iter_mut().zip(sense).filter(|(_, sense)| *sense == Sense::AtLeast) {
+    for (answer, _) in answers.iter_mut().zip(constraint).filter(|(_, constraint)| *constraint == Constraint::AtLeast) {
         if answer.status == TargetStatus::TooBright {
             answer.status = TargetStatus::Met;
         }
     }
-    let exact = |c: &usize| sense[*c] == Sense::Exactly;
+    let exact = |c: &usize| constraint[*c] == Constraint::Exactly;
     let met: Vec<Answer> = (0..3).filter(exact).map(|c| answers[c]).filter(|a| a.status == TargetStatus::Met).collect();
     if met.is_empty() {
         return;
@@ -90,8 +91,10 @@ fn keep_sides(answers: &mut [Answer; 3], sense: [Sense; 3]) {
     let deviations = std::array::from_fn(|b| share * met.iter().map(|a| a.deviations[b]).sum::<f64>());
     let half_width = STUDENT_T * standard_error(&deviations);
     let neutral = Answer { scale, half_width, status: TargetStatus::Met, deviations };
-    for (answer, sense) in answers.iter_mut().zip(sense).filter(|(_, sense)| *sense != Sense::Exactly) {
-        if answer.status == TargetStatus::Met && sense.miss(scale - answer.scale) == 0.0 {
+    for (answer, constraint) in
+        answers.iter_mut().zip(constraint).filter(|(_, constraint)| *constraint != Constraint::Exactly)
+    {
+        if answer.status == TargetStatus::Met && constraint.miss(scale - answer.scale) == 0.0 {
             *answer = neutral;
         }
     }

@@ -6,13 +6,13 @@
 //! the sum is convex, so its best level is found by stepping through the levels while the sum decreases.
 
 use super::bounded::dot;
-use super::sided::Sense;
+use super::sided::Constraint;
 
 /// The terms of the goals: see [`super::sided::Problem`].
 pub(super) struct Terms<'a> {
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    pub senses: &'a [Sense],
+    pub constraints: &'a [Constraint],
 }
 
 /// Largest number of rounds over all groups; a few suffice. [convention]
@@ -84,7 +84,7 @@ impl Terms<'_> {
     fn sum(&self, state: &State, j: usize, change: f64) -> f64 {
         let n = state.powers.len();
         let light = |i: usize| state.light[i] + self.matrix[i * n + j] * change;
-        (0..self.right.len()).map(|i| self.senses[i].miss(light(i) - self.right[i]).powi(2)).sum()
+        (0..self.right.len()).map(|i| self.constraints[i].miss(light(i) - self.right[i]).powi(2)).sum()
     }
 }
 
@@ -97,19 +97,19 @@ mod tests {
 
     fn cost(terms: &Terms, x: &[f64]) -> f64 {
         let light: Vec<f64> = terms.matrix.chunks_exact(x.len()).map(|r| dot(r, x)).collect();
-        light.iter().zip(terms.right).zip(terms.senses).map(|((l, b), s)| s.miss(l - b).powi(2)).sum()
+        light.iter().zip(terms.right).zip(terms.constraints).map(|((l, b), s)| s.miss(l - b).powi(2)).sum()
     }
 
     #[test]
     fn equal_lamps_share_the_rounding() {
         // Ten lamps at 0.24, which can only be on or off: two or three of them must be on.
-        let terms = Terms { matrix: &[1.0; 10], right: &[2.4], senses: &[Sense::Exactly] };
+        let terms = Terms { matrix: &[1.0; 10], right: &[2.4], constraints: &[Constraint::Exactly] };
         let on = terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>();
         assert_eq!(on, 2.0);
-        let terms = Terms { senses: &[Sense::AtLeast], ..terms };
+        let terms = Terms { constraints: &[Constraint::AtLeast], ..terms };
         assert_eq!(terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>(), 3.0);
         // A single lamp goes to the nearest level within its bound.
-        let terms = Terms { matrix: &[2.0], right: &[1.5], senses: &[Sense::Exactly] };
+        let terms = Terms { matrix: &[2.0], right: &[1.5], constraints: &[Constraint::Exactly] };
         assert_eq!(terms.round(&[0.75], &[0.0, 0.5, 0.7, 1.0], &[FREE]), [0.7]);
         assert_eq!(terms.round(&[0.5], &[0.0, 0.5, 0.7, 1.0], &[0.6]), [0.5]);
         assert_eq!(terms.round(&[0.1], &[0.2, 0.5], &[0.1]), [0.2]);
@@ -127,7 +127,7 @@ mod tests {
             let matrix: Vec<f64> = (0..m * n).map(|_| rng.next_f64()).collect();
             let x: Vec<f64> = (0..n).map(|_| rng.next_f64()).collect();
             let right: Vec<f64> = matrix.chunks_exact(n).map(|r| dot(r, &x)).collect();
-            let terms = Terms { matrix: &matrix, right: &right, senses: &[Sense::Exactly; 2] };
+            let terms = Terms { matrix: &matrix, right: &right, constraints: &[Constraint::Exactly; 2] };
             let found = terms.round(&x, &levels, &[FREE; 5]);
             let reached = cost(&terms, &found);
             let rounded: Vec<f64> = x.iter().map(|x| (x * 4.0).round() / 4.0).collect();

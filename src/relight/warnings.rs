@@ -1,6 +1,6 @@
 //! Reasons to doubt a solved colour and intensity.
 
-use super::{Sense, Solution, TargetStatus};
+use super::{Constraint, Solution, TargetStatus};
 use crate::warning::{Code, Warning};
 
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
@@ -24,7 +24,8 @@ impl Solution {
     }
 
     fn clipped(&self) -> Option<Warning> {
-        let bounds: Vec<&str> = (0..3).filter(|&c| self.sense[c] == Sense::AtLeast).map(|c| CHANNELS[c]).collect();
+        let bounds: Vec<&str> =
+            (0..3).filter(|&c| self.constraint[c] == Constraint::AtLeast).map(|c| CHANNELS[c]).collect();
         let message =
             || format!("the photo clips {} where the target is read, so it is at least as bright", bounds.join(", "));
         let advice = "use a photo that is exposed for the lit plane, or an HDR one";

@@ -105,7 +105,7 @@ pub fn rate(world: &World, eyes: &[Eye], params: &Params, job: Job) -> Result<Ve
     check_range("samples", params.samples, BATCHES, 1 << 24)?;
     let lamps = lamps(world);
     for (i, eye) in eyes.iter().enumerate() {
-        check(eye, &lamps).map_err(|e| e.within(format_args!("observer {i}")))?;
+        check(eye, &lamps).map_err(|e| e.context(format_args!("observer {i}")))?;
     }
     let ratings = exec::map(eyes.len(), job, |i| rate_one(world, &eyes[i], &lamps, params, i as u64, job))?;
     job.check()?;

@@ -285,17 +285,17 @@ impl World {
 /// Checks everything that tracing relies on.
 fn check(scene: &Scene) -> Result<()> {
     for (i, mesh) in scene.meshes.iter().enumerate() {
-        check_mesh(scene, mesh).map_err(|e| e.within(format!("mesh {i} ({:?})", mesh.name)))?;
+        check_mesh(scene, mesh).map_err(|e| e.context(format!("mesh {i} ({:?})", mesh.name)))?;
     }
     for (i, material) in scene.materials.iter().enumerate() {
-        check_material(scene, material).map_err(|e| e.within(format!("material {i} ({:?})", material.name)))?;
+        check_material(scene, material).map_err(|e| e.context(format!("material {i} ({:?})", material.name)))?;
     }
     for (i, texture) in scene.textures.iter().enumerate() {
-        check_image(&texture.image).map_err(|e| e.within(format!("texture {i} ({:?})", texture.name)))?;
+        check_image(&texture.image).map_err(|e| e.context(format!("texture {i} ({:?})", texture.name)))?;
     }
     scene.check_brightness()?;
     match &scene.environment {
-        Some(Environment::Image(image)) => check_image(image).map_err(|e| e.within("environment")),
+        Some(Environment::Image(image)) => check_image(image).map_err(|e| e.context("environment")),
         Some(Environment::Constant(c)) if !c.is_finite() => {
             Err(Error::argument(format!("environment is {c}; it must be finite")))
         }

@@ -11,10 +11,10 @@ impl Scene {
     /// illuminance of every punctual light. The error names the first that is too bright, its value and the range.
     pub fn check_brightness(&self) -> Result<()> {
         for (i, material) in self.materials.iter().enumerate() {
-            self.check_emission(material).map_err(|e| e.within(format_args!("material {i} ({:?})", material.name)))?;
+            self.check_emission(material).map_err(|e| e.context(format_args!("material {i} ({:?})", material.name)))?;
         }
         for (i, light) in self.lights.iter().enumerate() {
-            self.check_punctual_light(light).map_err(|e| e.within(format_args!("light {i}")))?;
+            self.check_punctual_light(light).map_err(|e| e.context(format_args!("light {i}")))?;
         }
         match &self.environment {
             Some(Environment::Constant(radiance)) => check_light("environment", *radiance),

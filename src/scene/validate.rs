@@ -36,31 +36,31 @@ impl Scene {
     /// range.
     pub fn validate(&self) -> Result<()> {
         for (i, texture) in self.textures.iter().enumerate() {
-            check_texture(texture).map_err(|e| e.within(format_args!("texture {i} {:?}", texture.name)))?;
+            check_texture(texture).map_err(|e| e.context(format_args!("texture {i} {:?}", texture.name)))?;
         }
         for (i, material) in self.materials.iter().enumerate() {
-            self.check_material(material).map_err(|e| e.within(format_args!("material {i} {:?}", material.name)))?;
+            self.check_material(material).map_err(|e| e.context(format_args!("material {i} {:?}", material.name)))?;
         }
         for (i, mesh) in self.meshes.iter().enumerate() {
-            self.check_mesh(mesh).map_err(|e| e.within(format_args!("mesh {i} {:?}", mesh.name)))?;
+            self.check_mesh(mesh).map_err(|e| e.context(format_args!("mesh {i} {:?}", mesh.name)))?;
         }
         for (i, distribution) in self.distributions.iter().enumerate() {
             distribution.check().map_err(|e| {
-                let e = e.within(format_args!("distribution {i} {:?}", distribution.name));
+                let e = e.context(format_args!("distribution {i} {:?}", distribution.name));
                 Error { kind: ErrorKind::InvalidArgument, ..e }
             })?;
         }
         for (i, light) in self.lights.iter().enumerate() {
-            self.check_punctual(light).map_err(|e| e.within(format_args!("light {i}")))?;
+            self.check_punctual(light).map_err(|e| e.context(format_args!("light {i}")))?;
         }
         for (i, camera) in self.cameras.iter().enumerate() {
-            check_camera(camera).map_err(|e| e.within(format_args!("camera {i} {:?}", camera.name)))?;
+            check_camera(camera).map_err(|e| e.context(format_args!("camera {i} {:?}", camera.name)))?;
         }
         self.check_brightness()?;
         match &self.environment {
             Some(Environment::Constant(colour)) => check_light("environment", *colour),
             Some(Environment::Image(image)) => {
-                check_image(image).and_then(|()| check_positive(image)).map_err(|e| e.within("environment"))
+                check_image(image).and_then(|()| check_positive(image)).map_err(|e| e.context("environment"))
             }
             None => Ok(()),
         }
@@ -84,7 +84,7 @@ impl Scene {
         self.check_reference("emission_texture", material.emission_texture)?;
         match material.emission_texture {
             Some(reference) => check_positive(&self.textures[reference.texture].image)
-                .map_err(|e| e.within(format_args!("emission_texture {}", reference.texture))),
+                .map_err(|e| e.context(format_args!("emission_texture {}", reference.texture))),
             None => Ok(()),
         }
     }

@@ -2,9 +2,11 @@
 
 use super::ellipsoid::Ellipsoid;
 use super::exponential::exp_f32;
+use super::input::{Input, MAX_CHANNELS};
+use super::params::Params;
 use super::refine::{self, Refinement};
+use super::segmentation::Model;
 use super::select::Chosen;
-use super::{Input, MOST_CHANNELS, Model, Params};
 use crate::error::Result;
 use crate::exec;
 use crate::features::CHANNELS;
@@ -35,7 +37,7 @@ impl Classified {
         let refinement = Refinement {
             features: input.features,
             confidence: &self.confidence,
-            within: input.within,
+            region: input.region,
             radius: params.refine_radius,
             tolerance: params.refine_tolerance,
         };
@@ -75,6 +77,30 @@ struct Judge<'a> {
     seen: [Form; 2],
     /// Factors on logits where features are like those painted, and where not.
     calibration: [f32; 2],
+}
+
+impl Judge<'_> {
+    /// Standardises the channels of a tile. Inlined into the function for each instruction set.
+    #[inline(always)]
+    fn standardise(&self, pixels: &[f32], count: usize, tile: &mut Tile) {
+        if self.is_usual {
+            // All of the usual channels: standardised on their way.
+            let mean: [f32; CHANNELS] = std::array::from_fn(|c| self.mean[c]);
+            let scale: [f32; CHANNELS] = std::array::from_fn(|c| self.scale[c]);
+            if let Some(planes) = tile.all.first_chunk_mut::<CHANNELS>() {
+                deinterleave_of(pixels, planes, |c, v| (v - mean[c]) * scale[c]);
+            }
+            return;
+        }
+        deinterleave(pixels, &mut tile.raw[..count]);
+        for (plane, (&channel, (mean, scale))) in
+            tile.all.iter_mut().zip(self.channels.iter().zip(self.mean.iter().zip(&self.scale)))
+        {
+            for (to, v) in plane.iter_mut().zip(&tile.raw[channel]) {
+                *to = (v - mean) * scale;
+            }
+        }
+    }
 }
 
 /// `xᵀAx + bᵀx + c` of standardised features; `a` holds the upper triangle row by row, empty if `A` is zero.
@@ -143,33 +169,17 @@ struct Answer {
 /// The features of a tile.
 struct Tile {
     /// As they are in the image.
-    raw: [Plane; MOST_CHANNELS],
+    raw: [Plane; MAX_CHANNELS],
     /// The samples' columns, standardised, and those of them that the logit is of.
-    all: [Plane; MOST_CHANNELS],
-    deciding: [Plane; MOST_CHANNELS],
+    all: [Plane; MAX_CHANNELS],
+    deciding: [Plane; MAX_CHANNELS],
 }
 
 widest! {
     /// Judges at most a tile of pixels; the answers beyond the last mean nothing. `likely` is the region that held a tile
     /// before, and is tried first: which one is does not change the answer.
     fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
-        if judge.is_usual {
-            // All of the usual channels: standardised on their way.
-            let mean: [f32; CHANNELS] = std::array::from_fn(|c| judge.mean[c]);
-            let scale: [f32; CHANNELS] = std::array::from_fn(|c| judge.scale[c]);
-            if let Some(planes) = tile.all.first_chunk_mut::<CHANNELS>() {
-                deinterleave_of(pixels, planes, |c, v| (v - mean[c]) * scale[c]);
-            }
-        } else {
-            deinterleave(pixels, &mut tile.raw[..count]);
-            for (plane, (&channel, (mean, scale))) in
-                tile.all.iter_mut().zip(judge.channels.iter().zip(judge.mean.iter().zip(&judge.scale)))
-            {
-                for (to, v) in plane.iter_mut().zip(&tile.raw[channel]) {
-                    *to = (v - mean) * scale;
-                }
-            }
-        }
+        judge.standardise(pixels, count, tile);
         let planes = &tile.all[..judge.channels.len()];
 
         // Nothing is nearer than within: one region that holds all is enough.
@@ -215,10 +225,11 @@ widest! {
     }
 }
 
-/// Classifies every pixel by its features, of which `channels` are the samples' columns; outside `within` (above one half) all answers are 0.
+/// Classifies every pixel by its features, of which `channels` are the samples' columns; outside the region (above one half) all answers
+/// are 0.
 pub fn run(
     features: &Image,
-    within: Option<&Image>,
+    region: Option<&Image>,
     channels: &[usize],
     chosen: &Chosen,
     blank: Blank,
@@ -244,7 +255,7 @@ pub fn run(
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
     exec::for_rows_of_three(images, width, job, |y, [mask, confidence, unseen]| {
         let source = features.row(y);
-        let black = [[0.0; TILE]; MOST_CHANNELS];
+        let black = [[0.0; TILE]; MAX_CHANNELS];
         let mut tile = Tile { raw: black, all: black, deciding: black };
         let (mut likely, mut sum) = (0, 0.0);
         for x in (0..width).step_by(TILE) {
@@ -254,8 +265,8 @@ pub fn run(
             if !(answer.all_finite && looks_at_all) {
                 bad.fetch_add(count_bad(pixels), Ordering::Relaxed);
             }
-            if let Some(within) = within {
-                for (k, &w) in within.row(y)[x..x + n].iter().enumerate() {
+            if let Some(region) = region {
+                for (k, &w) in region.row(y)[x..x + n].iter().enumerate() {
                     if w.is_nan() || w <= 0.5 {
                         (answer.mask[k], answer.probability[k], answer.beyond[k]) = (0.0, 0.0, 0.0);
                     }
@@ -269,7 +280,7 @@ pub fn run(
         sums[y].store(sum.to_bits(), Ordering::Relaxed);
     })?;
     let sum: f64 = sums.iter().map(|sum| f64::from_bits(sum.load(Ordering::Relaxed))).sum();
-    let looked_at = within.map_or(width * height, |w| w.data.iter().filter(|w| **w > 0.5).count());
+    let looked_at = region.map_or(width * height, |w| w.data.iter().filter(|w| **w > 0.5).count());
     let mean_unseen = sum / looked_at.max(1) as f64;
     Ok(Classified { mask, confidence, unseen, mean_unseen, bad: bad.into_inner() })
 }

@@ -1,6 +1,6 @@
 //! The regions of feature space that the samples of a class cover, and how far pixels lie beyond them.
 
-use super::MOST_CHANNELS;
+use super::input::MAX_CHANNELS;
 use super::logistic::cholesky_solve;
 use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
 use crate::simd::widest;
@@ -106,7 +106,7 @@ widest! {
     /// Adds the lower triangle of the weighted products of what is off the centre.
     fn add_products(block: &[Lanes], weights: &Lanes, centre: &[f64], products: &mut [f64]) {
         let d = centre.len();
-        let mut off = [[0.0; BLOCK]; MOST_CHANNELS];
+        let mut off = [[0.0; BLOCK]; MAX_CHANNELS];
         for ((off, x), centre) in off.iter_mut().zip(block).zip(centre) {
             for k in 0..BLOCK {
                 off[k] = x[k] - centre;
@@ -127,7 +127,7 @@ widest! {
 widest! {
     fn squared_distances(from: &Ellipsoid, block: &[Lanes], columns: &[usize]) -> Lanes {
         let d = columns.len();
-        let mut off = [[0.0; BLOCK]; MOST_CHANNELS];
+        let mut off = [[0.0; BLOCK]; MAX_CHANNELS];
         for ((off, &c), centre) in off.iter_mut().zip(columns).zip(&from.centre) {
             for k in 0..BLOCK {
                 off[k] = block[c][k] - centre;

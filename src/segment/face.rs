@@ -2,7 +2,9 @@
 //! and floors of its colour, which no stroke has touched.
 
 use super::classify::Classified;
-use super::{Input, Segmentation, Stroke};
+use super::input::Input;
+use super::segmentation::Segmentation;
+use super::strokes::Stroke;
 use crate::error::{Error, Result};
 use crate::features::{CHANNELS, NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_push, try_vec};

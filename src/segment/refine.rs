@@ -28,7 +28,7 @@ pub struct Refinement<'a> {
     pub features: &'a Image,
     pub confidence: &'a Image,
     /// Pixels not above one half take no part and stay as they are.
-    pub within: Option<&'a Image>,
+    pub region: Option<&'a Image>,
     /// Half-width of the windows, in pixels, at least 1.
     pub radius: usize,
     /// In units of the guide, > 0.
@@ -80,15 +80,15 @@ impl Refinement<'_> {
     }
 
     fn weight(&self, x: usize, y: usize) -> f64 {
-        self.within.map_or(1.0, |within| f64::from(within.data[y * within.width + x] > 0.5))
+        self.region.map_or(1.0, |region| f64::from(region.data[y * region.width + x] > 0.5))
     }
 
     /// Adds the moments of a row to the columns', or takes them away.
     fn add_moments(&self, y: usize, sign: f64, columns: &mut [Moments]) {
         let row = MomentRow { features: self.features.row(y), probability: self.confidence.row(y), sign };
-        match self.within {
+        match self.region {
             None => add_row(&row, self.features.channels, &[], columns),
-            Some(within) => add_row(&row, self.features.channels, within.row(y), columns),
+            Some(region) => add_row(&row, self.features.channels, region.row(y), columns),
         }
     }
 }
@@ -119,9 +119,9 @@ fn guide(features: &[f32], channels: usize, x: usize) -> [f64; 3] {
 }
 
 widest! {
-    fn add_row(row: &MomentRow, channels: usize, within: &[f32], columns: &mut [Moments]) {
+    fn add_row(row: &MomentRow, channels: usize, region: &[f32], columns: &mut [Moments]) {
         for (x, column) in columns.iter_mut().enumerate() {
-            let weight = if within.get(x).is_none_or(|w| *w > 0.5) { row.sign } else { 0.0 };
+            let weight = if region.get(x).is_none_or(|w| *w > 0.5) { row.sign } else { 0.0 };
             let [r, g, b] = guide(row.features, channels, x);
             let p = f64::from(row.probability[x]);
             let of_pixel = [
@@ -287,9 +287,9 @@ mod tests {
             [100.0 * rng.next_f32(), rng.next_f32(), 10.0 * rng.next_f32(), 7.0]
         })
         .unwrap();
-        let (confidence, within) = (noise(37, 150, 3), noise(37, 150, 4));
-        for within in [None, Some(&within)] {
-            let of = Refinement { features: &features, confidence: &confidence, within, radius: 3, tolerance: 2.0 };
+        let (confidence, region) = (noise(37, 150, 3), noise(37, 150, 4));
+        for region in [None, Some(&region)] {
+            let of = Refinement { features: &features, confidence: &confidence, region, radius: 3, tolerance: 2.0 };
             let (got, expected) = (refined(&of), by_definition(&of));
             for (got, expected) in got.data.iter().zip(expected) {
                 assert!((f64::from(*got) - expected.clamp(0.0, 1.0)).abs() < 1e-5, "{got} {expected}");
@@ -328,7 +328,7 @@ mod tests {
             [((x as f32 - 44.0) / 16.0 + 0.5 + 0.4 * noise).clamp(0.0, 1.0)]
         })
         .unwrap();
-        let of = Refinement { features: &features, confidence: &confidence, within: None, radius: 12, tolerance: 4.0 };
+        let of = Refinement { features: &features, confidence: &confidence, region: None, radius: 12, tolerance: 4.0 };
         let wrong = |image: &Image| {
             let is_wrong = |(i, p): (usize, &f32)| (*p > 0.5) != (i % 96 >= 48);
             image.data.iter().enumerate().filter(|&p| is_wrong(p)).count()
@@ -343,7 +343,7 @@ mod tests {
         for (guide, radius) in [(0.0, 1), (1e18, 5), (-3.0, 4096)] {
             let features = Image::from_fn(33, 9, |_, _| [guide, guide, 0.0]).unwrap();
             let confidence = Image::from_fn(33, 9, |_, _| [0.7]).unwrap();
-            let of = Refinement { features: &features, confidence: &confidence, within: None, radius, tolerance: 0.1 };
+            let of = Refinement { features: &features, confidence: &confidence, region: None, radius, tolerance: 0.1 };
             assert!(refined(&of).data.iter().all(|p| (p - 0.7).abs() < 1e-3), "{guide} {radius}");
         }
         // Black, white and 1e18 at random, one pixel, and one channel.
@@ -354,17 +354,17 @@ mod tests {
         })
         .unwrap();
         let confidence = noise(40, 70, 7);
-        let of = Refinement { features: &wild, confidence: &confidence, within: None, radius: 2, tolerance: 0.1 };
+        let of = Refinement { features: &wild, confidence: &confidence, region: None, radius: 2, tolerance: 0.1 };
         assert!(refined(&of).data.iter().all(|p| (0.0..=1.0).contains(p)));
         let one = noise(1, 1, 1);
-        let of = Refinement { features: &one, confidence: &one, within: None, radius: 7, tolerance: 1.0 };
+        let of = Refinement { features: &one, confidence: &one, region: None, radius: 7, tolerance: 1.0 };
         assert!((refined(&of).data[0] - one.data[0]).abs() < 1e-6);
     }
 
     #[test]
     fn the_bits_do_not_depend_on_the_number_of_threads_and_a_cancelled_job_ends() {
         let (features, confidence) = (noise(50, 200, 1), noise(50, 200, 2));
-        let of = Refinement { features: &features, confidence: &confidence, within: None, radius: 9, tolerance: 0.1 };
+        let of = Refinement { features: &features, confidence: &confidence, region: None, radius: 9, tolerance: 0.1 };
         let with = |threads: usize| Pool::new(threads).unwrap().run(|| refined(&of));
         assert!(with(1) == with(3));
         let monitor = Monitor::default();

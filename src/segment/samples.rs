@@ -1,6 +1,8 @@
 //! From strokes to training samples: at most so many per class, evenly over the strokes, drawn by hashing.
 
-use super::{Input, Params, Stroke};
+use super::input::Input;
+use super::params::Params;
+use super::strokes::Stroke;
 use crate::error::{Error, Result};
 use crate::image::{make_room, try_collect, try_vec};
 use crate::rng;
@@ -159,7 +161,7 @@ pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
     // A lattice whose step is no divisor of the width, or it would sample a few columns only.
     let step = (features.width * features.height).div_ceil(PROBES) | 1;
     let step = if features.width % step == 0 && step > 1 { step + 2 } else { step };
-    let looked_at = |p: &usize| input.within.is_none_or(|w| w.data[*p] > 0.5);
+    let looked_at = |p: &usize| input.region.is_none_or(|w| w.data[*p] > 0.5);
     (0..features.width * features.height)
         .step_by(step)
         .filter(looked_at)

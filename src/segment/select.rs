@@ -4,10 +4,10 @@
 //! strokes: how well does it carry on to what the user has not? Each has its own error and its own calibration, and
 //! every pixel is given the mix of both that its distance from the strokes asks for.
 
-use super::Model;
 use super::ellipsoid::{self, Ellipsoid, Spread};
 use super::logistic::{self, Objective, Problem};
 use super::samples::{Origin, PARTS, Samples};
+use super::segmentation::Model;
 use super::standardise::{Standard, term_count, terms};
 use super::table::Table;
 use crate::error::{Error, Result};
@@ -114,11 +114,24 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         ellipsoid::mean_beyond(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
     })?;
 
+    let candidate = cheapest(&trial, subsets, &unseen, job.part(0.1, 0.9))?;
+    let Candidate { model, columns, terms, weights, familiar, unfamiliar } = candidate;
+    let all = balanced(&trial.positive, |_| true);
+    let problem = Problem { terms: &terms, positive: &trial.positive, weights: &all };
+    let weights = logistic::fit(&problem, trial.ridge, &weights, PRECISION, job.part(0.9, 1.0))?;
+    // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
+    let seen = spreads.map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
+    Ok(Chosen { model, columns, standard, weights, familiar, unfamiliar, seen })
+}
+
+/// The candidate with the least expected loss on pixels of the image, of which by each subset a share is unseen, and with a
+/// price for its terms.
+fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> Result<Candidate> {
     let mut order: Vec<(usize, Model, usize)> = (0..subsets.len())
         .flat_map(|k| [Model::Linear, Model::Quadratic].map(|model| (term_count(model, subsets[k].len()), model, k)))
         .collect();
     order.sort_by_key(|candidate| candidate.0);
-    let price = |terms: usize| terms as f64 / samples.origins.len() as f64;
+    let price = |terms: usize| terms as f64 / trial.positive.len() as f64;
     let mut best: Option<(f64, Candidate)> = None;
     let mut rest = order.as_slice();
     // No loss is less than nothing: the price alone may rule a candidate out, and all after it.
@@ -127,9 +140,9 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     {
         // Those of up to twice the size are weighed at the same time.
         let (batch, larger) = rest.split_at(rest.partition_point(|candidate| candidate.0 <= 2 * terms));
-        let done = |left: &[_]| 0.1 + 0.8 * (1.0 - left.len() as f64 / order.len() as f64);
+        let done = |left: &[_]| 1.0 - left.len() as f64 / order.len() as f64;
         let candidates = exec::map(batch.len(), job.part(done(rest), done(larger)), |i| {
-            Candidate::weigh(batch[i].1, &subsets[batch[i].2], &trial, job.part(0.0, 0.0))
+            Candidate::weigh(batch[i].1, &subsets[batch[i].2], trial, job.part(0.0, 0.0))
         })?;
         for (candidate, (terms, _, subset)) in candidates.into_iter().zip(batch) {
             let candidate = candidate?;
@@ -141,15 +154,7 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         }
         rest = larger;
     }
-    let Some((_, Candidate { model, columns, terms, weights, familiar, unfamiliar })) = best else {
-        return Err(Error::argument("there is no subset of channels to choose from"));
-    };
-    let all = balanced(&trial.positive, |_| true);
-    let problem = Problem { terms: &terms, positive: &trial.positive, weights: &all };
-    let weights = logistic::fit(&problem, trial.ridge, &weights, PRECISION, job.part(0.9, 1.0))?;
-    // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
-    let seen = spreads.map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
-    Ok(Chosen { model, columns, standard, weights, familiar, unfamiliar, seen })
+    best.map(|(_, candidate)| candidate).ok_or_else(|| Error::argument("there is no subset of channels to choose from"))
 }
 
 impl Candidate {

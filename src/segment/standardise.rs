@@ -1,7 +1,7 @@
 //! Features to zero mean and unit spread, and the terms of the models.
 
-use super::Model;
 use super::samples::Samples;
+use super::segmentation::Model;
 use super::table::Table;
 use crate::error::Result;
 

@@ -3,6 +3,7 @@
 use super::*;
 use crate::error::ErrorKind;
 use crate::exec::Pool;
+use crate::image::Image;
 use crate::job::Monitor;
 use crate::rng::Rng;
 use glam::{DVec2, Vec3};
@@ -57,8 +58,8 @@ fn plane_strokes() -> Vec<Stroke> {
     ]
 }
 
-fn segment(features: &Image, strokes: &[Stroke], within: Option<&Image>, params: &Params) -> Result<Segmentation> {
-    run(&Input { features, strokes, within }, params, Monitor::default().job())
+fn segment(features: &Image, strokes: &[Stroke], region: Option<&Image>, params: &Params) -> Result<Segmentation> {
+    run(&Input { features, strokes, region }, params, Monitor::default().job())
 }
 
 fn iou(mask: &Image, is_true: impl Fn(usize) -> bool) -> f64 {
@@ -394,9 +395,9 @@ fn refinement_smooths_what_is_of_one_colour_and_keeps_to_where_it_looks() {
     let (before, after) = (iou(&plain.mask, is_ceiling), iou(&got.mask, is_ceiling));
     assert!(after > before + 0.005, "{before} {after}");
     assert!(got.mask.data.iter().zip(&got.confidence.data).all(|(m, c)| (*m > 0.5) == (*c > 0.5)));
-    let within = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 100)]).unwrap();
+    let region = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 100)]).unwrap();
     let refined = Params { subject: Subject::Surface, ..refined };
-    let got = segment(&features, &plane_strokes(), Some(&within), &refined).unwrap();
+    let got = segment(&features, &plane_strokes(), Some(&region), &refined).unwrap();
     assert!(got.confidence.data[100 * WIDTH..].iter().all(|c| *c == 0.0));
     for (radius, tolerance) in [(1025, 1.0), (1, 0.0), (1, f64::NAN)] {
         let params = Params { refine_radius: radius, refine_tolerance: tolerance, ..Params::default() };
@@ -515,6 +516,6 @@ fn a_cancelled_job_ends_with_an_error() {
     let monitor = Monitor::default();
     monitor.cancel();
     let strokes = plane_strokes();
-    let input = Input { features: &features, strokes: &strokes, within: None };
+    let input = Input { features: &features, strokes: &strokes, region: None };
     assert_eq!(run(&input, &Params::default(), monitor.job()).unwrap_err(), Error::cancelled());
 }

@@ -1,6 +1,7 @@
 //! Reasons to doubt a mask, and the place where one more stroke helps most.
 
-use super::{Segmentation, Stroke};
+use super::segmentation::Segmentation;
+use super::strokes::Stroke;
 use crate::image::Image;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;

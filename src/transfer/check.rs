@@ -18,11 +18,11 @@ impl Transfer {
         let run = super::STAGES.into_iter().filter(|stage| (from..=to).contains(stage));
         let mut made = super::STAGES.map(|stage| self.has_made(stage));
         for stage in run {
-            let within = |e: Error| e.within(format_args!("stage {stage:?}"));
-            self.params.check(stage).map_err(within)?;
-            self.check_inputs(stage).map_err(within)?;
+            let in_stage = |e: Error| e.context(format_args!("stage {stage:?}"));
+            self.params.check(stage).map_err(in_stage)?;
+            self.check_inputs(stage).map_err(in_stage)?;
             if let Some(before) = self.stages_before(stage).iter().find(|before| !made[**before as usize]) {
-                return Err(within(missing(&format!("run stage {before:?}"))));
+                return Err(in_stage(missing(&format!("run stage {before:?}"))));
             }
             made[stage as usize] = true;
         }

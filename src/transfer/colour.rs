@@ -7,7 +7,7 @@ use super::clipping;
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::job::Job;
-use crate::relight::Sense;
+use crate::relight::Constraint;
 use crate::segment;
 use glam::{DVec3, Vec3};
 
@@ -26,7 +26,7 @@ pub(super) struct Target {
     /// Mean linear colour, relative to the photo's white.
     pub colour: Vec3,
     /// Whether that is all that is known of a channel, or it may be brighter.
-    pub sense: [Sense; 3],
+    pub constraint: [Constraint; 3],
 }
 
 /// Halo of a lamp that glare brightens, as a share of the photo's longer side.
@@ -67,11 +67,12 @@ fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bo
     if photo.data.iter().any(|v| *v > WHITE && v.is_finite()) {
         let (mut sum, mut count) = (DVec3::ZERO, 0.0);
         pixels.for_each(|rgb| (sum, count) = (sum + rgb.as_dvec3(), count + 1.0));
-        return (count > 0.0).then(|| Target { colour: (sum / count).as_vec3(), sense: [Sense::Exactly; 3] });
+        return (count > 0.0).then(|| Target { colour: (sum / count).as_vec3(), constraint: [Constraint::Exactly; 3] });
     }
     let (mean, unknown) = clipping::mean(pixels, which == TargetColour::Surface)?;
-    let sense = unknown.to_array().map(|share| if share > MOSTLY { Sense::AtLeast } else { Sense::Exactly });
-    Some(Target { colour: mean.as_vec3(), sense })
+    let constraint =
+        unknown.to_array().map(|share| if share > MOSTLY { Constraint::AtLeast } else { Constraint::Exactly });
+    Some(Target { colour: mean.as_vec3(), constraint })
 }
 
 #[cfg(test)]

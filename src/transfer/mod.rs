@@ -209,7 +209,7 @@ impl Transfer {
             let clock = Instant::now();
             self.run_stage(*stage, part, &mut publish)?;
             if *stage == Stage::Lights && from <= Stage::Features {
-                self.look_again(part).map_err(|e| e.within(format_args!("stage {stage:?}")))?;
+                self.look_again(part).map_err(|e| e.context(format_args!("stage {stage:?}")))?;
             }
             self.results.seconds[*stage as usize] = clock.elapsed().as_secs_f64();
             done = (done + weight).min(1.0);
@@ -234,6 +234,6 @@ impl Transfer {
             Stage::Relight => self.relight(job),
             Stage::Render => self.render(job, publish),
         }
-        .map_err(|e| e.within(format_args!("stage {stage:?}")))
+        .map_err(|e| e.context(format_args!("stage {stage:?}")))
     }
 }

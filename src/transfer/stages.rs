@@ -59,8 +59,8 @@ impl Transfer {
         if !strokes.is_empty() {
             strokes.extend(self.results.beyond.iter().cloned());
         }
-        let input = segment::Input { features: &features.image, strokes: &strokes, within: None };
-        let plane = segment::run(&input, &self.params.plane, job).map_err(|e| e.within("strokes of the plane"))?;
+        let input = segment::Input { features: &features.image, strokes: &strokes, region: None };
+        let plane = segment::run(&input, &self.params.plane, job).map_err(|e| e.context("strokes of the plane"))?;
         self.results.plane = Some(Arc::new(plane));
         Ok(())
     }
@@ -69,8 +69,8 @@ impl Transfer {
         let features = need(&self.results.features, "run stage Features")?;
         let plane = need(&self.results.plane, "run stage Plane")?;
         let strokes = self.input.strokes.light_examples(&features.image)?;
-        let input = segment::Input { features: &features.image, strokes: &strokes, within: Some(&plane.mask) };
-        let lights = segment::run(&input, &self.params.lights, job).map_err(|e| e.within("strokes of the lights"))?;
+        let input = segment::Input { features: &features.image, strokes: &strokes, region: Some(&plane.mask) };
+        let lights = segment::run(&input, &self.params.lights, job).map_err(|e| e.context("strokes of the lights"))?;
         self.results.lights = Some(Arc::new(lights));
         Ok(())
     }
@@ -228,7 +228,7 @@ impl Transfer {
             target_triangles: &triangles,
             target: target.colour * self.params.white_luminance,
         };
-        let params = relight::Params { sense: target.sense, ..self.params.relight.clone() };
+        let params = relight::Params { constraint: target.constraint, ..self.params.relight.clone() };
         let solution = relight::run(&input, &params, job.part(0.1, 1.0))?;
 
         let strength = Vec3::splat(self.params.white_luminance) * solution.scale.as_vec3();

@@ -71,31 +71,8 @@ struct Setting<'a> {
 
 impl Layer {
     pub fn new(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<Self> {
-        // A texture that fits into the exemplar is a part of it; else find how the pattern goes on.
-        let reading = reading.filter(|r| r.serves(input, params));
-        let (exemplar, read) = match reading {
-            Some(Reading { exemplar, continuation, regularity, choice, .. }) => {
-                (exemplar, Some((continuation, regularity, choice)))
-            }
-            None => {
-                let side = working_side(input, params);
-                (Exemplar::new(input, side, params.max_magnification, job.part(0.0, 0.15))?, None)
-            }
-        };
-        let stays = params.tileable || params.centred;
-        let window = if stays { None } else { Window::find(&exemplar, params)? };
+        let (window, Source { exemplar, found, regularity, choice }) = source(reading, input, params, job)?;
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
-        let (mut exemplar, (found, regularity, choice)) = match (inside, read) {
-            (Some(_), _) => (exemplar, (Continuation::Copy, 0.0, Choice::only(Continuation::Copy))),
-            (None, Some(read)) => (exemplar, read),
-            (None, None) => {
-                let reading = Reading::of(exemplar, input, params, job.part(0.15, 0.25))?;
-                (reading.exemplar, (reading.continuation, reading.regularity, reading.choice))
-            }
-        };
-        if let Continuation::Lattice(basis) = found {
-            border_sites::exclude(&mut exemplar, basis)?;
-        }
         let setting = Setting::new(&exemplar, found, window, params)?;
 
         // Compute the metadata, then lay out patches and lamps.
@@ -171,6 +148,43 @@ impl Layer {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
         if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
     }
+}
+
+/// What a texture is made from.
+struct Source {
+    exemplar: Exemplar,
+    /// How the pattern goes on.
+    found: Continuation,
+    regularity: f64,
+    choice: Choice,
+}
+
+/// Finds the part of the exemplar that a texture shows if it fits into the exemplar, else how the pattern goes on.
+fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<(Option<Window>, Source)> {
+    let (exemplar, read) = match reading.filter(|r| r.serves(input, params)) {
+        Some(Reading { exemplar, continuation, regularity, choice, .. }) => {
+            (exemplar, Some((continuation, regularity, choice)))
+        }
+        None => {
+            let side = working_side(input, params);
+            (Exemplar::new(input, side, params.max_magnification, job.part(0.0, 0.15))?, None)
+        }
+    };
+    let stays = params.tileable || params.centred;
+    let window = if stays { None } else { Window::find(&exemplar, params)? };
+    let is_inside = window.as_ref().is_some_and(|w| w.is_shown);
+    let (mut exemplar, (found, regularity, choice)) = match read {
+        _ if is_inside => (exemplar, (Continuation::Copy, 0.0, Choice::only(Continuation::Copy))),
+        Some(read) => (exemplar, read),
+        None => {
+            let reading = Reading::of(exemplar, input, params, job.part(0.15, 0.25))?;
+            (reading.exemplar, (reading.continuation, reading.regularity, reading.choice))
+        }
+    };
+    if let Continuation::Lattice(basis) = found {
+        border_sites::exclude(&mut exemplar, basis)?;
+    }
+    Ok((window, Source { exemplar, found, regularity, choice }))
 }
 
 impl<'a> Setting<'a> {

@@ -8,6 +8,7 @@
 use super::instance::Instance;
 use super::sharpest;
 use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::components::Component;
 use crate::emission::exemplar::roles::Role;
 use crate::emission::lattice::cells::{self, Cell};
 use crate::emission::quilt::patch_map::PatchMap;
@@ -35,7 +36,6 @@ pub fn place(
         .pieces()
         .min_by(|p, q| p.1.centre.distance_squared(middle).total_cmp(&q.1.centre.distance_squared(middle)))?
         .1;
-    let half = DVec2::new(first.size()[0] as f64, first.size()[1] as f64) / 2.0;
     let cell_of = |at: DVec2| (to_own * (at - first.centre)).round().to_array().map(|c| c as i64);
     let step = |[i, j]: Cell| DVec2::new(i as f64, j as f64);
 
@@ -45,16 +45,8 @@ pub fn place(
     let components = exemplar.components.list.iter().zip(&exemplar.roles);
     let spoilt: BTreeSet<Cell> =
         components.filter(|(_, role)| **role == Role::Cut).map(|(lamp, _)| cell_of(lamp.centre)).collect();
-    let is_shown = |at: DVec2| {
-        let inside = at.cmpge(DVec2::ZERO).all() && at.x < exemplar.width as f64 && at.y < exemplar.height as f64;
-        inside && exemplar.shown[at.y as usize * exemplar.width + at.x as usize]
-    };
     let whole: Vec<Cell> = cells::between(to_own, DVec2::ZERO - first.centre, middle * 2.0 - first.centre)
-        .filter(|cell| {
-            let at = first.centre + own * step(*cell);
-            let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half * (1.0 - 1e-9)];
-            !spoilt.contains(cell) && corners.into_iter().all(|corner| is_shown(at + corner))
-        })
+        .filter(|cell| !spoilt.contains(cell) && shows(exemplar, first, first.centre + own * step(*cell)))
         .collect();
     if whole.is_empty() {
         return None;
@@ -81,4 +73,15 @@ pub fn place(
     }
     sharpest::show_sharpest(exemplar, &mut instances, seed);
     Some(instances)
+}
+
+/// Whether the unwarped photo shows the corners of a lamp moved to a place.
+fn shows(exemplar: &Exemplar, lamp: &Component, centre: DVec2) -> bool {
+    let half = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64) / 2.0;
+    let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half * (1.0 - 1e-9)];
+    corners.into_iter().all(|corner| {
+        let at = centre + corner;
+        let inside = at.cmpge(DVec2::ZERO).all() && at.x < exemplar.width as f64 && at.y < exemplar.height as f64;
+        inside && exemplar.shown[at.y as usize * exemplar.width + at.x as usize]
+    })
 }

@@ -22,22 +22,10 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let shown = AreaSums::new(|i| exemplar.shown[i], width, height)?;
     let lit = AreaSums::new(|i| exemplar.components.labels[i] != 0, width, height)?;
 
-    // One lamp of each place in a cell.
-    let mut first: Vec<&Component> = Vec::new();
-    for lamp in exemplar.lamps() {
-        let is_there = |other: &&Component| {
-            let steps = inverse * (lamp.centre - other.centre);
-            (steps - steps.round()).length() < SAME
-        };
-        if !first.iter().any(|other| is_there(other)) {
-            first.push(lamp);
-        }
-    }
-
     let size = DVec2::new(width as f64, height as f64);
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut dark: Vec<[usize; 4]> = Vec::new();
-    for lamp in first {
+    for lamp in one_of_each_place(exemplar, inverse) {
         let (low, high) = (point(lamp.min), point(lamp.max) + 1.0);
         let (mut whole, mut filled) = (0u32, 0u32);
         let mut cut = Vec::new();
@@ -64,13 +52,33 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
         }
     }
 
-    // Of these nothing is shown, as long as anything is left.
+    hide(exemplar, &dark);
+    Ok(())
+}
+
+/// One lamp of each place in a cell of the lattice; `inverse` maps to steps of the lattice.
+fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
+    let mut first: Vec<&Component> = Vec::new();
+    for lamp in exemplar.lamps() {
+        let is_there = |other: &&Component| {
+            let steps = inverse * (lamp.centre - other.centre);
+            (steps - steps.round()).length() < SAME
+        };
+        if !first.iter().any(|other| is_there(other)) {
+            first.push(lamp);
+        }
+    }
+    first
+}
+
+/// Excludes boxes of unwarped pixels from what the texture may show, unless nothing would be left.
+fn hide(exemplar: &mut Exemplar, boxes: &[[usize; 4]]) {
     let working = &exemplar.working;
     let mut usable = working.usable.clone();
     let range = |low: usize, high: usize, pitch: f64, side: usize| {
         (low as f64 / pitch) as usize..((high as f64 / pitch).ceil() as usize).min(side)
     };
-    for [x0, y0, x1, y1] in dark {
+    for &[x0, y0, x1, y1] in boxes {
         for y in range(y0, y1, working.pitch.y, working.height) {
             usable[y * working.width..][range(x0, x1, working.pitch.x, working.width)].fill(false);
         }
@@ -78,5 +86,4 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     if usable.contains(&true) {
         exemplar.working.usable = usable;
     }
-    Ok(())
 }

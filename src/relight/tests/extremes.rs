@@ -76,7 +76,7 @@ fn a_white_closed_room_and_rooms_of_any_size() {
             quantity: Quantity::Incident,
             target: Vec3::ONE,
             aspect: Aspect::Colour,
-            sense: EXACTLY,
+            constraint: EXACTLY,
             weight: 1.0,
         };
         let grid = Goal {
@@ -154,7 +154,7 @@ fn a_lamp_seen_edge_on_is_dark() {
         quantity: Quantity::Incident,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
-        sense: EXACTLY,
+        constraint: EXACTLY,
         weight: 1.0,
     };
     let lamps = Lamps::of_meshes(world.scene(), 1).unwrap();

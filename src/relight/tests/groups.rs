@@ -24,7 +24,7 @@ fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
 const FLOOR: &[(usize, usize)] = &[(0, 0), (0, 1)];
 
 fn goal(place: Place<'_>, target: Vec3) -> Goal<'_> {
-    Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, sense: EXACTLY, weight: 1.0 }
+    Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, constraint: EXACTLY, weight: 1.0 }
 }
 
 /// A horizontal square of side 1 m below the point (x, z) of the ceiling.
@@ -226,37 +226,38 @@ fn lux_are_luminance() {
 #[test]
 fn limits_count_on_one_side() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
-    let at = |x, z, target: f32, sense| Goal { sense: [sense; 3], ..goal(desk(x, z), Vec3::splat(target)) };
-    let traced = [at(0.9, 0.9, 1.0, Sense::Exactly), at(3.1, 3.1, 1.0, Sense::Exactly)];
+    let at =
+        |x, z, target: f32, constraint| Goal { constraint: [constraint; 3], ..goal(desk(x, z), Vec3::splat(target)) };
+    let traced = [at(0.9, 0.9, 1.0, Constraint::Exactly), at(3.1, 3.1, 1.0, Constraint::Exactly)];
     let responses = respond(&world, &lamps, &traced);
     let solve = |first, second| {
         let goals = [Goal { place: traced[0].place, ..first }, Goal { place: traced[1].place, ..second }];
         powers(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
     };
-    let one = |least, sense| at(0.0, 0.0, least, sense);
+    let one = |least, constraint| at(0.0, 0.0, least, constraint);
     // With equal lamps, the darker desk gets its lower limit and the brighter one exceeds it.
     let both = responses.all(0).mean.x.min(responses.all(1).mean.x);
-    let solution = solve(one(40.0, Sense::AtLeast), one(40.0, Sense::AtLeast));
+    let solution = solve(one(40.0, Constraint::AtLeast), one(40.0, Constraint::AtLeast));
     assert!(solution.unreachable.is_none(), "{solution:?}");
     let power = solution.scale.iter().map(|x| x.x).fold(0.0, f64::max);
     assert!((power / (40.0 / both) - 1.0).abs() < 1e-3, "{solution:?} {both}");
     // An upper limit that equal lamps would violate: power moves to the lamp of the other desk.
-    let solution = solve(one(40.0, Sense::AtLeast), one(25.0, Sense::AtMost));
+    let solution = solve(one(40.0, Constraint::AtLeast), one(25.0, Constraint::AtMost));
     let light: Vec<f64> = solution.outcomes.iter().map(|o| o.achieved.x).collect();
     assert!(light[0] > 39.99 && light[1] < 25.01 && solution.unreachable.is_none(), "{solution:?}");
     // With upper limits alone, lamps keep their power or are reduced to the limit.
     let caps = [1e3, 0.5 * responses.all(0).mean.x as f32];
-    assert_eq!(solve(one(caps[0], Sense::AtMost), one(1e3, Sense::AtMost)).scale, [DVec3::ONE; 2]);
-    let solution = solve(one(caps[1], Sense::AtMost), one(1e3, Sense::AtMost));
+    assert_eq!(solve(one(caps[0], Constraint::AtMost), one(1e3, Constraint::AtMost)).scale, [DVec3::ONE; 2]);
+    let solution = solve(one(caps[1], Constraint::AtMost), one(1e3, Constraint::AtMost));
     assert!((solution.outcomes[0].achieved.x / f64::from(caps[1]) - 1.0).abs() < 1e-3, "{solution:?}");
     // An unreachable goal is reported with its side.
-    let goals = [at(0.9, 0.9, 40.0, Sense::AtLeast), at(3.1, 3.1, 1.0, Sense::AtMost)];
+    let goals = [at(0.9, 0.9, 40.0, Constraint::AtLeast), at(3.1, 3.1, 1.0, Constraint::AtMost)];
     let torn = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert_eq!([0, 1].map(|goal| torn.outcomes[goal].status[0]), [TargetStatus::TooDim, TargetStatus::TooBright]);
     assert!(torn.unreachable.unwrap().contains("at least 40.0000 cd/m²"));
     // A luminance goal has a single side.
-    let mixed = [Sense::AtLeast, Sense::AtMost, Sense::Exactly];
-    let goals = [Goal { aspect: Aspect::Luminance, sense: mixed, ..traced[0] }, traced[1]];
+    let mixed = [Constraint::AtLeast, Constraint::AtMost, Constraint::Exactly];
+    let goals = [Goal { aspect: Aspect::Luminance, constraint: mixed, ..traced[0] }, traced[1]];
     assert_eq!(powers(&responses, &goals, &GroupParams::default()).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 

@@ -19,7 +19,7 @@ fn floor(quantity: Quantity) -> Goal<'static> {
         quantity,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
-        sense: EXACTLY,
+        constraint: EXACTLY,
         weight: 1.0,
     }
 }

@@ -11,7 +11,7 @@ use crate::scene::{Material, Mesh, PunctualLight, Scene};
 use glam::{DVec3, Vec2};
 use std::sync::Arc;
 
-const EXACTLY: [Sense; 3] = [Sense::Exactly; 3];
+const EXACTLY: [Constraint; 3] = [Constraint::Exactly; 3];
 
 /// A box room of `size` metres whose six sides face inwards: floor, ceiling, then the walls. The ceiling has material
 /// 1, everything else material 0.
@@ -134,12 +134,12 @@ fn a_limit_binds_only_where_it_is_broken() {
     let params = Params { target_error: 0.005, ..Params::default() };
     let unit = solve(&scene, Vec3::ONE, &params).unwrap();
     let truth = (unit.response * 100.0).as_vec3();
-    let least = |target: Vec3, sense: Sense| {
-        let sense = [sense, Sense::Exactly, Sense::Exactly];
-        solve(&scene, target, &Params { seed: 99, sense, ..params.clone() }).unwrap()
+    let least = |target: Vec3, constraint: Constraint| {
+        let constraint = [constraint, Constraint::Exactly, Constraint::Exactly];
+        solve(&scene, target, &Params { seed: 99, constraint, ..params.clone() }).unwrap()
     };
     // The true red is brighter than its limit.
-    let free = least(truth * Vec3::new(0.6, 1.0, 1.0), Sense::AtLeast);
+    let free = least(truth * Vec3::new(0.6, 1.0, 1.0), Constraint::AtLeast);
     for c in 0..3 {
         let allowed = 2.0 * (free.half_width[c] + 0.005 * 100.0);
         assert!((free.scale[c] - 100.0).abs() < allowed && free.status[c] == TargetStatus::Met, "{free:?}");
@@ -147,22 +147,23 @@ fn a_limit_binds_only_where_it_is_broken() {
     assert!((free.scale.x - (free.scale.y + free.scale.z) / 2.0).abs() < 1e-9);
     assert!(free.half_width.x > 0.0 && free.error() < 0.006 && free.delta_e < 1.0, "{free:?}");
     // A limit that the other channels' scale violates is met exactly, on either side.
-    for (factor, sense) in [(1.5, Sense::AtLeast), (0.5, Sense::AtMost)] {
-        let bound = least(truth * Vec3::new(factor, 1.0, 1.0), sense);
-        let exact = least(truth * Vec3::new(factor, 1.0, 1.0), Sense::Exactly);
+    for (factor, constraint) in [(1.5, Constraint::AtLeast), (0.5, Constraint::AtMost)] {
+        let bound = least(truth * Vec3::new(factor, 1.0, 1.0), constraint);
+        let exact = least(truth * Vec3::new(factor, 1.0, 1.0), Constraint::Exactly);
         assert_eq!((bound.scale, bound.half_width), (exact.scale, exact.half_width));
     }
-    assert_eq!(least(truth * Vec3::new(1.5, 1.0, 1.0), Sense::AtMost).scale.x, {
-        let s = least(truth, Sense::AtMost).scale;
+    assert_eq!(least(truth * Vec3::new(1.5, 1.0, 1.0), Constraint::AtMost).scale.x, {
+        let s = least(truth, Constraint::AtMost).scale;
         (s.y + s.z) / 2.0
     });
     // All channels have limits: the least light that satisfies them.
-    let all = solve(&scene, truth, &Params { sense: [Sense::AtLeast; 3], seed: 99, ..params.clone() }).unwrap();
-    assert_eq!(all.scale, least(truth, Sense::Exactly).scale);
+    let all =
+        solve(&scene, truth, &Params { constraint: [Constraint::AtLeast; 3], seed: 99, ..params.clone() }).unwrap();
+    assert_eq!(all.scale, least(truth, Constraint::Exactly).scale);
     // No light is needed where other light suffices.
     let mut bright = scene.clone();
     bright.lights.push(PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::splat(1e3) });
-    let none = solve(&bright, Vec3::splat(1e-3), &Params { sense: [Sense::AtLeast; 3], ..params }).unwrap();
+    let none = solve(&bright, Vec3::splat(1e-3), &Params { constraint: [Constraint::AtLeast; 3], ..params }).unwrap();
     assert_eq!((none.scale, none.status), (DVec3::ZERO, [TargetStatus::Met; 3]));
 }
 

@@ -67,7 +67,7 @@ impl File {
             let (theirs, ours) = (self.head.numbers, numbers);
             return Err(Error::format(format!("{}: it has {theirs} sums per pixel, not {ours}", self.name())));
         }
-        self.part.check(params).map_err(|e| e.within(self.name()))
+        self.part.check(params).map_err(|e| e.context(self.name()))
     }
 
     /// Reads the sums of a checked part.
@@ -78,7 +78,7 @@ impl File {
         numbers::decode(&bytes, &self.head, |at, numbers| {
             sums.numbers_mut([x + at[0], y + at[1]]).copy_from_slice(numbers);
         })
-        .map_err(|e| e.within(self.name()))?;
+        .map_err(|e| e.context(self.name()))?;
         sums.set_discarded(self.discarded);
         Ok(sums)
     }

@@ -138,7 +138,7 @@ pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f
 /// Reads vectors of `N` numbers, or matrices of four columns as 16; normalised integers are scaled to `[0, 1]` or
 /// `[-1, 1]`.
 pub fn vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
-    read_vectors(file, index).map_err(|e| e.within(format_args!("accessor {}", index.value())))
+    read_vectors(file, index).map_err(|e| e.context(format_args!("accessor {}", index.value())))
 }
 
 fn read_vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
@@ -208,5 +208,5 @@ pub fn indices(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<u32>
         }
         Ok(out)
     };
-    read().map_err(|e: Error| e.within(format_args!("accessor {}", index.value())))
+    read().map_err(|e: Error| e.context(format_args!("accessor {}", index.value())))
 }

@@ -45,7 +45,7 @@ impl<'a> File<'a> {
         let Document { root, unrendered, translations } = document::parse(json)?;
         let mut file = Self { root, unrendered, translations, buffers: Vec::new(), unpacked: Vec::new(), folder };
         for (i, buffer) in file.root.buffers.iter().enumerate() {
-            let bytes = file.buffer(i, buffer, blob).map_err(|e| e.within(format_args!("buffer {i}")))?;
+            let bytes = file.buffer(i, buffer, blob).map_err(|e| e.context(format_args!("buffer {i}")))?;
             file.buffers.push(bytes);
         }
         Ok(file)
@@ -73,7 +73,7 @@ impl<'a> File<'a> {
         }
         let start = view.byte_offset.map_or(0, |o| o.0);
         self.part(view.buffer.value(), start, view.byte_length.0)
-            .map_err(|e| e.within(format_args!("buffer view {number}")))
+            .map_err(|e| e.context(format_args!("buffer view {number}")))
     }
 
     /// A part of a buffer.
@@ -98,7 +98,7 @@ impl<'a> File<'a> {
     fn packed(&self) -> impl Iterator<Item = (usize, Result<Packed>)> {
         self.root.buffer_views.iter().enumerate().filter_map(|(i, view)| {
             let packed = Packed::of(view)?;
-            Some((i, packed.map_err(|e| e.within(format_args!("buffer view {i}")))))
+            Some((i, packed.map_err(|e| e.context(format_args!("buffer view {i}")))))
         })
     }
 
@@ -115,7 +115,7 @@ impl<'a> File<'a> {
             let decoded = self
                 .part(packed.buffer, packed.start, packed.length)
                 .and_then(|stream| packed.decode(stream))
-                .map_err(|e| e.within(format_args!("buffer view {i}")))?;
+                .map_err(|e| e.context(format_args!("buffer view {i}")))?;
             unpacked.push((i, decoded));
         }
         self.unpacked = unpacked;

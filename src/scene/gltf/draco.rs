@@ -35,7 +35,7 @@ impl Decoded {
         if positions.is_some_and(has_data) {
             return Ok(None);
         }
-        decode(file, budget, primitive, settings).map(Some).map_err(|e| e.within(DRACO))
+        decode(file, budget, primitive, settings).map(Some).map_err(|e| e.context(DRACO))
     }
 
     /// The number of vertices.
@@ -52,7 +52,7 @@ impl Decoded {
     ) -> Option<Result<Vec<[f32; N]>>> {
         let name = semantic.to_string();
         let number = self.numbers.iter().find(|(known, _)| *known == name)?.1;
-        Some(self.values(file, number, index).map_err(|e| e.within(format_args!("{DRACO}: {name}"))))
+        Some(self.values(file, number, index).map_err(|e| e.context(format_args!("{DRACO}: {name}"))))
     }
 
     fn values<const N: usize>(&self, file: &File, number: u32, index: Index<Accessor>) -> Result<Vec<[f32; N]>> {

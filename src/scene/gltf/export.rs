@@ -31,7 +31,7 @@ pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     let mut writer = Writer::default();
     for material in &scene.materials {
         let json =
-            writer.material(scene, material).map_err(|e| e.within(format_args!("material {:?}", material.name)))?;
+            writer.material(scene, material).map_err(|e| e.context(format_args!("material {:?}", material.name)))?;
         writer.materials.push(json);
     }
     for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {

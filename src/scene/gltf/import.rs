@@ -55,7 +55,7 @@ fn convert(file: &mut File, Options { budget, unit, keep_origin, .. }: Options) 
     let file = &*file;
     let mut materials = Materials::new(file, budget);
     for (i, json) in file.root.materials.iter().enumerate() {
-        scene.materials.push(materials.read(i, json).map_err(|e| e.within(format_args!("material {i}")))?);
+        scene.materials.push(materials.read(i, json).map_err(|e| e.context(format_args!("material {i}")))?);
     }
     scene.textures = materials.textures;
     let mut importer = Importer {
@@ -132,7 +132,7 @@ impl Importer<'_> {
             if !transform.is_finite() {
                 return Err(Error::format(format!("node {index} has a transform that is not finite")));
             }
-            self.node(node, transform).map_err(|e| e.within(format_args!("node {index}")))?;
+            self.node(node, transform).map_err(|e| e.context(format_args!("node {index}")))?;
             for child in node.children.iter().flatten().rev() {
                 stack.push((child.value(), transform));
             }
@@ -151,7 +151,8 @@ impl Importer<'_> {
             for transform in instances(self.file, node, transform)? {
                 let placement = Placement { transform, skin: node.skin, weights };
                 for primitive in &mesh.primitives {
-                    self.primitive(&name, primitive, placement).map_err(|e| e.within(format_args!("mesh {name:?}")))?;
+                    self.primitive(&name, primitive, placement)
+                        .map_err(|e| e.context(format_args!("mesh {name:?}")))?;
                 }
             }
         }
@@ -165,10 +166,10 @@ impl Importer<'_> {
             let lights = lights.map_or(&[][..], |l| &l.lights);
             let at = reference.light.value();
             let light = lights.get(at).ok_or_else(|| missing("light", at, lights.len()))?;
-            self.scene.lights.push(punctual(light, transform).map_err(|e| e.within(format_args!("light {at}")))?);
+            self.scene.lights.push(punctual(light, transform).map_err(|e| e.context(format_args!("light {at}")))?);
         }
         if let Some(reference) = node.extensions.as_ref().and_then(|e| e.others.get(IES)) {
-            self.luminaire(reference, transform).map_err(|e| e.within(IES))?;
+            self.luminaire(reference, transform).map_err(|e| e.context(IES))?;
         }
         Ok(())
     }
@@ -184,7 +185,7 @@ impl Importer<'_> {
         let distribution = match self.profiles.iter().position(|p| *p == at) {
             Some(known) => known,
             None => {
-                let luminaire = self.profile(profile).map_err(|e| e.within(format_args!("light {at}")))?;
+                let luminaire = self.profile(profile).map_err(|e| e.context(format_args!("light {at}")))?;
                 self.scene.distributions.push(Arc::new(luminaire));
                 self.profiles.push(at);
                 self.profiles.len() - 1

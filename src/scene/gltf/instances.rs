@@ -31,7 +31,7 @@ fn compose(translation: DVec3, rotation: [f32; 4], scale: [f32; 3]) -> DMat4 {
 /// The transforms of all instances of a node's mesh: a single one, unless the node has `EXT_mesh_gpu_instancing`.
 pub fn instances(file: &File, node: &json::Node, transform: DMat4) -> Result<Vec<DMat4>> {
     match node.extensions.as_ref().and_then(|e| e.others.get(INSTANCING)) {
-        Some(stated) => read(file, stated, transform).map_err(|e| e.within(INSTANCING)),
+        Some(stated) => read(file, stated, transform).map_err(|e| e.context(INSTANCING)),
         None => Ok(vec![transform]),
     }
 }

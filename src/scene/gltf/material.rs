@@ -149,7 +149,7 @@ impl<'a> Materials<'a> {
 
     /// Decodes a texture for a conversion, without adding it to the scene.
     fn separate(&mut self, index: Index<texture::Texture>) -> Result<Option<Texture>> {
-        let within = |e: Error| e.within(format_args!("texture {}", index.value()));
+        let within = |e: Error| e.context(format_args!("texture {}", index.value()));
         let Some(stored) = self.stored(index).map_err(within)? else { return Ok(None) };
         self.load(&stored, Encoding::Srgb).map(Some).map_err(within)
     }
@@ -167,7 +167,8 @@ impl<'a> Materials<'a> {
         encoding: Encoding,
     ) -> Result<Option<TextureRef>> {
         let place = place(uv_set, transform)?;
-        let texture = self.texture(index, encoding).map_err(|e| e.within(format_args!("texture {}", index.value())))?;
+        let texture =
+            self.texture(index, encoding).map_err(|e| e.context(format_args!("texture {}", index.value())))?;
         Ok(texture.map(|texture| TextureRef { texture, ..place }))
     }
 
@@ -214,7 +215,7 @@ impl<'a> Materials<'a> {
             (None, Some(uri)) => self.file.resolve(uri).and_then(|bytes| self.decode(&bytes, encoding)),
             (None, None) => Err(Error::format("it has neither a buffer view nor a URI")),
         };
-        let decoded = decoded.map_err(|e| e.within(format_args!("image {}", stored.index)))?;
+        let decoded = decoded.map_err(|e| e.context(format_args!("image {}", stored.index)))?;
         Ok(Texture { name: stored.name.clone(), image: decoded, wrap: stored.wrap })
     }
 

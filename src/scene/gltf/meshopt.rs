@@ -29,7 +29,7 @@ impl Packed {
     pub fn of(view: &View) -> Option<Result<Self>> {
         let others = &view.extensions.as_ref()?.others;
         let (name, settings) = MESHOPT.iter().find_map(|name| Some((name, others.get(*name)?)))?;
-        Some(Self::read(settings, view).map_err(|e| e.within(name)))
+        Some(Self::read(settings, view).map_err(|e| e.context(name)))
     }
 
     fn read(settings: &Value, parent: &View) -> Result<Self> {

@@ -92,5 +92,5 @@ impl Default for Options<'_> {
 
 /// Reads a `.glb` or `.gltf` file; external files are resolved relative to its folder.
 pub fn load(path: &Path, options: Options) -> Result<Scene> {
-    import(&io::read_file(path)?, path.parent(), options).map_err(|e| e.within(path.display()))
+    import(&io::read_file(path)?, path.parent(), options).map_err(|e| e.context(path.display()))
 }

@@ -58,7 +58,7 @@ impl Skinning {
         if sets.is_empty() {
             return Ok(None);
         }
-        let joints = joints(file, skin, nodes).map_err(|e| e.within(format_args!("skin {}", skin.value())))?;
+        let joints = joints(file, skin, nodes).map_err(|e| e.context(format_args!("skin {}", skin.value())))?;
         let skinning = Self { joints, sets };
         for vertex in 0..count {
             skinning.check(vertex)?;

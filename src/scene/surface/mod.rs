@@ -80,7 +80,7 @@ pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     let meshes = name::find(scene, name)?;
     let triangles =
         try_collect(meshes.iter().flat_map(|&mesh| (0..scene.meshes[mesh].triangles.len()).map(move |t| (mesh, t))))?;
-    from_list(scene, &triangles).map_err(|e| e.within(format_args!("surface {name:?}")))
+    from_list(scene, &triangles).map_err(|e| e.context(format_args!("surface {name:?}")))
 }
 
 /// The planar patch that faces the room among the given (mesh, triangle) pairs; other triangles are left out.

@@ -27,8 +27,10 @@ mod tests;
 mod tree;
 
 use super::face;
+use super::input::Input;
 use super::samples::{self, Ownership};
-use super::{Input, Segmentation, Stroke};
+use super::segmentation::Segmentation;
+use super::strokes::Stroke;
 use crate::error::{Error, Result};
 use crate::features::CHANNELS;
 use crate::image::{Image, try_collect, try_push, try_vec};
@@ -60,7 +62,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let (width, height) = (input.features.width, input.features.height);
     let paint = samples::ownership(input)?;
     let is_proposed = paint.positive.iter().all(Vec::is_empty);
-    let can_propose = input.features.channels == CHANNELS && input.within.is_some();
+    let can_propose = input.features.channels == CHANNELS && input.region.is_some();
     if is_proposed && !can_propose {
         return Err(Error::degenerate(format!(
             "no positive stroke covers any pixel of the {width} x {height} image ({} strokes, {} of their pixels off the image, {} painted \
@@ -77,7 +79,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
         return Err(Error::argument(format!("features holds a colour of {:?}; all must be finite", &bad[..3])));
     }
     // The lamps are as bright as the pixels of the strokes, or as the brightest ones of the plane.
-    let unpainted = input.within.filter(|_| is_proposed);
+    let unpainted = input.region.filter(|_| is_proposed);
     let brightest = unpainted.map(|plane| proposed::brightest(input.features, plane)).transpose()?;
     let examples = brightest.as_ref().map_or(&paint.positive[..], std::slice::from_ref);
     let photo = Brightness::new(input.features, white(input.features, examples)?, job.part(0.0, 0.2))?;
@@ -100,7 +102,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);
 
-    let search = Search { tree: &tree, regions: &regions, photo: &photo, plane: input.within, negatives: &negatives };
+    let search = Search { tree: &tree, regions: &regions, photo: &photo, plane: input.region, negatives: &negatives };
     let painted = match is_proposed {
         true => proposed::find(&search)?,
         false => brighter_than_around(

@@ -54,12 +54,12 @@ fn stroke(positive: bool, points: &[[f64; 2]]) -> Stroke {
     Stroke::polyline(&points, 2.0, positive, WIDTH, HEIGHT).unwrap()
 }
 
-fn segment(strokes: &[Stroke], within: Option<&Image>) -> Segmentation {
-    segment_in(&features(), strokes, within)
+fn segment(strokes: &[Stroke], region: Option<&Image>) -> Segmentation {
+    segment_in(&features(), strokes, region)
 }
 
-fn segment_in(features: &Image, strokes: &[Stroke], within: Option<&Image>) -> Segmentation {
-    let input = Input { features, strokes, within };
+fn segment_in(features: &Image, strokes: &[Stroke], region: Option<&Image>) -> Segmentation {
+    let input = Input { features, strokes, region };
     run(&input, &Params { subject: Subject::Lamps, ..Params::default() }, Monitor::default().job()).unwrap()
 }
 
@@ -149,7 +149,7 @@ fn a_stroke_over_two_lamps_marks_both_and_not_what_lies_between() {
 #[test]
 fn strokes_without_a_lamp_are_an_error_and_dark_ones_mark_nothing_large() {
     let features = features();
-    let input = Input { features: &features, strokes: &[stroke(false, &[[30.0, 26.0]])], within: None };
+    let input = Input { features: &features, strokes: &[stroke(false, &[[30.0, 26.0]])], region: None };
     let params = Params { subject: Subject::Lamps, ..Params::default() };
     let error = run(&input, &params, Monitor::default().job()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Degenerate);
@@ -163,7 +163,7 @@ fn strokes_without_a_lamp_are_an_error_and_dark_ones_mark_nothing_large() {
 fn features_that_are_not_finite_are_refused() {
     let mut features = features();
     features.data[0] = f32::NAN;
-    let input = Input { features: &features, strokes: &[stroke(true, &[[30.0, 26.0]])], within: None };
+    let input = Input { features: &features, strokes: &[stroke(true, &[[30.0, 26.0]])], region: None };
     let params = Params { subject: Subject::Lamps, ..Params::default() };
     let error = run(&input, &params, Monitor::default().job()).unwrap_err();
     assert!(error.message.contains("finite"), "{}", error.message);
@@ -177,7 +177,7 @@ fn whole_images_of_one_brightness_and_of_noise_end_well() {
             pixel[0] = 40.0 + noise * Rng::new(3, &[i as u64]).next_f32();
         }
         let strokes = [Stroke::polyline(&[DVec2::splat(20.0)], 3.0, true, 64, 48).unwrap()];
-        let input = Input { features: &features, strokes: &strokes, within: None };
+        let input = Input { features: &features, strokes: &strokes, region: None };
         let params = Params { subject: Subject::Lamps, ..Params::default() };
         let segmented = run(&input, &params, Monitor::default().job()).unwrap();
         assert!(segmented.confidence.data.iter().all(|c| (0.0..=1.0).contains(c)));
@@ -200,7 +200,7 @@ fn panes_side_by_side_are_found_and_a_stroke_of_the_plane_across_them_does_no_ha
     };
     let ceiling = ceiling();
     let strokes = painted.light_examples(&features).unwrap();
-    let input = Input { features: &features, strokes: &strokes, within: Some(&ceiling) };
+    let input = Input { features: &features, strokes: &strokes, region: Some(&ceiling) };
     let params = Params { subject: Subject::Lamps, ..Params::default() };
     let mask = run(&input, &params, Monitor::default().job()).unwrap().mask;
     // The blur before regions are formed takes the four corner pixels of each of the 32 panes, and nothing else.
@@ -219,7 +219,7 @@ fn lamps_much_smaller_on_the_plane_than_the_painted_ones_are_not_like_them() {
     }
     let ceiling = ceiling();
     let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
-    let input = Input { features: &features, strokes: &strokes, within: Some(&ceiling) };
+    let input = Input { features: &features, strokes: &strokes, region: Some(&ceiling) };
     let segmented = run(&input, &Params { subject: Subject::Lamps, ..Params::default() }, Monitor::default().job());
     assert_eq!(found(&segmented.unwrap().mask).0[..4], [true, true, false, true]);
 }
@@ -241,7 +241,7 @@ fn without_strokes_the_brightest_compact_regions_of_the_plane_are_lamps() {
 #[test]
 fn without_strokes_and_without_lamps_the_error_asks_for_strokes() {
     let refused = |features: &Image, plane: &Image| {
-        let input = Input { features, strokes: &[], within: Some(plane) };
+        let input = Input { features, strokes: &[], region: Some(plane) };
         run(&input, &Params::for_lights(), Monitor::default().job()).unwrap_err()
     };
     for (features, plane) in [(features_with(&[]), ceiling()), (features(), Image::new(WIDTH, HEIGHT, 1).unwrap())] {

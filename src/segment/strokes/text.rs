@@ -27,20 +27,20 @@ pub fn parse(text: &str, width: usize, height: usize) -> Result<StrokeSet> {
             "not-light" => Kind::NotLight,
             other => {
                 let what = format!("'{other}' is none of plane, not-plane, light, not-light");
-                return Err(Error::format(what).within(place()));
+                return Err(Error::format(what).context(place()));
             }
         };
         let numbers: Vec<f64> = words
-            .map(|w| w.parse().map_err(|_| Error::format(format!("'{w}' is not a number")).within(place())))
+            .map(|w| w.parse().map_err(|_| Error::format(format!("'{w}' is not a number")).context(place())))
             .collect::<Result<_>>()?;
         if numbers.len() < 3 || numbers.len() % 2 == 0 {
             let what =
                 format!("a radius and pairs of x and y are needed after '{word}'; there are {} numbers", numbers.len());
-            return Err(Error::format(what).within(place()));
+            return Err(Error::format(what).context(place()));
         }
         let points: Vec<DVec2> = numbers[1..].chunks_exact(2).map(DVec2::from_slice).collect();
         let stroke = Stroke::polyline(&points, numbers[0], kind.is_positive(), width, height);
-        set.push(kind, stroke.map_err(|e| e.within(place()))?);
+        set.push(kind, stroke.map_err(|e| e.context(place()))?);
     }
     Ok(set)
 }

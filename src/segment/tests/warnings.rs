@@ -38,7 +38,7 @@ fn strokes() -> Vec<Stroke> {
 }
 
 fn segmented(features: &Image, strokes: &[Stroke]) -> Segmentation {
-    run(&Input { features, strokes, within: None }, &Params::default(), Monitor::default().job()).unwrap()
+    run(&Input { features, strokes, region: None }, &Params::default(), Monitor::default().job()).unwrap()
 }
 
 fn codes(list: impl IntoIterator<Item = Warning>) -> Vec<Code> {

@@ -8,7 +8,7 @@ use crate::render::{self, World};
 use crate::scene::{Camera, Material, Mesh, Scene};
 use std::sync::Arc;
 
-const EXACTLY: [Sense; 3] = [Sense::Exactly; 3];
+const EXACTLY: [Constraint; 3] = [Constraint::Exactly; 3];
 
 fn whole(photo: &Image) -> Target {
     let mask = |v: f32| Image::from_fn(photo.width, photo.height, |_, _| [v]).unwrap();
@@ -35,7 +35,7 @@ fn a_clipped_channel_follows_from_the_others() {
     let truth = plane.unwrap();
     let photo = clip(&truth);
     let found = whole(&photo);
-    assert_eq!(found.sense, EXACTLY);
+    assert_eq!(found.constraint, EXACTLY);
     let off = |colour: Vec3| (colour / mean(&truth) - 1.0).abs();
     assert!(off(found.colour).max_element() < 0.02, "{found:?} {}", mean(&truth));
     assert!(off(mean(&photo)).x > 0.1);
@@ -44,13 +44,13 @@ fn a_clipped_channel_follows_from_the_others() {
     // Red is white everywhere: no less is all that can be said.
     let bright = Image::from_fn(8, 8, |x, _| [1.0, 0.5 + 0.01 * x as f32, 0.3]).unwrap();
     let found = whole(&bright);
-    assert_eq!(found.sense, [Sense::AtLeast, Sense::Exactly, Sense::Exactly]);
+    assert_eq!(found.constraint, [Constraint::AtLeast, Constraint::Exactly, Constraint::Exactly]);
     assert!((found.colour - mean(&bright)).abs().max_element() < 1e-6);
     // All of it is white, or a few pixels without a hint are.
     let white = Image::from_fn(8, 8, |_, _| [1.0; 3]).unwrap();
-    assert_eq!(whole(&white), Target { colour: Vec3::ONE, sense: [Sense::AtLeast; 3] });
+    assert_eq!(whole(&white), Target { colour: Vec3::ONE, constraint: [Constraint::AtLeast; 3] });
     let spark = Image::from_fn(8, 8, |x, y| [if x + y == 0 { 1.0 } else { 0.5 }; 3]).unwrap();
-    assert_eq!(whole(&spark).sense, EXACTLY);
+    assert_eq!(whole(&spark).constraint, EXACTLY);
 }
 
 /// A room whose warm light is known, photographed so that red and green are clipped on parts of its ceiling: the light is recovered, which it is not
@@ -93,14 +93,14 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let mut photo = film.beauty.clone();
     photo.data.iter_mut().for_each(|v| *v = (*v / white).min(1.0));
 
-    let solve = |colour: Vec3, white: f32, sense: [Sense; 3]| {
+    let solve = |colour: Vec3, white: f32, constraint: [Constraint; 3]| {
         let target_triangles = &[(0, 0), (0, 1)];
         let input = relight::Input { world: &world, emitter: 2, target_triangles, target: colour * white };
-        let params = relight::Params { sense, target_error: 0.005, ..relight::Params::default() };
+        let params = relight::Params { constraint, target_error: 0.005, ..relight::Params::default() };
         pool.run(|| relight::run(&input, &params, monitor.job()).unwrap())
     };
     let found = whole(&photo);
-    let recovered = solve(found.colour, white, found.sense);
+    let recovered = solve(found.colour, white, found.constraint);
     let as_it_is = solve(mean(&photo), white, EXACTLY);
     let off = |s: &relight::Solution| (s.scale - 1.0).abs().max_element();
     assert!(off(&recovered) < 0.02 && off(&as_it_is) > 3.0 * off(&recovered), "{recovered:?} {as_it_is:?}");
@@ -108,7 +108,7 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     // Exposed so that all of red is white and nothing else is: the lamp keeps its colour where it may.
     let white = 0.9 * of_channel(0).fold(f32::INFINITY, f32::min);
     let colour = (mean(&film.beauty) / white).with_x(1.0);
-    let least = solve(colour, white, [Sense::AtLeast, Sense::Exactly, Sense::Exactly]);
+    let least = solve(colour, white, [Constraint::AtLeast, Constraint::Exactly, Constraint::Exactly]);
     assert!((least.scale.x - 1.0).abs() < 0.03, "{least:?}");
     assert!(solve(colour, white, EXACTLY).scale.x < 0.9);
 }

@@ -1,0 +1,30 @@
+//! What a segmentation works on.
+
+use super::strokes::Stroke;
+use crate::error::{Result, check_range};
+use crate::image::Image;
+
+/// Maximum number of channels of the features.
+pub const MAX_CHANNELS: usize = 16;
+
+#[derive(Clone, Copy)]
+pub struct Input<'a> {
+    /// 1 to 16 channels of the photo's size; finite everywhere.
+    pub features: &'a Image,
+    pub strokes: &'a [Stroke],
+    /// Where to look (1) and where not (0): the plane's mask in the second phase. Outside it the confidence is 0,
+    /// but for lamps with a stroke. Strokes outside it still count as examples.
+    pub region: Option<&'a Image>,
+}
+
+impl Input<'_> {
+    /// Checks that the images fit each other.
+    pub fn check(&self) -> Result<()> {
+        check_range("the number of feature channels", self.features.channels, 1, MAX_CHANNELS)?;
+        if let Some(region) = self.region {
+            self.features.check_same_size("features", region, "region")?;
+            check_range("the number of channels of region", region.channels, 1, 1)?;
+        }
+        Ok(())
+    }
+}
