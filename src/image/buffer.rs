@@ -34,8 +34,11 @@ pub fn try_with_capacity<T>(len: usize) -> Result<Vec<T>> {
 
 /// Collects an iterator, or returns an error if memory is short.
 pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
-    let items = items.into_iter();
-    let mut data = try_with_capacity(items.size_hint().0)?;
+    let mut items = items.into_iter();
+    let promised = items.size_hint().0;
+    let mut data = try_with_capacity(promised)?;
+    // These fit without an allocation, so that a loop may add several at a time.
+    data.extend(items.by_ref().take(promised));
     for item in items {
         try_push(&mut data, item)?;
     }

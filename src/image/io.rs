@@ -12,7 +12,7 @@ use crate::image::colour::linear_to_srgb;
 use crate::image::file_colour::{Conversion, FileColour, Space};
 use crate::image::format::Format;
 use crate::image::photo::{self, Orientation, PhotoMetadata};
-use crate::image::{Image, inks, memory, openexr, radiance, raster, tiff, try_collect};
+use crate::image::{Image, inks, memory, openexr, radiance, raster, tiff, try_with_capacity};
 use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
@@ -157,7 +157,10 @@ fn state_srgb(png: Vec<u8>) -> Result<Vec<u8>> {
     const CHUNK: [u8; 13] = *b"\0\0\0\x01sRGB\x01\xd9\xc9\x2c\x7f";
     // Insert it after the signature and the header.
     let (head, pixels) = png.split_at(8 + 25);
-    try_collect([head, &CHUNK, pixels].into_iter().flatten().copied())
+    let parts = [head, &CHUNK, pixels];
+    let mut out = try_with_capacity(parts.iter().map(|part| part.len()).sum())?;
+    parts.iter().for_each(|part| out.extend_from_slice(part));
+    Ok(out)
 }
 
 #[cfg(test)]
