@@ -105,7 +105,7 @@ impl Scene {
     }
 
     /// A warning if the extent suggests a unit other than the metre: the first of height, width and smallness.
-    fn implausible_size(&self) -> Option<Warning> {
+    pub fn implausible_size(&self) -> Option<Warning> {
         let (low, high) = self.bounds()?;
         let extent = (high - low).as_dvec3();
         let (height, width) = (extent.y, extent.x.max(extent.z));

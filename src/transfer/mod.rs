@@ -25,7 +25,7 @@ pub use schedule::Fixture;
 pub use schedule_file::{to_csv, to_json};
 
 use crate::emission::{self, Emission};
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::features::{self, DepthKind, Features};
 use crate::image::Image;
 use crate::job::Job;
@@ -234,6 +234,15 @@ impl Transfer {
             Stage::Relight => self.relight(job),
             Stage::Render => self.render(job, publish),
         }
-        .map_err(|e| e.context(format_args!("stage {stage:?}")))
+        .map_err(|e| self.with_likely_unit(stage, e).context(format_args!("stage {stage:?}")))
+    }
+
+    /// An error of a stage that works on a scene of implausible size names that size too: it is the likely cause.
+    fn with_likely_unit(&self, stage: Stage, error: Error) -> Error {
+        let is_cause = stage >= Stage::Emission && error.kind != ErrorKind::Cancelled;
+        match self.input.scene.as_ref().filter(|_| is_cause).and_then(|scene| scene.implausible_size()) {
+            Some(warning) => Error { message: format!("{}; {}", error.message, warning.message), ..error },
+            None => error,
+        }
     }
 }

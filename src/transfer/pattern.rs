@@ -24,6 +24,13 @@ pub enum Scale {
 /// Share of the box around a lamp from which it is a rectangle: half way from a disc's. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
+/// Number of times that a surface may be as long as the plane in the photo where the texels cannot show the pattern of the
+/// plane: a hall of 600 m beside 6 m of a ceiling. [convention]
+const MAX_REPEATS: f64 = 100.0;
+
+/// Number of texels along the plane in the photo from which its pattern shows. [convention]: two lamps with a gap each.
+const MIN_SHOWN_TEXELS: f64 = 4.0;
+
 /// How the pattern lies on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
@@ -113,7 +120,13 @@ impl Pattern {
     }
 
     /// Texels of the given size, or as fine as unwarped pixels, but no more than `max_texels` along the longer side.
-    pub(super) fn texel_grid(&self, surface: &Surface, pixel: f64, max_texels: usize) -> Result<TexelGrid> {
+    /// The unwarped photo is `pixels` pixels long, each of `pixel` metres.
+    pub(super) fn texel_grid(
+        &self,
+        surface: &Surface,
+        (pixels, pixel): (usize, f64),
+        max_texels: usize,
+    ) -> Result<TexelGrid> {
         let size = surface.size.as_dvec2();
         let least = size.max_element() / max_texels as f64;
         if self.texel_size > 0.0 && self.texel_size < least * (1.0 - 1e-9) {
@@ -124,13 +137,15 @@ impl Pattern {
             )));
         }
         let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
-        // The synthesis has limits, whose message would not tell the user what is wrong.
-        if !emission::SCALES.contains(&(texel / pixel)) {
+        // The synthesis has limits, whose message would not tell the user what is wrong, and takes minutes for a pattern that
+        // no texel can show.
+        let (surface_length, shown) = (size.max_element(), pixels as f64 * pixel);
+        let is_lost = surface_length > MAX_REPEATS * shown && texel * MIN_SHOWN_TEXELS > shown;
+        if is_lost || !emission::SCALES.contains(&(texel / pixel)) {
             return Err(Error::argument(format!(
-                "the surface is {} m long and a pixel of the unwarped photo {pixel:.3e} m, so that a texel of {texel:.3e} m \
-                 does not fit: check the unit of the scene (luxfer_scene_load_params.unit), plane_distance and the settings of \
-                 the pattern",
-                size.max_element()
+                "the surface is {surface_length} m long and the plane in the photo {shown:.3e} m, so that texels of \
+                 {texel:.3e} m cannot show its pattern: check the unit of the scene (luxfer_scene_load_params.unit), \
+                 plane_distance and the settings of the pattern, or raise max_texels"
             )));
         }
         let count = |length: f64| ((length / texel).round() as usize).clamp(1, max_texels);
@@ -161,17 +176,21 @@ mod tests {
 
     #[test]
     fn a_scene_in_another_unit_is_named_as_the_cause() {
-        // 8 m in millimetres, with pixels of 2 mm.
-        let error =
-            Pattern::default().texel_grid(&surface(Vec2::new(8000.0, 6000.0)), 0.002, 2048).map(|_| ()).unwrap_err();
-        assert!(error.message.contains("8000 m long") && error.message.contains("unit of the scene"), "{error}");
-        assert!(Pattern::default().texel_grid(&surface(Vec2::new(8.0, 6.0)), 0.002, 2048).is_ok());
+        // 8 m in millimetres, with pixels of 2 mm, and with pixels so large that the synthesis could scale them.
+        for pixel in [0.002, 0.02] {
+            let grid = |size, most| Pattern::default().texel_grid(&surface(size), (500, pixel), most).map(|_| ());
+            let error = grid(Vec2::new(8000.0, 6000.0), 2048).unwrap_err();
+            assert!(error.message.contains("8000 m long") && error.message.contains("unit of the scene"), "{error}");
+            assert_eq!(grid(Vec2::new(8.0, 6.0), 2048), Ok(()));
+            // A coarse texture of a usual room is one.
+            assert_eq!(grid(Vec2::new(8.0, 6.0), 8), Ok(()));
+        }
     }
 
     #[test]
     fn lamps_keep_their_size_in_metres() {
         // A pixel is 2 cm: 300 × 150 texels of it, or 100 × 50 of 6 cm, each three pixels wide.
-        let grid = |size, pixel, most| Pattern::default().texel_grid(&surface(size), pixel, most).unwrap();
+        let grid = |size, pixel, most| Pattern::default().texel_grid(&surface(size), (500, pixel), most).unwrap();
         let fine = grid(Vec2::new(6.0, 3.0), 0.02, 2048);
         assert_eq!((fine.width, fine.height), (300, 150));
         assert!((fine.scale - 1.0).abs() < 1e-6 && (fine.density.x - 50.0).abs() < 1e-6);
@@ -185,10 +204,10 @@ mod tests {
     #[test]
     fn texels_may_be_given_a_size_within_their_number() {
         let pattern = Pattern { texel_size: 0.05, ..Pattern::default() };
-        let grid = pattern.texel_grid(&surface(Vec2::new(6.0, 3.0)), 0.02, 2048).unwrap();
+        let grid = pattern.texel_grid(&surface(Vec2::new(6.0, 3.0)), (500, 0.02), 2048).unwrap();
         assert_eq!((grid.width, grid.height), (120, 60));
         assert!((grid.scale - 2.5).abs() < 1e-6);
-        let error = pattern.texel_grid(&surface(Vec2::new(6.0, 3.0)), 0.02, 100).err().unwrap();
+        let error = pattern.texel_grid(&surface(Vec2::new(6.0, 3.0)), (500, 0.02), 100).err().unwrap();
         assert!(error.message.contains("texel_size is 0.05") && error.message.contains("0.06"), "{}", error.message);
     }
 

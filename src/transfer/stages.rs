@@ -196,7 +196,7 @@ impl Transfer {
         let at = (unwarped.pixel_size, self.params.plane_distance);
         let exemplar = (&input, &self.params.emission);
         let Sizing { pixel, distance, measured } = pattern.sizing(at, exemplar, surface, job.part(0.1, 0.15))?;
-        let grid = pattern.texel_grid(surface, pixel, self.params.max_texels)?;
+        let grid = pattern.texel_grid(surface, (width.max(height), pixel), self.params.max_texels)?;
         let params = emission::Params {
             width: grid.width,
             height: grid.height,

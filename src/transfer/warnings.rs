@@ -36,6 +36,9 @@ impl Results {
         if let Some(emission) = &self.emission {
             add(Stage::Emission, emission.warnings());
         }
+        if let Some(lit) = &self.unsolved {
+            add(Stage::Emission, lit.scene.implausible_size().into_iter().collect());
+        }
         if let Some(solution) = &self.solution {
             add(Stage::Relight, solution.warnings());
         }

@@ -140,7 +140,7 @@ def jobs() -> Scenario:
     for work in ("work", "fail"):
         job = s.make("job_start", s.context, ["callback", work], None)
         s.call("job_wait", job, 5000, ["callback", "go"], None)
-        s.release(job)
+        s.finish(job)
     for progress in ("go", "cancel", "later", "again"):
         job = s.make("render_start", render, struct("render_params", width=64, height=48, samples=4 if progress == "go" else 100_000))
         s.call("job_get_progress", job, ROOM, ROOM)
