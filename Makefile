@@ -18,7 +18,7 @@ VERSION := $(shell sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
 # What the SONAME ends in, as build.rs has it: before 1.0 libraries of one minor version are compatible.
 ABI     := $(shell echo $(VERSION) | sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/')
 SONAME  := $(PROFILE)/libluxfer.so.$(ABI)
-PACKAGES := cmake g++ clang binutils libopencv-dev libembree-dev libtbb-dev python3-venv pkg-config valgrind
+PACKAGES := cmake g++ clang binutils abigail-tools libopencv-dev libembree-dev libtbb-dev python3-venv pkg-config valgrind
 
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
