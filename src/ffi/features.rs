@@ -1,9 +1,9 @@
 //! Features
 //!
 //! Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
-//! position x, y, z and normal x, y, z. The depth is a depth map of the caller, or that of a network in an ONNX file of
-//! the caller, or that of a box-shaped room fitted to the lines of a luxfer_rectify and to strokes on one of its
-//! planes, or a neutral guess.
+//! position x, y, z and normal x, y, z. The depth comes from one of four sources: a depth map that the caller
+//! supplies; a network in an ONNX file that the caller supplies; a box-shaped room that is fitted to the lines found by
+//! a luxfer_rectify and to strokes on one of the room's planes; or a fixed default that does not depend on the photo.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -290,10 +290,11 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
-/// Sets strokes that guide the fit of a room to lines (luxfer_features_set_view); other depths ignore them. The fit
-/// prefers boxes with one face, such as the ceiling that carries the lights, that has all positive strokes for
-/// LUXFER_PHASE_PLANE and all positive strokes on lights, and no negative stroke for LUXFER_PHASE_PLANE. The stage
-/// copies the strokes, which replace earlier strokes; NULL removes them. Any thread.
+/// Sets strokes that guide the fit of a room to lines (luxfer_features_set_view); they have no effect if the depth
+/// comes from another source. The fit prefers boxes that have a face, such as the ceiling with the lights, with these
+/// two properties: it contains all positive strokes, those for LUXFER_PHASE_PLANE as well as those on lights; and it
+/// contains no negative stroke for LUXFER_PHASE_PLANE. The stage copies the strokes, which replace earlier strokes;
+/// NULL removes them. Any thread.
 /// LUXFER_INVALID_ARGUMENT if they are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(

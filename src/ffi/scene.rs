@@ -392,10 +392,10 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 }
 
 /// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
-/// luxfer_scene_find_surface finds by name. The surface becomes a separate mesh, index *mesh, with a copy of its
-/// material, index *material, that emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. mesh and material
-/// may be NULL. Any thread.
-/// As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// luxfer_scene_find_surface finds for this name. The surface becomes a separate mesh with a copy of its material,
+/// which emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the
+/// two; mesh and material may be NULL. Any thread.
+/// Errors: those of luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_place_emission(
     scene: *mut luxfer_scene,

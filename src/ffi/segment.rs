@@ -195,9 +195,9 @@ pub unsafe extern "C" fn luxfer_segment_set_region(
     })
 }
 
-/// Sets the strokes for phase, a LUXFER_PHASE_ value, of this mask: the stage copies them. They replace earlier
-/// strokes; strokes may be NULL: no strokes. Any thread.
-/// LUXFER_INVALID_ARGUMENT if they are for images of another size than the features.
+/// Sets the strokes from which this mask is made: those in strokes that are for phase, a LUXFER_PHASE_ value. The
+/// stage copies them, and they replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
+/// LUXFER_INVALID_ARGUMENT if strokes is for images of another size than the features.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_strokes(
     segment: *mut luxfer_segment,

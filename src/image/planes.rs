@@ -2,7 +2,8 @@
 
 use glam::{Mat4, Vec4};
 
-/// Splits interleaved pixels into planes, one per channel, each with room for `N` pixels or more.
+/// Splits interleaved pixels into planes, one per channel. `N` is the capacity of a plane: there may be fewer pixels,
+/// but not more.
 #[inline(always)]
 pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     let (channels, count) = (planes.len(), pixels.len() / planes.len());

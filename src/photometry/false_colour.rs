@@ -160,7 +160,9 @@ impl Range {
         share.clamp(0.0, 1.0)
     }
 
-    /// At most `count` labelled values: 1, 2 and 5 times powers of ten.
+    /// The values at which the scale is labelled. Linear: multiples of a step that is 1, 2 or 5 times a power of ten,
+    /// at most `count + 1` of them. Logarithmic: at most `count` values, namely 1, 2 and 5 times the powers of ten, or
+    /// the powers of ten alone, or every second or fourth of these.
     fn ticks(&self, count: usize) -> Vec<f64> {
         let nice = |exponent: i32, digit: f64| digit * 10f64.powi(exponent);
         let exponents =

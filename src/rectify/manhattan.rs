@@ -183,7 +183,7 @@ fn similar(a: &Triplet, b: &Triplet) -> bool {
     (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < 0.1
 }
 
-/// A camera that is known roughly, moved to agree with its lines.
+/// Refines the axes and the focal length of a roughly known camera until its vanishing points agree with the lines.
 pub fn polished(lines: &[WeightedLine], axes: DMat3, focal: f64) -> Triplet {
     refine_jointly(lines, Triplet { axes, focal, score: 0.0 }, None)
 }

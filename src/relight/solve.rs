@@ -72,8 +72,9 @@ pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3
     })
 }
 
-/// Adjusts channels with limits: they get the mean scale of the exact channels, which preserves the colour of the
-/// lamps, unless that violates the limit. Without exact channels, all stay at their limits.
+/// Adjusts the channels whose target is only a lower or an upper limit: they take the mean scale of the channels whose
+/// exact target was met, which preserves the colour of the lamps, unless that scale violates the limit. If no exact
+/// target was met, each of them keeps the scale that just reaches its limit.
 fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
     // A lower limit is met if other light alone exceeds it.
     for (answer, _) in answers.iter_mut().zip(constraint).filter(|(_, constraint)| *constraint == Constraint::AtLeast) {

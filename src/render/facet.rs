@@ -24,8 +24,9 @@ pub struct Facet {
 
 /// Relative rounding error of an interpolated point: sixteen errors of 2^-24 of its largest coordinate. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
-/// Largest coordinate that counts for the offset of a free point, in metres: it clears surfaces of a building, and
-/// must not clear the walls themselves where a scene is as large as a country. [convention]
+/// Largest extent of the scene, in metres, that counts for the offset of a free point, which belongs to no triangle but
+/// may happen to lie in a surface. The offset must move it clear of such a surface in a building, yet must not move it
+/// through a wall in a scene as large as a country. [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The detail of a scene is far from its other parts beyond this multiple of its own size. [convention]
 const FAR: f64 = 32.0;

@@ -85,7 +85,8 @@ impl Rating {
 /// Range of solid angles in steradian for which CIE 117 is valid. [convention]
 const MIN_SOLID_ANGLE: f64 = 3e-4;
 const MAX_SOLID_ANGLE: f64 = 0.1;
-/// Smallest cosine of a line of sight with the horizontal plane. [convention]: the position index needs an upright eye.
+/// Smallest horizontal component of a unit line of sight. Steeper ones are refused: the position index needs to know
+/// which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
 /// Smallest share of its largest face as which an opening is seen, below which it is edge-on. [rounding]
 const EDGE_ON: f64 = 1e-6;

@@ -249,8 +249,8 @@ impl World {
         self.any_see_through
     }
 
-    /// Whether the segment between the ends of a ray is free of surfaces, transparent ones included. The triangles of
-    /// the two ends do not count.
+    /// Whether no surface lies between the ends of a ray. Transparent surfaces count; points whose opacity is 0 and the
+    /// triangles of the two ends do not.
     #[inline]
     pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
         let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;

@@ -20,7 +20,8 @@ pub struct Spread<'a> {
     covariance: Vec<f64>,
 }
 
-/// `(x - centre)ᵀ A (x - centre)`: the squared distance from what a class covers.
+/// An ellipsoid around nearly all samples of a class: `(x - centre)ᵀ A (x - centre)` is at most 1 inside, and grows
+/// with the squared distance from the centre.
 pub struct Ellipsoid {
     pub centre: Vec<f64>,
     /// `A`, row by row.

@@ -37,7 +37,7 @@ pub enum Finder {
 pub struct Input<'a> {
     /// The artwork A′ in linear colour, aligned with the source side of the guides; 1, 3 or 4 channels.
     pub artwork: &'a Image,
-    /// Pairs of A and B; at least one.
+    /// The guides, each a pair of images: one aligned with the artwork (A), one with the target (B). At least one.
     pub guides: &'a [Guide<'a>],
     /// One channel; patches are taken only from pixels above 0.5. If absent, from everywhere.
     pub source_mask: Option<&'a Image>,

@@ -31,7 +31,7 @@ pub(super) struct Target {
 
 /// Halo of a lamp that glare brightens, as a share of the photo's longer side.
 const HALO: f32 = 0.01;
-/// Photos that are brighter than this somewhere have no white that they are clipped at.
+/// If any value of a photo exceeds this, the photo goes beyond white (1), so it is not clipped at white.
 const WHITE: f32 = 1.001;
 /// Share of the pixels from which on a channel that is not known is asked for as a least.
 const MOSTLY: f64 = 0.5;

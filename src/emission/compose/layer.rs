@@ -263,7 +263,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// The lamps that move as pieces.
+    /// Places the lamps that are copied into the texture whole, not assembled from patches.
     fn place_lamps(
         &self,
         exemplar: &Exemplar,

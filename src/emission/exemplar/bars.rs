@@ -69,7 +69,8 @@ pub struct Lines<'a> {
     across: usize,
     along: usize,
     widest: usize,
-    /// Share that each pixel lacks of the luminance of the light on both sides of it; NaN where one side has none.
+    /// By what share each pixel is darker than the light beside it: of the brightest lit pixels nearby on either side,
+    /// the darker one counts. NaN where a side has no light.
     depth: Vec<f32>,
 }
 

@@ -53,7 +53,7 @@ impl Choice {
         self.score - self.runner_up_score
     }
 
-    /// The choice of a reading that has no rival.
+    /// The choice when a law was compared with no other: no score, and the law itself as the runner-up, with score 0.
     pub fn only(continuation: Continuation) -> Self {
         Self { score: f64::NAN, runner_up: continuation, runner_up_score: 0.0 }
     }

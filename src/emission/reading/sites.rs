@@ -31,7 +31,7 @@ pub struct Site {
     pub at: DVec2,
     /// Its lamps, those that the photo shows best first.
     pub lamps: Vec<Evidence>,
-    /// Photo pixels of the lamps.
+    /// Total area of the site's lamps, in photo pixels.
     pub shown: f64,
     /// Photo pixels of lamps at sites in full view that are marked as none: that shine, and that do not.
     pub unmarked: f64,
@@ -109,8 +109,8 @@ impl Sites {
         self.basis[0] * cells.x + if self.is_row { DVec2::ZERO } else { self.basis[1] * cells.y }
     }
 
-    /// Places a site at the mean of its lamps, weighed by their photo pixels, and finds where it is in view without
-    /// one.
+    /// Moves a site to the mean position of its lamps, weighted by their photo pixels, and measures the places in full
+    /// view where the lattice predicts a lamp of this site but none is marked.
     fn weigh(&mut self, k: usize, exemplar: &Exemplar) {
         let Site { lamps, .. } = &self.list[k];
         let first = lamps[0];

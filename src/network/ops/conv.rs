@@ -175,7 +175,7 @@ impl Padded {
     }
 }
 
-/// The input channels of a group, from the first on.
+/// The input channels of one group; `values` begins with the first of them.
 struct Planes<'a> {
     values: &'a [f32],
     height: usize,

@@ -35,7 +35,7 @@ pub struct Sums {
     grid: Grid,
     /// Numbers per pixel: radiance, then layers.
     width: usize,
-    /// Pixel after pixel, in the order of tiles.
+    /// The sums of all pixels, `width` numbers for each; the pixels are ordered tile by tile.
     numbers: Vec<f64>,
     /// Number of paths dropped because their radiance was not finite.
     discarded: u64,
@@ -66,7 +66,8 @@ impl Sums {
                 roulette_weight: prepass.weight([corner[0] + left, corner[1] + top]),
             };
             let mut tracer = BlockTracer::new(layers.as_ref());
-            // Drop the layers of block neighbours in other parts; only their secondary vertices are needed.
+            // The paths of a block share secondary vertices, so its pixels outside this part are traced too. Their
+            // layers go into this buffer, which is never read.
             let mut others_of_neighbours = vec![0.0; *width - LIGHT];
             for replication in 0..REPLICATIONS {
                 for block in blocks(replication) {

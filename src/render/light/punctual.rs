@@ -83,8 +83,8 @@ impl Punctual {
             PunctualLight::Directional { .. } => return None,
             PunctualLight::Luminaire { position, axis, colour, distribution, .. } => {
                 let luminaire = &*distributions[distribution];
-                // Assume full intensity up to the widest angle of the distribution, and slightly beyond it against
-                // rounding.
+                // Assume full intensity up to the widest angle at which the luminaire emits, plus a margin for
+                // rounding. Bounds have full intensity up to 90° less than the cone angle, so 90° are added.
                 let cone_angle = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
                 let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
                 Bounds::of_cone(position, axis, cone_angle, peak * mean_channel(colour.max(Vec3::ZERO)))

@@ -27,7 +27,8 @@ const SEARCH_RADIUS: usize = 8;
 /// Maximum number of leaves in a range processed by one thread.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
-/// Low bits of an area that are replaced by the index difference to the partner.
+/// Mask of the low bits of a union's area, which are overwritten with the XOR of the indices of the two clusters: it
+/// tells the index of the partner.
 const PARTNER_BITS: u32 = 2 * FEW_CLUSTERS as u32 - 1;
 
 /// The tree over all leaves, of which there must be at least one.

@@ -17,7 +17,7 @@ use gltf::json::{self, Index, extensions, material, texture};
 enum Source {
     View(usize),
     Image(usize),
-    /// Made here; the number tells them apart.
+    /// An image that was converted here from specular-glossiness; the number only tells such images apart.
     Converted(usize),
 }
 

@@ -51,7 +51,8 @@ const MIN_WHITE: f32 = 0.01;
 /// How far below the strokes' brightness contours are looked for, as a share of it. [judged on 28 photos]
 const DEPTH: f32 = 0.4;
 
-/// Contrast to its ring, in L*, below which a region is noise on a surface. [judged on 44 photos]
+/// Smallest contrast in L* between a region and the ring of pixels around it; a region with less is noise on a
+/// surface. [judged on 44 photos]
 const MIN_CONTRAST: f64 = 3.0;
 
 /// Expected share of wrong pixels of a lamp with a stroke, and of one without. [judged on 28 photos]

@@ -114,7 +114,7 @@ pub struct Search<'a> {
     pub regions: &'a Regions,
     pub photo: &'a Brightness,
     pub plane: Option<&'a Image>,
-    /// Number of negative pixels of each node.
+    /// Number of pixels under negative strokes in the region of each node.
     pub negatives: &'a [f64],
 }
 
