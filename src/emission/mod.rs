@@ -13,7 +13,8 @@
 //! 5. [`compose`]: the composition of positions, and full detail from the photo; the lamps as a list.
 //! 6. [`agreement`]: how far the texture's statistics are from the exemplar's, and how far by sampling alone.
 //!
-//! A texture that fits inside the exemplar is a part of it, copied.
+//! A texture that fits inside the exemplar is a part of it, copied, unless its lamps have ragged outlines and lie on a
+//! lattice.
 //!
 //! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts
 //! lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); lamps kept off where they have no

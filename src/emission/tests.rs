@@ -272,6 +272,27 @@ fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
 }
 
 #[test]
+fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
+    // Edges in steps of 5 unwarped pixels, a pixel of the photo each, other ones on every lamp.
+    let is_lamp = |x: f64, y: f64| {
+        let (x, y) = (x as usize, y as usize);
+        let step = [0, 2, 4, 1][(x / 50 + 3 * (y / 40) + y / 5) % 4];
+        (14 + step..34 + step).contains(&(x % 50)) && (10..30).contains(&(y % 40))
+    };
+    let exemplar = Design::new(250, 200, is_lamp);
+    let photo = Image::from_fn(50, 40, |_, _| [0.5; 3]).unwrap();
+    let to_photo = Homography(glam::DMat3::from_scale(DVec2::splat(0.2)));
+    let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
+    let params = Params { width: 150, height: 120, ..Params::default() };
+    let result = run(&input, &params, Monitor::default().job()).unwrap();
+    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+    assert!(result.luminaires.len() >= 4, "{:?}", result.luminaires);
+    for lamp in &result.luminaires {
+        assert_eq!(lamp.outline.len(), 4, "{:?}", lamp.outline);
+    }
+}
+
+#[test]
 fn reduced_textures_keep_their_light() {
     let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
     let mean = |e: &Emission| e.texture.data.iter().map(|&v| f64::from(v)).sum::<f64>() / e.texture.data.len() as f64;

@@ -19,6 +19,7 @@ use crate::emission::quilt::patch_map::PatchMap;
 use crate::emission::reading::sites::Sites;
 use crate::emission::reading::{Choice, Reading};
 use crate::error::{Error, Result};
+use crate::geometry::robust::weighted_median;
 use crate::image::Image;
 use crate::job::Job;
 use glam::{DVec2, Vec3};
@@ -150,6 +151,13 @@ impl Layer {
     }
 }
 
+/// Score of a lattice from which a texture shows its lamps rather than the photo, whose outlines are ragged.
+/// [bench photos:tune]
+const SURE: f64 = 0.6;
+
+/// Unwarped pixels that a pixel of the photo covers, from which outlines are ragged. [convention]: steps that show.
+const RAGGED: f64 = 2.0;
+
 /// What a texture is made from.
 struct Source {
     exemplar: Exemplar,
@@ -171,20 +179,38 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
         }
     };
     let stays = params.tileable || params.centred;
-    let window = if stays { None } else { Window::find(&exemplar, params)? };
+    let mut window = if stays { None } else { Window::find(&exemplar, params)? };
     let is_inside = window.as_ref().is_some_and(|w| w.is_shown);
+    // The ragged outlines of lamps that the photo shows coarsely are cleaned where a lattice places the lamps.
+    let may_be_cleaned = params.clean_lamps && params.whole_lamps && input.photo.is_some() && is_ragged(&exemplar);
     let (mut exemplar, (found, regularity, choice)) = match read {
-        _ if is_inside => (exemplar, (Continuation::Copy, 0.0, Choice::only(Continuation::Copy))),
         Some(read) => (exemplar, read),
+        None if is_inside && !may_be_cleaned => (exemplar, (Continuation::Copy, 0.0, Choice::only(Continuation::Copy))),
         None => {
             let reading = Reading::of(exemplar, input, params, job.part(0.15, 0.25))?;
             (reading.exemplar, (reading.continuation, reading.regularity, reading.choice))
         }
     };
+    let is_sure = matches!(found, Continuation::Lattice(_)) && choice.score >= SURE;
+    let (found, regularity, choice) = match window.as_mut().filter(|w| w.is_shown) {
+        Some(window) if may_be_cleaned && is_sure => {
+            window.is_shown = false;
+            (found, regularity, choice)
+        }
+        Some(_) => (Continuation::Copy, 0.0, Choice::only(Continuation::Copy)),
+        None => (found, regularity, choice),
+    };
     if let Continuation::Lattice(basis) = found {
         border_sites::exclude(&mut exemplar, basis)?;
     }
     Ok((window, Source { exemplar, found, regularity, choice }))
+}
+
+/// Whether the pixels of the photo are larger than those of the unwarped photo, at the median of its lamps.
+fn is_ragged(exemplar: &Exemplar) -> bool {
+    let lamps = exemplar.evidence(Role::is_whole);
+    weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
+        .is_some_and(|pixel| pixel >= RAGGED)
 }
 
 impl<'a> Setting<'a> {
