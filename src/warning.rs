@@ -52,7 +52,7 @@ pub enum Code {
     ImplausibleSize = 20,
     /// Scene: its file has a feature that is not rendered.
     NotRendered = 21,
-    /// Mask of the lights: what is painted as light is hardly brighter than what is painted as plane.
+    /// Mask of the lights: pixels painted as light are hardly brighter than pixels painted as plane.
     DimLamps = 22,
     /// Emission: a texture without light would differ less from the photo.
     NoPattern = 23,

@@ -214,9 +214,10 @@ luxfer_status luxfer_init(luxfer_struct_type which,
  * context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
  * (LUXFER_INVALID_ARGUMENT).
  *
- * Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
- * reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was
- * built with an older header works with a newer library: fields that it does not know keep their defaults.
+ * Structs: a function that fills a struct takes the size of the struct; pass sizeof. Such functions are the _init
+ * functions of settings and the functions that get reports. They set struct_size, the first field; leave it as it is.
+ * So a program that was built with an older header works with a newer library: settings that the program does not know
+ * keep their defaults.
  *
  * Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
  * handle in most cases, but not if its memory has been reused.
@@ -251,13 +252,13 @@ typedef struct luxfer_context_params {
     /**
      * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
      * these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
-     * or on as many further threads, which the context starts for the first of them.
+     * or on another set of as many threads, which the context starts when such a call first needs it.
      */
     uint32_t num_threads;
     /**
      * Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
-     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a picture file
-     * takes counts while the file is read. The working memory of jobs and their results do not count.
+     * that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. While a picture file is read, the
+     * memory of its decoder counts too. The working memory of jobs and their results do not count.
      */
     uint64_t memory_budget_mib;
 } luxfer_context_params;
@@ -401,9 +402,10 @@ luxfer_status luxfer_image_create(luxfer_context *context,
  * becomes RGBA, palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any
  * thread.
  * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
- * it is of a known format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of
- * cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G, B nor
- * a single channel), or larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL, raw
+ * data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G,
+ * B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY
+ * beyond the memory budget.
  */
 luxfer_status luxfer_image_load(luxfer_context *context,
                                 const char *path,
@@ -491,9 +493,15 @@ typedef struct luxfer_photo_metadata {
      * brightness keep these tags.
      */
     double white_luminance;
-    /** Lower bound of white_luminance: 0.71 times it, if the camera states its standard output sensitivity instead. */
+    /**
+     * Lower bound of white_luminance: 0.71 times white_luminance, which holds if the ISO speed is a standard output
+     * sensitivity instead.
+     */
     double white_luminance_low;
-    /** Upper bound of white_luminance: one stop above it, if the camera states a recommended exposure index. */
+    /**
+     * Upper bound of white_luminance: one stop above white_luminance, which is assumed for an ISO speed that is a
+     * recommended exposure index.
+     */
     double white_luminance_high;
     /** How the colours of the file were understood. */
     luxfer_file_colour colour;
@@ -516,8 +524,8 @@ typedef struct luxfer_photo_metadata {
 #define LUXFER_FILE_COLOUR_CONVERTED 3
 
 /**
- * A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the inks
- * of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
+ * A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the
+ * inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
  * Export the photo as sRGB.
  */
 #define LUXFER_FILE_COLOUR_UNCONVERTED 4
@@ -538,7 +546,7 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
  *
  * What the user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a drawing
  * or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
- * luxfer_features_set_strokes. A stage copies the strokes; to show it later strokes, set them again.
+ * luxfer_features_set_strokes. A stage copies the strokes; after you have added strokes, hand them to the stage again.
  * ==================================================================================================================== */
 
 /** Strokes for images of one size. See luxfer_strokes_create. */
@@ -604,18 +612,18 @@ luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
  * refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
  * succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
  *
- * Jobs of one context share its threads, so a job may have to wait until another ends; cancelling it then ends it at
- * once. All other calls run at once, whatever the jobs do, also from a progress function.
+ * Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
+ * waiting job at once. All other calls run at once, even while jobs run, and even from a progress function.
  * ==================================================================================================================== */
 
 /** Work in progress. See luxfer_job_wait. */
 typedef struct luxfer_job luxfer_job;
 
 /**
- * Receives the progress of a job: fraction starts at 0 and never falls. Only after success it is exactly 1, once, in
- * the last call. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the function about 50
- * times a second, on the waiting thread and with no lock held, so it may call any luxfer function. It must not throw
- * an exception or leave by longjmp.
+ * Receives the progress of a job: fraction starts at 0 and never falls. It is exactly 1 only once: in the last call,
+ * after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the
+ * function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer function.
+ * It must not throw an exception or leave by longjmp.
  */
 typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
@@ -624,9 +632,9 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
  * progress may be NULL; it receives user. Any thread; several threads may wait for one job.
  *
  * Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
- * request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if the
- * function of the job waits for its own job. In the function of another job (luxfer_job_start), a cancel request to that
- * job also cancels this one.
+ * request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if
+ * the function of the job waits for its own job. If the function of another job (luxfer_job_start) waits for this job,
+ * a cancel request to the other job also cancels this job.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
@@ -656,17 +664,18 @@ luxfer_status luxfer_job_cancel(luxfer_job *job);
  * ==================================================================================================================== */
 
 /**
- * A function of the caller that runs as a job; it receives the pointer given to luxfer_job_start and returns the status
- * with which the job ends. It must not throw an exception or leave by longjmp.
+ * A function of the caller that runs as a job; it receives the pointer given to luxfer_job_start and returns the
+ * status with which the job ends. It must not throw an exception or leave by longjmp.
  */
 typedef int32_t (*luxfer_work_fn)(void *user);
 
 /**
- * Starts a function of the caller, which receives user, as a job on a thread of its own, with 4 MiB of stack. The
- * function may call any function of the library. A cancel request to this job ends the calls that it makes in this
- * context with LUXFER_CANCELLED, between the meshes or pictures of a file, and cancels the jobs that it waits for; the
- * progress of this job is that of these calls and waits, and never falls. If the function returns an error, the message
- * of the job is that of the last call that failed on the job's thread. The caller releases *job. Any thread.
+ * Starts a job that runs a function of the caller, work, on a thread of its own with 4 MiB of stack. work receives
+ * user, and may call any function of the library. A cancel request to this job ends the calls that work makes in this
+ * context with LUXFER_CANCELLED; a call that loads a file ends between two meshes or pictures. The request also
+ * cancels the jobs that work waits for. The progress of this job is the progress of these calls and jobs, and never
+ * falls. If work returns an error, the job gets the message of the last call that failed on its thread. The caller
+ * releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

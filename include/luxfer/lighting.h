@@ -56,7 +56,7 @@ typedef struct luxfer_illuminance_params {
     uint32_t struct_size;
     /** Points along the first edge or texture coordinate, in [1, 65536]; default 32. */
     uint32_t columns;
-    /** Points along the second, in [1, 65536]; default 32. */
+    /** Points along the second edge or texture coordinate, in [1, 65536]; default 32. */
     uint32_t rows;
     /** Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024. */
     uint32_t samples;
@@ -144,9 +144,9 @@ luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
 /* ====================================================================================================================
  * Lamps
  *
- * Solves for the powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and
- * calculation grids that should receive a given light. One set of paths per goal measures its response to all lamps at
- * once, even to thousands.
+ * Finds powers of the lamps of an emission, within bounds, that come nearest to several goals. A goal is a surface or
+ * a calculation grid that should receive a given light. For each goal, one set of paths measures its response to all
+ * lamps at once, even to thousands.
  * ==================================================================================================================== */
 
 /** A solver for the powers of lamps. See luxfer_lamps_create. */
@@ -182,8 +182,8 @@ typedef struct luxfer_lamps_params {
      */
     double regularisation;
     /**
-     * A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise; default
-     * 0.01.
+     * A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], or is within its noise;
+     * default 0.01.
      */
     double tolerance;
     /** Maximum number of paths for each goal, in [1024, 2^30]; default 2^20. */
@@ -222,8 +222,8 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 #define LUXFER_GROUP_BY_Z 4
 
 /**
- * Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
- * luminaires of one distribution.
+ * Lamps of one type form a group: lamps of about equal area; for punctual lights, all points, all spots, and all
+ * luminaires with one distribution.
  */
 #define LUXFER_GROUP_BY_TYPE 5
 
@@ -231,8 +231,8 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
 
 /**
- * Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
- * they have in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
+ * Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission of
+ * each lamp in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
  * luxfer_scene_add_light and luxfer_scene_add_luminaire add them. Removes all goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material.
  */
@@ -283,9 +283,9 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     double weight);
 
 /**
- * Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must
- * be equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL.
- * Any thread.
+ * Makes a goal a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three channels.
+ * The three values of a goal in lux must be equal. Goals are numbered from 0 in the order in which they were added; a
+ * new goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
  * LUXFER_NOT_FOUND if there is no such goal.
  */
 luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
@@ -296,8 +296,9 @@ luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
 
 /**
  * Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
- * count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group the level
- * that is best for the goals, all groups together. Half-widths are computed for powers without steps. Any thread.
+ * count is at most 4096, or 0 for drivers without steps. The solution then gives each group one of these levels,
+ * chosen for all groups together so that the goals are met best. Half-widths are computed for powers without steps.
+ * Any thread.
  * LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
@@ -333,7 +334,7 @@ typedef struct luxfer_lamps_report {
 typedef struct luxfer_lamp {
     /** sizeof(luxfer_lamp), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Index of its group. */
+    /** Index of the group that the lamp belongs to. */
     uint32_t group;
     /** Centre: texture coordinates and 0, or, without a texture, the position in metres. */
     double centre[3];
@@ -364,7 +365,10 @@ typedef struct luxfer_lamps_goal {
     double target_lux;
     /** Illuminance with the powers found, in lux. */
     double achieved_lux;
-    /** Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side. */
+    /**
+     * Half-width of the 95 % confidence interval of achieved_lux, in lux, as if the errors of all channels had one
+     * sign.
+     */
     double half_width_lux;
     /** Illuminance from all other light, in lux. */
     double background_lux;
@@ -487,8 +491,8 @@ typedef struct luxfer_importance_report {
     /** Half-widths of the 95 % confidence intervals of response. */
     double half_width[3];
     /**
-     * Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
-     * cells is about a third of it.
+     * Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
+     * size of the cells is about a third of this change.
      */
     double band_error[3];
 } luxfer_importance_report;
@@ -525,9 +529,9 @@ luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
                                           luxfer_image **image);
 
 /**
- * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps
- * texture coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL
- * for the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
+ * Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps texture
+ * coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for
+ * the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
  */
 luxfer_status luxfer_importance_respond(luxfer_importance *importance,
@@ -617,8 +621,8 @@ typedef struct luxfer_placement {
     /** Half-widths of the 95 % confidence intervals of response. */
     double half_width[3];
     /**
-     * Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
-     * cells is about a third of it.
+     * Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
+     * size of the cells is about a third of this change.
      */
     double band_error[3];
 } luxfer_placement;
@@ -678,8 +682,9 @@ typedef struct luxfer_glare_report {
     double solid_angle;
     /**
      * Number of lights of the rendered scene that shine from points: the image does not show them, and ugr leaves them
-     * out; rate them with luxfer_scene_get_glare. Known for images of luxfer_render_get_image and
-     * luxfer_render_get_layer; 0 for others, whose scene has LUXFER_WARNING_NOT_IN_PICTURE.
+     * out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image and
+     * luxfer_render_get_layer; 0 for other images. The scene of such an image has LUXFER_WARNING_NOT_IN_PICTURE if it
+     * has luminaires.
      */
     uint32_t unseen_lights;
     /** 0. */
@@ -726,8 +731,9 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
 /* ====================================================================================================================
  * Glare of observers
  *
- * The unified glare rating (CIE 117) of observers in a scene, from its luminaires: their intensity over the area of
- * their luminous openings, as seen from the eye.
+ * Computes the unified glare rating (CIE 117) of observers in a scene. The glare sources are its luminaires. The
+ * luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
+ * the eye.
  * ==================================================================================================================== */
 
 /** An eye that looks in a direction. An element of arrays, so this struct never changes. */
@@ -756,16 +762,16 @@ typedef struct luxfer_observer_glare {
     double unrated_lux;
     /** Solid angle of the visible parts of all rated luminaires in view, in steradians. */
     double solid_angle;
-    /** Number of these luminaires. */
+    /** Number of rated luminaires in view. */
     uint32_t sources;
-    /** Number of these whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. */
+    /** Number of these luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. */
     uint32_t outside_range;
 } luxfer_observer_glare;
 
 /**
  * Rates the glare of count observers in a scene. samples is the number of paths per observer for the background, in
- * [16, 16777216]; 4096 suit most rooms. Returns when the work is done, which takes as long as count * samples paths;
- * the first call after a scene is loaded or changed also prepares it for tracing. Any thread.
+ * [16, 16777216]; 4096 suit most rooms. Returns when the work is done; the time is proportional to count * samples.
+ * The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
  * straight up or down, or is inside a luminaire: the message names it. Then no rating is written.
  */
@@ -915,10 +921,10 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    size_t size);
 
 /**
- * Finds the temperature and luminance of the blackbody light that brings a target nearest to a mean radiance. Each
- * array holds three channels: response is the response to a white emission, from luxfer_relight_get_report or
- * luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. size is
- * sizeof *fit. Any thread.
+ * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
+ * a wanted radiance. Each array holds three channels: response is the response to a white emission, from
+ * luxfer_relight_get_report or luxfer_importance_respond; background is the radiance from other lights; target is the
+ * wanted radiance. size is sizeof *fit. Any thread.
  * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,

@@ -31,7 +31,7 @@ typedef struct luxfer_render_params {
     uint32_t width;
     /** Height of the image in pixels, in [1, 65536]; default 720. */
     uint32_t height;
-    /** Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the image. */
+    /** Paths per pixel, in [1, 1048576]; default 64. With a target error: the largest mean over the image. */
     uint32_t samples;
     /**
      * Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they reduce the
@@ -59,8 +59,8 @@ typedef struct luxfer_render_params {
     float preview;
     /**
      * Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where they
-     * reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no target. With
-     * several targets, rendering stops when all are reached.
+     * reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright ones. Default 0: no
+     * target. With several targets, rendering stops when all are reached.
      */
     float relative_error;
 } luxfer_render_params;
@@ -103,8 +103,8 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_BEAUTY 0
 
 /**
- * Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their errors are
- * correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
+ * Variance of the mean radiance of each pixel; 3 channels. Groups of eight pixels share the results of their paths, so
+ * their errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
  */
 #define LUXFER_RENDER_VARIANCE 1
 
@@ -174,12 +174,14 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  *
  * An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye (E),
  * as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at the
- * camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Event types are R T V, scattering modes D G
- * S s (a clear pane is both S and s), lights L O B; . [..] [^..] * + ? {n,m} | ( ) have their usual meaning in regular
- * expressions. A label in quotes is the name of a mesh or of its material; Name#0, Name#1, ... are the patches of its
- * emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... are the scene's punctual lights in
- * their order, environment is the scene's environment. Arnold's built-in names work too: direct, indirect, emission,
- * background, and diffuse, specular, transmission, each alone or with _direct or _indirect.
+ * camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R (reflection), T
+ * (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy), S (mirror or
+ * clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..] [^..] * + ?
+ * {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or of its
+ * material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
+ * light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment. Arnold's
+ * built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
+ * with _direct or _indirect.
  * ==================================================================================================================== */
 
 /** Distance along the viewing direction, in metres; infinite where there is no surface. Layer Depth, channel Z. */

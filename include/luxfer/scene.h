@@ -137,7 +137,7 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
  * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
  * luxfer_scene_find_surface finds for this name. The surface becomes a separate mesh with a copy of its material,
  * which emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the
- * two; mesh and material may be NULL. Any thread.
+ * new mesh and material; mesh and material may be NULL. Any thread.
  * Errors: those of luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */
 luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
@@ -161,9 +161,9 @@ typedef struct luxfer_scene_load_params {
     /** sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init. */
     uint32_t struct_size;
     /**
-     * 1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the default:
-     * this gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices or
-     * addresses on a network.
+     * 1: files outside the folder of the file, which it names by .. or an absolute path, are read; 0, the default:
+     * such a name gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices
+     * or addresses on a network.
      */
     uint32_t allow_external_files;
     /**
@@ -172,9 +172,9 @@ typedef struct luxfer_scene_load_params {
      */
     double unit;
     /**
-     * 0, the default: positions of a scene that lies far from the origin of its file, as on a national grid, are
-     * relative to an origin of the scene's own, which luxfer_scene_get_origin gives; 1: they keep the origin of the
-     * file, and are rounded to floats there.
+     * 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
+     * relative to an origin of its own, which luxfer_scene_get_origin gives; 1: positions stay relative to the origin
+     * of the file, and are rounded to floats there.
      */
     uint32_t keep_origin;
     /** Must be 0. */
@@ -282,7 +282,7 @@ typedef struct luxfer_texture_use {
     uint32_t struct_size;
     /** Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0. */
     uint32_t texture;
-    /** Set of the mesh's texture coordinates that it uses, 0 or 1. */
+    /** The mesh's set of texture coordinates that the material uses for this texture, 0 or 1. */
     uint32_t uv_set;
     /** LUXFER_WRAP_ value along u. */
     luxfer_wrap wrap_u;
@@ -784,8 +784,9 @@ typedef struct luxfer_requirements {
     /** Number of textures that change the scattering, the emission or the normals of surfaces. */
     uint32_t textures;
     /**
-     * Number of bounces that matter: light that is scattered more often is at most the share error, given in the call,
-     * of all light that surfaces scatter. 0 if the albedos give no bound. It informs: no render ends paths there.
+     * Number of bounces that matter: light that is scattered more often is at most a share of all light that surfaces
+     * scatter; the argument error gives this share. 0 if the albedos give no bound. For information only: no rendering
+     * ends paths at this number.
      */
     uint32_t bounces;
     /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */
@@ -913,14 +914,14 @@ luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
  * Candidates for the ceiling
  *
  * The objects and materials of a scene with their area, height and direction, the likeliest ceilings first: for hosts
- * that let the user choose the surface with the lights. luxfer_scene_find_surface and luxfer_transfer_set_target take
- * the names. A list is a copy, which stays as it is when the scene changes.
+ * that let the user choose the surface with the lights. Pass the name of a candidate to luxfer_scene_find_surface or
+ * luxfer_transfer_set_scene. A list is a copy, which stays as it is when the scene changes.
  * ==================================================================================================================== */
 
 /** A list of candidates. See luxfer_scene_get_candidates. */
 typedef struct luxfer_candidates luxfer_candidates;
 
-/** What a candidate is: a LUXFER_CANDIDATE_ value. */
+/** The kind of a candidate: a LUXFER_CANDIDATE_ value. */
 typedef int32_t luxfer_candidate_kind;
 
 /** An object or a material of a scene. */
@@ -931,28 +932,29 @@ typedef struct luxfer_candidate {
     luxfer_candidate_kind kind;
     /** Index of the object's first mesh, or of the material. */
     uint32_t index;
-    /** Number of triangles with an area. */
+    /** Number of triangles whose area is not 0. */
     uint32_t triangles;
     /** Area in m². */
     float area;
     /** Area in m² of the triangles that are inclined by less than 15 degrees, on either side. */
     float level_area;
-    /** Mean height in metres of the triangles of level_area; of all triangles if level_area is 0. */
+    /** Mean height in metres of the triangles that level_area counts; of all triangles if level_area is 0. */
     float height;
     /** Lowest point, in metres. */
     float low;
     /** Highest point, in metres. */
     float high;
-    /** Mean direction of the front sides by area, a unit vector; 0 if they cancel, as for a box. */
+    /** Mean normal of the front sides, weighted by area, as a unit vector; 0 if the normals cancel, as for a box. */
     float normal[3];
     /**
-     * Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan that it
-     * covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts too.
+     * Resemblance to a ceiling, in [0, 1]: the product of level_area / area, of level_area as a share of the floor
+     * area of the scene's bounding box, and of the square of the height as a share of the scene's height. A name such
+     * as "ceiling" raises the score.
      */
     float score;
     /** 0. */
     uint32_t reserved;
-    /** Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates. */
+    /** Name of the candidate, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates. */
     const char *name;
     /** The reason for the score, in English and with its figures. */
     const char *reason;
@@ -965,8 +967,8 @@ typedef struct luxfer_candidate {
 #define LUXFER_CANDIDATE_MATERIAL 1
 
 /**
- * Lists the objects of a scene, and the materials in use, the likeliest ceilings first. It reads each triangle once.
- * The caller releases *candidates. Any thread.
+ * Lists the objects of a scene and the materials in use, the likeliest ceilings first. The call reads each triangle
+ * once. The caller releases *candidates. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
 luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,

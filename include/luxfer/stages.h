@@ -99,8 +99,8 @@ typedef struct luxfer_rectify_params {
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are cut
-     * off.
+     * Largest magnification of the photo, > 0; default 16. Parts of the plane that are so far away that they would be
+     * magnified more are cut off.
      */
     double max_magnification;
     /** Seed of the search; default 1. */
@@ -129,7 +129,7 @@ typedef struct luxfer_rectify_report {
      * infinity.
      */
     double vanishing_points[3][3];
-    /** Standard deviations of their directions in camera space, in radians. */
+    /** Standard deviations of the directions of the vanishing points in camera space, in radians. */
     double vanishing_errors[3];
     /** Number of segments that agree with each vanishing point; 0: derived from the other two. */
     uint32_t vanishing_support[3];
@@ -200,10 +200,10 @@ typedef struct luxfer_rectify_report {
 /** Assumed: 0.85 times the width of the photo. */
 #define LUXFER_FOCAL_ASSUMED 2
 
-/** Mainly from what the photo's file says; see luxfer_image_get_metadata. */
+/** Mainly from the metadata of the photo's file; see luxfer_image_get_metadata. */
 #define LUXFER_FOCAL_FROM_METADATA 3
 
-/** From lamps that are alike, as their plane shows them (lighting transfer only). */
+/** Estimated so that lamps of one kind look alike when their plane is seen straight on (lighting transfer only). */
 #define LUXFER_FOCAL_FROM_LAMPS 4
 
 /** The plane in frontal view, linear RGB. */
@@ -278,7 +278,9 @@ typedef struct luxfer_features luxfer_features;
 /** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
 typedef int32_t luxfer_depth_kind;
 
-/** Normalisation of the photo's colours for a network, which its file does not state: a LUXFER_NORMALISATION_ value. */
+/**
+ * How the photo's colours are normalised for a network, whose file does not state it: a LUXFER_NORMALISATION_ value.
+ */
 typedef int32_t luxfer_normalisation;
 
 /** Settings of the features. Fill them with luxfer_features_params_init. */
@@ -328,7 +330,7 @@ typedef struct luxfer_features_report {
 /** Distance along the ray of each pixel. */
 #define LUXFER_DEPTH_ALONG_RAY 1
 
-/** The ten channels; luxfer_image_read reads some of them. */
+/** The ten channels; luxfer_image_read reads up to four of them at a time. */
 #define LUXFER_FEATURES_CHANNELS 0
 
 /** Confidence of the depth of each pixel, in [0, 1]; 1 channel. */
@@ -397,7 +399,7 @@ luxfer_status luxfer_features_set_network(luxfer_features *features,
 /**
  * Sets the lines and the camera from the latest result of a luxfer_rectify of this photo. rectify may be NULL: no
  * lines. Any thread.
- * LUXFER_NOT_READY if it has no result yet.
+ * LUXFER_NOT_READY if rectify has no result yet.
  */
 luxfer_status luxfer_features_set_view(luxfer_features *features,
                                        luxfer_rectify *rectify);
@@ -474,8 +476,8 @@ typedef struct luxfer_segment_params {
     /** Seed of the samples; default 1. */
     uint64_t seed;
     /**
-     * Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
-     * neighbours as one surface, in [1e-3, 1e6]; default 8.
+     * Difference of the first three channels, in their units (CIELAB units for colour), below which the refinement
+     * treats neighbours as one surface, in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
     /**
@@ -556,8 +558,8 @@ luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
                                         luxfer_image *region);
 
 /**
- * Sets the strokes from which this mask is made: those in strokes that are for phase, a LUXFER_PHASE_ value. The
- * stage copies them, and they replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
+ * Sets the strokes from which this mask is made. The stage copies those strokes that are for phase, a LUXFER_PHASE_
+ * value; they replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
  * LUXFER_INVALID_ARGUMENT if strokes is for images of another size than the features.
  */
 luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
@@ -565,12 +567,13 @@ luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
                                          luxfer_phase phase);
 
 /**
- * Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. With the features of
- * luxfer_features the job proposes a mask if strokes are missing, with LUXFER_WARNING_PROPOSED: the face of the room
- * under the positive strokes, else the ceiling; lamps among the brightest things of the region. The job may end with
- * LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a
- * feature is not finite or a setting is out of range.
+ * Starts a job that segments. If strokes are missing and the features come from luxfer_features, the job proposes a
+ * mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive strokes, or
+ * else the ceiling; for lamps it proposes lamps among the brightest things of the region. params may be NULL for the
+ * defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
+ * if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not
+ * finite or a setting is out of range.
  */
 luxfer_status luxfer_segment_start(luxfer_segment *segment,
                                    const luxfer_segment_params *params,
@@ -598,28 +601,31 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment,
  * How an emissive texture continues the lights of its exemplar.
  * ==================================================================================================================== */
 
-/** How the lights of an exemplar go on: a LUXFER_LAW_ value. */
+/** The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value. */
 typedef int32_t luxfer_emission_law;
 
-/** The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better. */
+/**
+ * The law that predicts the lamps of the photo best: the law of LUXFER_LAW_CORRELATION, unless another law is clearly
+ * better.
+ */
 #define LUXFER_LAW_BEST 0
 
-/** The law that the correlation of the lights shows, by min_regularity. */
+/** The law that follows from the autocorrelation of the lights and from min_regularity. */
 #define LUXFER_LAW_CORRELATION 1
 
-/** A lattice of two periods. */
+/** The lamps form a lattice with two periods. */
 #define LUXFER_LAW_LATTICE 2
 
-/** A row of one period; the extent of the exemplar serves as the other. */
+/** The lamps form a row with one period; the extent of the exemplar serves as the other period. */
 #define LUXFER_LAW_ROW 3
 
 /** The exemplar repeats as a whole. */
 #define LUXFER_LAW_WHOLE 4
 
-/** Patches go anywhere. */
+/** The lights have no period: patches of the exemplar may lie anywhere. */
 #define LUXFER_LAW_FREE 5
 
-/** Of results only: the texture is a part of the exemplar, or was given. */
+/** In results only: the texture is a part of the exemplar, or the caller gave it. */
 #define LUXFER_LAW_COPY 6
 
 /* ====================================================================================================================
@@ -687,17 +693,21 @@ typedef struct luxfer_emission_params {
     uint32_t candidates;
     /** Must be 0. */
     uint32_t reserved;
-    /** How the lights go on: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default LUXFER_LAW_BEST. */
+    /**
+     * The law by which the texture continues the lights: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default
+     * LUXFER_LAW_BEST.
+     */
     luxfer_emission_law law;
     /**
-     * With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and lie at
-     * the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the outline of the
-     * mask.
+     * 1, the default: all lamps of a kind get one size and an outline that is exact at any resolution, and lie exactly
+     * at the sites of their lattice; this needs the photo and whole_lamps. 0: each lamp is shown with its outline in
+     * the mask.
      */
     uint32_t clean_lamps;
     /**
-     * Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in [1,
-     * 1e6]: what is magnified more counts as not shown. Default 0: all of it is used.
+     * Largest magnification at which parts of the exemplar are used, in [1, 1e6]: the factor in length by which the
+     * photo is magnified at a pixel, relative to the pixel of the exemplar that is magnified least. Parts beyond it
+     * count as not shown. Default 0: all parts are used.
      */
     double max_magnification;
 } luxfer_emission_params;
@@ -728,7 +738,7 @@ typedef struct luxfer_emission_report {
     double regularity;
     /**
      * Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
-     * large part of the lamps. Without a whole lamp the texture shows the cut ones.
+     * large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border cuts.
      */
     uint32_t exemplar_lamps;
     /**
@@ -738,18 +748,19 @@ typedef struct luxfer_emission_report {
      * exemplars, and for a plan.
      */
     float sampling_error;
-    /** How the lights go on: a LUXFER_LAW_ value. */
+    /** The law by which the texture continues the lights: a LUXFER_LAW_ value. */
     luxfer_emission_law law;
-    /** The law that would have been next best: a LUXFER_LAW_ value. */
+    /** The best of the other laws: a LUXFER_LAW_ value. */
     luxfer_emission_law runner_up;
     /**
-     * How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
-     * NaN where too few of the lights are whole lamps to tell.
+     * How well the law predicts each lamp of the photo from the other lamps, in [0, 1]; lamps weigh in proportion to
+     * their pixels in the photo. NaN if laws were not compared, for example because too few of the lights are whole
+     * lamps.
      */
     double law_score;
     /**
-     * By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
-     * slightly better.
+     * law_score minus the score of runner_up. Negative if the law was kept although another law scores slightly
+     * better.
      */
     double margin;
 } luxfer_emission_report;
@@ -768,7 +779,7 @@ typedef struct luxfer_luminaire {
     double orientation;
     /** Area in texels; texels at the edge count with the share that the lamp covers. */
     double area;
-    /** Share of the luminous flux of the whole texture, in [0, 1]. */
+    /** Share of the luminous flux of all lamps of the texture, in [0, 1]. */
     double flux_share;
     /** Mean linear colour, relative to the photo's white. */
     float colour[3];
@@ -790,7 +801,7 @@ typedef struct luxfer_luminaire {
  */
 #define LUXFER_EMISSION_EXEMPLAR_METADATA 2
 
-/** Metadata of the result, with these channels. */
+/** Metadata of the result, with the channels of LUXFER_EMISSION_EXEMPLAR_METADATA. */
 #define LUXFER_EMISSION_METADATA 3
 
 /** Creates the stage. The caller releases *emission. Any thread. */
@@ -798,8 +809,8 @@ luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **
 
 /**
  * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
- * (1 channel, in [0, 1]) and the mask where both are valid (1 channel, 1 or 0). luxfer_emission_add_style adds more
- * exemplars. Any thread.
+ * (1 channel, in [0, 1]) and the mask of the pixels where both images are valid (1 channel, 1 or 0).
+ * luxfer_emission_add_style adds more exemplars. Any thread.
  */
 luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *unwarped,
@@ -842,8 +853,8 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          size_t size);
 
 /**
- * Describes a luminaire of the texture. A plan has no texels yet, so its luminaires are described as the exemplar
- * shows them, cut at the edges of the texture; only lights that cross their whole exemplar are described as in the
+ * Describes a luminaire of the texture. A plan has no texels yet, so it describes each luminaire as the exemplar shows
+ * it, cut at the edges of the texture; only lights that cross their whole exemplar are described as they are in the
  * texture. size is sizeof *luminaire. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
@@ -855,11 +866,11 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
 /**
  * Gets a corner of a luminaire's outline, in texels. Any thread.
  *
- * The outline is where the lamp would cover half of a texel. If the confidence of the lights has values between 0 and
- * 1, it is accurate to a quarter of a texel (or of an unwarped pixel, if that is larger), at corners of the lamp to
- * 0.71. It follows the sides of texels for lamps up to two texels wide, for masks of only 0 and 1, and for lights of a
- * plan that follow its patches. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such
- * luminaire or corner.
+ * The outline runs where the lamp would cover half of a texel. If the confidence of the lights has values between 0
+ * and 1, the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels
+ * are larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead for
+ * lamps up to two texels wide, for masks of only 0 and 1, and for lights of a plan that follow its patches.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
                                          uint32_t index,
@@ -1057,9 +1068,10 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
 luxfer_status luxfer_relight_set_target(luxfer_relight *relight, float red, float green, float blue);
 
 /**
- * Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips
- * should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their
- * target if this respects the limit, else the scale that reaches the limit. Any thread.
+ * Makes the target a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three
+ * channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale
+ * of the channels that should equal their target if this scale respects the limit, else the scale that just reaches
+ * the limit. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
  */
 luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,

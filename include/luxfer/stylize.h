@@ -105,8 +105,8 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
 
 /**
  * Computes the motion between two frames of one scene under a moving camera, for luxfer_stylize_set_motion: for each
- * pixel of this frame, the offset to its position in the frame before, x and y in pixels; NaN where it was not
- * visible. The caller releases *motion. Any thread.
+ * pixel of this frame, the offset to the position of the same point in the frame before, x and y in pixels; NaN where
+ * the frame before does not show the point. The caller releases *motion. Any thread.
  * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
@@ -170,8 +170,8 @@ typedef struct luxfer_stylize_params {
      */
     uint32_t settle;
     /**
-     * Cost of a seam between neighbouring patches in those sweeps, as a share of the mean error, in [0, 100]; default
-     * 0.2.
+     * Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0, 100];
+     * default 0.2.
      */
     float seam;
     /** LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED. */
@@ -284,7 +284,7 @@ typedef int32_t luxfer_stylize_preset;
 #define LUXFER_STYLIZE_VOTE_MOST 3
 
 /**
- * Fills *params with a preset instead: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
+ * Fills *params with a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
  * LUXFER_INVALID_ARGUMENT for another value.
  */
 luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
@@ -409,7 +409,7 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
 
 /**
  * Starts a job that updates the picture after a change of the artwork. artwork has the size and channels of the first
- * artwork, and new paint where the 1-channel image changed is above 0.5; the pixels of the picture that were painted
+ * artwork. changed (1 channel) is above 0.5 where artwork has new paint; the pixels of the picture that were painted
  * from there are painted again. Takes a fraction of the time of luxfer_stylize_start. The caller releases *job. Any
  * thread.
  * LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end with
@@ -421,11 +421,12 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
                                     luxfer_job **job);
 
 /**
- * Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, its size)
- * is above 0.5 where it is finished; the sources of the guides show its scene, and their targets are NULL. It is a
- * shorthand for painted as the source mask, its inverse as the target mask, and the artwork as known. Any thread.
- * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have its size or has
- * more than 1 channel.
+ * Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, the
+ * artwork's size) is above 0.5 where the picture is finished; the sources of the guides show the scene of the picture,
+ * and their targets are NULL. The call is a shorthand: it sets painted as the source mask, its inverse as the target
+ * mask, and the artwork as known. Any thread.
+ * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
+ * size or has more than 1 channel.
  */
 luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
                                          luxfer_image *painted);
@@ -607,8 +608,8 @@ typedef struct luxfer_sheet_report {
     /** Number of marks found, of 10; at least 6 are needed. */
     uint32_t marks;
     /**
-     * Root mean square distance between the marks and their positions by to_photo, in pixels of the photo. More than
-     * one or two pixels mean that the paper is not flat or that the lens distorts.
+     * Root mean square distance in pixels of the photo between the marks and the positions that to_photo gives them.
+     * More than one or two pixels mean that the paper is not flat or that the lens distorts.
      */
     double residual;
     /** Expected alignment error in pixels of the picture. */

@@ -51,8 +51,8 @@ typedef struct luxfer_pattern_params {
     double offset[2];
     /**
      * Minimum distance in metres of lamps from the edge of the surface and from the zones of
-     * luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
-     * default -1, keeps the lamps at the edge of the surface, which cuts them.
+     * luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the
+     * default -1, lamps at the edge of the surface stay, cut by the edge.
      */
     double margin;
 } luxfer_pattern_params;
@@ -63,8 +63,8 @@ static inline luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *pl
 }
 
 /**
- * The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or the
- * estimate from the lamps where that is 0.
+ * The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or if
+ * that is 0, the estimate from the size of the lamps.
  */
 #define LUXFER_PATTERN_DISTANCE 0
 
@@ -114,8 +114,8 @@ typedef struct luxfer_transfer_params {
     double plane_distance;
     /**
      * Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux. The
-     * strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
-     * luxfer_transfer_report.
+     * strength of the lamps is proportional to it. A photo alone does not determine this luminance: see proposed_white
+     * of luxfer_transfer_report.
      */
     float white_luminance;
     /** LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE. */
@@ -245,22 +245,23 @@ luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
 
 /**
  * Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
- * plane, the result of the stage UNWARP by that plane. The lamps do not change this camera. Any thread.
- * LUXFER_NOT_READY if it has no result yet.
+ * plane, the result of the stage UNWARP by that plane. The transfer then keeps this camera, even if its lamps suggest
+ * another one. Any thread.
+ * LUXFER_NOT_READY if rectify has no result yet.
  */
 luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,
                                           luxfer_rectify *rectify);
 
 /**
  * Replaces the result of the stage FEATURES by that of a luxfer_features. Any thread.
- * LUXFER_NOT_READY if it has no result yet.
+ * LUXFER_NOT_READY if features has no result yet.
  */
 luxfer_status luxfer_transfer_use_features(luxfer_transfer *transfer, luxfer_features *features);
 
 /**
  * Replaces the result of the stage PLANE or LIGHTS by that of a luxfer_segment; phase, a LUXFER_PHASE_ value, chooses
  * the stage. Any thread.
- * LUXFER_NOT_READY if it has no result yet.
+ * LUXFER_NOT_READY if segment has no result yet.
  */
 luxfer_status luxfer_transfer_use_segment(luxfer_transfer *transfer,
                                           luxfer_phase phase,
@@ -322,7 +323,10 @@ typedef struct luxfer_transfer_report {
     double lights_error;
     /** Largest expected error of a corner of the unwarped image, in unwarped pixels. */
     double unwarp_error;
-    /** Relative difference between texture and photo in the share of the lit area. */
+    /**
+     * As the field error of luxfer_emission_report: largest relative difference between texture and photo in three
+     * statistics of their lamps.
+     */
     double emission_error;
     /** Largest relative half-width of the solution's 95 % confidence intervals. */
     double relight_error;
@@ -338,23 +342,29 @@ typedef struct luxfer_transfer_report {
     /** 0. */
     uint32_t reserved;
     /**
-     * Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN before the
-     * stage EMISSION has ended, and for a given texture.
+     * Distance in metres of the photo's camera from the plane that corresponds to the size of the pattern on the
+     * surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
      */
     double plane_distance;
     /**
-     * Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.25
-     * for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
+     * Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25 for
+     * lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the distance.
      */
     double plane_distance_error;
     /**
-     * Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file
-     * states, as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
+     * Value proposed for luxfer_transfer_params.white_luminance in cd/m²: the white_luminance of luxfer_photo_metadata
+     * if the photo's file states the exposure, else 159, the luminance of white paper in the 500 lux of an office.
      */
     double proposed_white;
-    /** Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor. */
+    /**
+     * Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for the 100
+     * lux of a corridor.
+     */
     double proposed_white_low;
-    /** Upper bound of proposed_white: by the exposure; else 318, for 1000 lux. */
+    /**
+     * Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318, for 1000
+     * lux.
+     */
     double proposed_white_high;
 } luxfer_transfer_report;
 
@@ -516,13 +526,13 @@ typedef struct luxfer_warning {
     /** LUXFER_WARNING_ value. */
     luxfer_warning_code code;
     /**
-     * The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look
-     * within, PLANE without; of a luxfer_scene it is SCENE.
+     * The stage whose result is in doubt, a LUXFER_STAGE_ value. For a luxfer_segment it is LIGHTS if
+     * luxfer_segment_set_region gave a mask, else PLANE; for a luxfer_scene it is SCENE.
      */
     luxfer_stage stage;
     /** 1 if the warning has a place in the photo, else 0. */
     uint32_t has_place;
-    /** The figure that raised it; each code has its own. */
+    /** The figure that caused the warning; its meaning depends on the code. */
     double severity;
     /** The limit that the figure has passed. */
     double limit;
@@ -538,8 +548,8 @@ typedef struct luxfer_warning {
 } luxfer_warning;
 
 /**
- * The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard
- * deviation.
+ * The vanishing points do not determine the focal length, which was assumed; the severity is the relative standard
+ * deviation of the focal length.
  */
 #define LUXFER_WARNING_FOCAL_ASSUMED 1
 
@@ -556,21 +566,28 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NOT_SQUARE 4
 
 /**
- * The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust,
- * below the limit.
+ * There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity is the
+ * confidence of the fit, below the limit.
  */
 #define LUXFER_WARNING_LAYOUT_UNCERTAIN 5
 
 /**
- * Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the
- * severity is their share of the mask and these regions. The place is the pixel where one more stroke helps most.
+ * Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted lamps; the
+ * severity is the share of these pixels in the mask and these regions. The place is the pixel where one more stroke
+ * helps most.
  */
 #define LUXFER_WARNING_UNSEEN 6
 
-/** Strokes of both classes cover the same pixels; the severity is their number per sample. */
+/**
+ * Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the number of
+ * samples drawn from the strokes.
+ */
 #define LUXFER_WARNING_CONTRADICTORY_STROKES 7
 
-/** Strokes lie outside the photo; the severity is the number of these pixels per sample. */
+/**
+ * Pixels of strokes lie outside the photo; the severity is the number of these pixels, divided by the number of
+ * samples drawn from the strokes.
+ */
 #define LUXFER_WARNING_OFF_IMAGE_STROKES 8
 
 /** A mask is uncertain; the severity is the expected share of wrong pixels. */
@@ -580,19 +597,23 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_EMPTY_MASK 10
 
 /**
- * A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one of them.
+ * A mask contradicts the strokes that it was made from; the severity is the share of the painted pixels that it
+ * contradicts. The place is one of these pixels.
  */
 #define LUXFER_WARNING_MISSED_STROKES 11
 
-/** Lights cover much of their plane; the severity is its share. */
+/** Lights cover much of their plane; the severity is the share of the plane that they cover. */
 #define LUXFER_WARNING_ALMOST_ALL_LIT 12
 
-/** Much of the unwarped plane is magnified; the severity is its share. The place is the one that is magnified most. */
+/**
+ * Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
+ * strongly magnified. The place is the point with the largest magnification.
+ */
 #define LUXFER_WARNING_MAGNIFIED 13
 
 /**
- * The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the
- * limit. The place is the flattest.
+ * The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle between
+ * the plane and the viewing ray, below the limit. The place is the point with the smallest angle.
  */
 #define LUXFER_WARNING_PLANE_NEAR_HORIZON 14
 
@@ -608,7 +629,9 @@ typedef struct luxfer_warning {
 /** Colour channels do not meet their target; the severity is their number. */
 #define LUXFER_WARNING_UNREACHABLE 18
 
-/** The photo clips the target, which is a lower bound; the severity is the number of these channels. */
+/**
+ * The photo clips channels of the target, which are then lower bounds; the severity is the number of these channels.
+ */
 #define LUXFER_WARNING_TARGET_CLIPPED 19
 
 /**
@@ -637,7 +660,7 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NO_PATTERN 23
 
 /**
- * A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes on lights;
+ * A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are missing;
  * the severity is the share of the mask that is expected to be wrong.
  */
 #define LUXFER_WARNING_PROPOSED 24
@@ -687,8 +710,8 @@ const char *luxfer_warning_get_name(luxfer_warning_code code);
  * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
  * - a luxfer_emission: about the texture; a plan has no warnings;
  * - a luxfer_relight;
- * - a luxfer_scene: an implausible size, a place far from the origin, luminaires that no picture shows, and features of
- *   its file that are not rendered.
+ * - a luxfer_scene: an implausible size, a place far from the origin, luminaires that no picture shows, and features
+ *   of its file that are not rendered.
  *
  * The caller releases *warnings. Any thread.
  * LUXFER_NOT_READY before a job has succeeded (of a transfer: before the first stage has ended);

@@ -64,7 +64,7 @@ fn stage() -> Builder {
     b.scene.materials[lamp].emission = Vec3::new(1.0, 0.97, 0.9) * LAMP_LUMINANCE;
     b.scene.materials[lamp].double_sided = false;
     let [low, high] = LAMP;
-    // Tilt it towards the object on the table.
+    // Tilt the lamp towards the object on the table.
     let (u, v) = (Vec3::new(high.x - low.x, high.y - low.y, 0.0), Vec3::Z * (high.z - low.z));
     b.add("Lamp", lamp, flat(|m| sheet(m, low, u, v, [1, 1])));
     b.scene.environment = Some(Environment::Constant(SURROUNDINGS));

@@ -1,4 +1,4 @@
-//! What an exemplar shows, for those who set the size of its pattern by its lamps.
+//! Measures the lamps of an exemplar, so that a caller can choose the scale of the pattern by their size or spacing.
 
 use super::agreement::statistics;
 use super::compose::layer::outlines;
@@ -11,17 +11,17 @@ use crate::error::Result;
 use crate::job::Job;
 use glam::DVec2;
 
-/// What an exemplar shows, in unwarped pixels.
+/// Measurements of an exemplar, in unwarped pixels.
 pub struct Measure {
-    /// Medians over its whole lamps of the longer and of the shorter side; 0 without one.
+    /// Median longer side and median shorter side of the whole lamps; 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
-    /// Median over its whole lamps of the share of the box around it that a lamp covers: 1 of rectangles along the axes, π/4 of
-    /// discs; 0 without one.
+    /// Median share of its bounding box that a whole lamp covers: 1 for rectangles along the axes, π/4 for discs; 0
+    /// without a whole lamp.
     pub lamp_fill: f64,
-    /// The shorter period of the lattice of the lamps; without one the median distance from a whole lamp to the
-    /// nearest other, 0 if there are less than two.
+    /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the
+    /// nearest other whole lamp; 0 if there are fewer than two.
     pub spacing: f64,
-    /// Width of what it shows.
+    /// Number of columns with at least one shown pixel.
     pub width: f64,
     pub(super) reading: Reading,
 }
@@ -41,7 +41,7 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
             nearest.get(nearest.len() / 2).copied().filter(|d| d.is_finite()).unwrap_or(0.0)
         }
     };
-    // Lamps that will be shown clean have the length of their design.
+    // A lamp that will be drawn from its design has the size of the design.
     let designs = match params.whole_lamps && params.clean_lamps && input.photo.is_some() {
         true => Designs::find(exemplar, &outlines(exemplar, input, job)?),
         false => Designs::default(),

@@ -5,23 +5,25 @@
 //! ```
 //! 1. [`exemplar`]: the usable part of the photo, its lights (connected components) and their roles, and a reduced
 //!    size to work at.
-//! 2. [`lattice`]: the lattice the lamps lie on, from the autocorrelation of the mask, and its sites that the border
-//!    cuts.
+//! 2. [`lattice`]: the lattice that the lamps lie on, from the autocorrelation of the mask, and the lattice sites that
+//!    the border cuts.
 //! 3. [`quilt`]: metadata (confidence, signed x and y distance to the nearest light), and quilting over colour and
-//!    metadata with minimum-error seams, held to the lattice, the light in balance.
-//! 4. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it. Outlines, kinds, colours.
-//! 5. [`compose`]: the composition of positions, and full detail from the photo; the lamps as a list.
-//! 6. [`agreement`]: how far the texture's statistics are from the exemplar's, and how far by sampling alone.
+//!    metadata with minimum-error seams. Patches stay on the lattice, and the amount of light is kept in balance.
+//! 4. [`lamps`]: every lamp that patches show becomes one piece again, cut by no seam; its outline, kind and colour.
+//! 5. [`compose`]: plans the positions of lamps and patches, renders texels in full detail from the photo, and lists
+//!    the lamps.
+//! 6. [`agreement`]: how far the texture's statistics are from the exemplar's, and how much of that sampling alone
+//!    explains.
 //!
-//! A texture that fits inside the exemplar is a part of it, copied, unless its lamps have ragged outlines and lie on a
+//! A texture that fits inside the exemplar is copied from it, unless the lamps have ragged outlines and lie on a
 //! lattice.
 //!
-//! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts
-//! lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); lamps kept off where they have no
-//! place ([`compose::placement`]); textures of any size, in tiles of a [`Composition`]; and several exemplars in one
-//! ([`compose::draw`]). Not modelled: lamps that are a mixture of two exemplars', a pattern that bends from one plane
-//! into another, and nets of crossing lines in textures that repeat, whose edges may be off by the stretch of a few
-//! cells.
+//! Beyond the paper: the lattice, and lamps that stay in one piece, because image quilting alone lets regular patterns
+//! drift and cuts lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); zones that lamps
+//! must keep clear of ([`compose::placement`]); textures of any size, rendered in tiles of a [`Composition`]; and
+//! textures blended from several exemplars ([`compose::draw`]). Not modelled: lamps that mix the designs of two
+//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in textures that repeat,
+//! where edges may be off by the stretch of a few cells.
 
 mod agreement;
 mod compose;
@@ -65,7 +67,7 @@ use glam::Vec3;
 use lamps::luminaires;
 use quilt::patch_map::PatchMap;
 
-/// The emission of a texture the caller has made: what is brighter than nothing is light.
+/// Makes an emission from a texture that the caller supplies. A texel is light if any of its channels is above 0.
 pub fn given(texture: &Image, job: Job) -> Result<Emission> {
     let texture = texture.to_rgb()?;
     if let Some(bad) = texture.data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
@@ -106,13 +108,14 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     blend(input, &[], params, job)
 }
 
-/// The same with lights of further exemplars where their weights say so. What it tells beside the texture, its lamps
-/// and its statistics is of the first. Errors: as for [`run`]; weights that are not in `[0, 1]`, or add up to more.
+/// Like [`run`], but blends in the lights of further exemplars by their weight maps. Apart from the texture, its lamps
+/// and its statistics, the result describes the first exemplar only. Errors: as for [`run`]; weights that are not in
+/// `[0, 1]`, or add up to more than 1.
 pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
     make(Composition::new(input, styles, params, job.part(0.0, 0.85))?, input, styles, params, job)
 }
 
-/// The same of a first exemplar that [`measure`] has read, which is not read again.
+/// Like [`blend`], but uses the reading of the first exemplar that [`measure`] has made.
 pub fn blend_measured(
     measured: Measure,
     input: &Input,
@@ -124,7 +127,8 @@ pub fn blend_measured(
     make(composition, input, styles, params, job)
 }
 
-/// The unwarped light, with the panes of a luminous ceiling parted along the bars between them.
+/// Takes the bars between the panes of a luminous ceiling out of the unwarped light, so that each pane is a lamp of its
+/// own. Returns the light unchanged where there are no such bars.
 pub fn part_panes(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography, job: Job) -> Result<Image> {
     let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
     Ok(panes::part(&plane, job)?.unwrap_or(light))
@@ -138,13 +142,13 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
 
     let inputs = std::iter::once(input).chain(styles.iter().map(|style| &style.input));
     let parts = composition.layers.iter().zip(inputs).enumerate().map(|(k, (layer, input))| {
-        // What repeats as a whole is one period.
+        // An exemplar that repeats as a whole is one period.
         let periods = match layer.continuation {
             Continuation::Tile(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),
         };
         let own = layer.exemplar.statistics(input.unwarped, periods);
-        // Lamps that are shown by their designs have lost their bloom.
+        // A lamp drawn from its design lacks the bloom of the photo, so its area differs.
         let own = if layer.is_clean() { own.with_area(layer.designs.area_ratio(&layer.exemplar)) } else { own };
         (own.scaled(1.0 / layer.scale), composition.weights.mean(k))
     });
@@ -181,7 +185,7 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
     })
 }
 
-/// The statistics of a texture; lamps are whole that do not touch its border.
+/// The statistics of a texture. A lamp counts as whole if it does not touch the border.
 fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>; 2]) -> Statistics {
     let (width, height) = (texture.width, texture.height);
     let inside = |c: &Component| c.min.iter().all(|&low| low > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height;
@@ -190,7 +194,8 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// The exemplar's metadata as the patch_map shows them; where it shows nothing, nothing is near.
+/// The exemplar's metadata, rearranged by the patch map. Pixels without a patch get confidence 0 and the largest
+/// distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {

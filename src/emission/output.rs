@@ -12,29 +12,29 @@ pub struct Emission {
     pub texture: Image,
     /// Light mask of the texture, 0 or 1.
     pub mask: Image,
-    /// What synthesis worked with, at working size; empty where the caller gave the texture. Confidence, signed x and
-    /// y distance to the nearest light.
+    /// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light. Empty
+    /// where the caller supplied the texture.
     pub exemplar_metadata: Image,
-    /// The same of its result.
+    /// The exemplar's metadata as the patches of the texture show them, at working size.
     pub metadata: Image,
     pub luminaires: Vec<Luminaire>,
     /// How the texture goes on beyond the exemplar.
     pub continuation: Continuation,
-    /// Correlation of the lights with themselves shifted by the lattice, the lower of both periods, in `[0, 1]`; 0
-    /// where no period was found.
+    /// Correlation of the lights with themselves after a shift by a period, in `[0, 1]`: the lower value of both
+    /// periods; 0 where no period was found.
     pub regularity: f64,
     /// How well the law of the lights predicts the lamps of the photo, and the best other law.
     pub choice: Choice,
-    /// Of the exemplar, in texels, and of the texture.
+    /// The statistics expected from the exemplars, converted to texels, and those of the texture.
     pub statistics: [Statistics; 2],
-    /// Largest relative difference between the two, their luminance aside. It weighs as much as the lamps that the
-    /// exemplar shows whole, `exemplar_lamps`: of a few, what the border cuts off is a large part, and without any
-    /// only light is compared.
+    /// Largest relative difference between the two `statistics`; luminance is not compared. The fewer whole lamps the
+    /// exemplar shows (`exemplar_lamps`), the less the difference says: the lamps that the border cuts are then a large
+    /// part. Without whole lamps only the lit share is compared.
     pub error: f64,
-    /// By how much the exemplar's own statistics are off, as far as can be told: the root mean square of that
-    /// difference between parts of the texture as large as the exemplar, and the whole. No method is expected to have
-    /// a smaller error than that. 0 where the texture shows nothing that the exemplar does not, and of blended
-    /// exemplars.
+    /// Estimate of how far the exemplar's own statistics are off, because it shows only a part of its ceiling: the root
+    /// mean square difference between parts of the texture as large as the exemplar and the whole texture. No method
+    /// can be expected to have a smaller `error`. 0 where the texture shows nothing that the exemplar does not, and for
+    /// blended exemplars.
     pub sampling_error: f64,
     /// Number of lamps that the exemplars show whole.
     pub exemplar_lamps: usize,

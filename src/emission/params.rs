@@ -16,22 +16,22 @@ pub struct Input<'a> {
     pub unwarped: &'a Image,
     /// Unwarped confidence that a pixel is light, in `[0, 1]`.
     pub light: &'a Image,
-    /// 1 where the two above show the plane.
+    /// 1 where `unwarped` and `light` show the plane.
     pub valid: &'a Image,
-    /// The photo itself and the map from unwarped pixels into it, from which full detail is recovered; absent: the
-    /// unwarped image is the finest there is.
+    /// The photo, from which full detail is recovered, and the map from unwarped pixels into the photo. If absent, the
+    /// unwarped image is the finest source.
     pub photo: Option<(&'a Image, Homography)>,
 }
 
 /// How the lights of an exemplar go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// The law that predicts the lamps of the photo best; the one of the correlation, unless another is clearly
-    /// better.
+    /// The law that predicts the lamps of the photo best. The law read from the correlation is kept unless another one
+    /// scores clearly higher.
     Best,
-    /// The law that the correlation tells, by `least_regularity`.
+    /// The law read from the correlation of the lights with themselves, with `least_regularity` as its threshold.
     Correlation,
-    /// The best lattice, or row, of all that are proposed.
+    /// The lattice (for `Row`, the row) read from the correlation; if there is none, the best of all that are proposed.
     Lattice,
     Row,
     /// The exemplar repeats as a whole.
@@ -50,41 +50,42 @@ pub struct Params {
     pub scale: f64,
     /// Side of a patch in working pixels; 0 chooses it from the spacing of the lights.
     pub block: usize,
-    /// Patches that are compared for each block, at most, where none is held to a lattice, in `[1, 65536]`.
+    /// Most patches that are compared for each block where no lattice restricts them, in `[1, 65536]`.
     pub candidates: usize,
     /// Longest side of the exemplar during synthesis, in pixels, in `[16, 2048]`.
     pub working_side: usize,
     /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
     pub metadata_weight: f32,
-    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`. Lights
-    /// without a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in
-    /// others.
+    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`. A pattern
+    /// without a lattice has no beginning: there the offset shifts the lamps of a tileable texture, and must be 0 in
+    /// other textures.
     pub offset: DVec2,
-    /// Correlation of the lights with themselves from which they are taken for regular, in `[0, 1]`: at 0 any
-    /// repetition is held to exactly, at 1 none is, and patches go anywhere.
+    /// Smallest correlation of the lights with themselves at which they count as regular, in `[0, 1]`. At 0 any
+    /// repetition is followed exactly; at 1 none is, and patches go anywhere.
     pub least_regularity: f32,
     /// How the lights go on.
     pub law: Law,
-    /// Magnification up to which the exemplar is used, against its sharpest pixel and in length: beyond it the photo
-    /// counts as not shown. In `[1, 1e6]`, or 0 for all of it.
+    /// Largest magnification at which the exemplar is used, in length and relative to its least magnified pixel. Parts
+    /// that are magnified more count as not shown. In `[1, 1e6]`, or 0 to use the whole exemplar.
     pub max_magnification: f64,
-    /// Shows every lamp as one piece; without, seams may cut lamps, as in the paper.
+    /// Shows every lamp as one piece. If false, seams may cut lamps, as in the paper.
     pub whole_lamps: bool,
     /// Every lamp shines evenly, in its mean colour.
     pub even_lamps: bool,
-    /// Lamps of a kind have one size and an outline that is exact at any resolution, and lie at the sites of their
-    /// lattice. Needs the photo and `whole_lamps`; without, each lamp is shown with the outline of the mask.
+    /// All lamps of a kind get one size and an outline that is exact at any resolution, and lie at the sites of their
+    /// lattice. Needs the photo and `whole_lamps`; otherwise each lamp keeps the outline of the mask.
     pub clean_lamps: bool,
-    /// The texture may be repeated: what leaves it on one side comes in on the other. Lattices are stretched, by less
-    /// than half a period over the whole, so that a whole number of periods fits. Needs `whole_lamps`; lights that run
-    /// out of the exemplar are no lamps, and meet at the border on a lattice only.
+    /// Makes a texture that can be repeated: a lamp that leaves it on one side comes in on the opposite side. Lattices
+    /// are stretched, by less than half a period over the whole texture, so that a whole number of periods fits. Needs
+    /// `whole_lamps`. Lights that run out of the exemplar are not lamps; they meet at the border only if they lie on a
+    /// lattice.
     pub tileable: bool,
-    /// A lattice lies evenly between the sides of the texture, shifted by the offset from there: a lamp or the middle
-    /// between two in its middle, so that the border cuts as few lamps as it can.
+    /// Lays a lattice out evenly between the sides of the texture: a lamp, or the middle between two lamps, lies at the
+    /// texture's centre, so that the border cuts as few lamps as possible. The offset shifts the lattice from there.
     pub centred: bool,
-    /// Channel value from which the photo is clipped, in `[0, 1]`; lamps there get the colour of their rims. 0:
-    /// nothing is. Below the largest 8-bit values, at which a photo itself is clipped: unwarped pixels are means of
-    /// clipped and other ones.
+    /// Channel value from which the unwarped photo counts as clipped, in `[0, 1]`; clipped parts of a lamp get the
+    /// colour of its rim. 0: nothing counts as clipped. The level should lie below the largest 8-bit value, at which
+    /// the photo itself is clipped, because an unwarped pixel is a mean of clipped and other pixels.
     pub clip_level: f32,
     pub seed: u64,
 }
@@ -157,22 +158,23 @@ impl Input<'_> {
     }
 }
 
-/// Most working pixels of a result; larger ones are planned at a coarser size.
+/// Most working pixels of a texture; a larger texture is planned at a coarser working size.
 const MAX_WORKING_PIXELS: f64 = (1 << 28) as f64;
 
 impl Params {
-    /// What the texture covers, in unwarped pixels.
+    /// Width and height of the texture, in unwarped pixels.
     pub fn size(&self) -> DVec2 {
         DVec2::new(self.width as f64, self.height as f64) * self.scale
     }
 
-    /// The sides of a texture that repeats, in texels.
+    /// Width and height of a tileable texture, in texels; `None` for other textures.
     pub fn repeats(&self) -> Option<DVec2> {
         self.tileable.then(|| DVec2::new(self.width as f64, self.height as f64))
     }
 }
 
-/// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.
+/// Longest side of the exemplar at working size, in pixels. It is smaller than `params.working_side` where the texture
+/// would otherwise have too many working pixels.
 pub fn working_side(input: &Input, params: &Params) -> f64 {
     let longest = input.unwarped.width.max(input.unwarped.height) as f64;
     let side = longest.min(params.working_side as f64);

@@ -5,15 +5,15 @@ use crate::warning::{Code, Warning, percent};
 
 /// Largest relative difference between the statistics of texture and photo. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.25;
-/// The same where no lattice holds the lamps. [judged on 38 photos]
+/// The same limit for lamps that lie on no lattice. [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
-/// The difference of a texture without light, whose lit share is all that is missing. [convention]
+/// Relative difference of a texture without any light: its lit share is off by all of the photo's. [convention]
 const UNLIT_ERROR: f64 = 1.0;
-/// Whole lamps that show a size and a spacing. [convention]
+/// Fewest whole lamps that show a size and a spacing. [convention]
 const MIN_LAMPS: usize = 2;
 
 impl Emission {
-    /// Reasons to doubt the texture. A texture of the caller's own is believed.
+    /// Reasons to doubt the texture. A texture that the caller supplied gets no warnings.
     pub fn warnings(&self) -> Vec<Warning> {
         if self.is_given() {
             return Vec::new();

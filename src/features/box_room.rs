@@ -73,11 +73,12 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
     }
 }
 
-/// By how much an enlarged room exceeds what it must hold, so that lamps there have plane around them. [convention]
+/// Ratio by which an enlarged room exceeds the lamps that it must hold, so that these lamps have plane around them.
+/// [convention]
 const MARGIN: f64 = 1.05;
 
 impl Layout {
-    /// The face on which most of some pixels lie.
+    /// The face that shows most of the given pixels.
     pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
         let to_room = facing_axes(perspective).transpose();
         let mut counts = [0usize; Face::COUNT];
@@ -86,8 +87,9 @@ impl Layout {
         Face::ALL[most]
     }
 
-    /// The smallest room around this one that shows some pixels on one of its faces, which keeps its place; and the
-    /// largest factor by which another face has moved away. Pixels whose rays do not meet the face are left out.
+    /// Enlarges the room as little as needed for `face` to show the given pixels. The face itself keeps its place.
+    /// Returns the new room, and the largest factor by which another face has moved away. Pixels whose rays do not meet
+    /// the face are left out.
     pub fn enlarged(&self, face: Face, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> (Self, f64) {
         let to_room = facing_axes(perspective).transpose();
         let [mut left, mut right, mut top, mut bottom] = self.sides;

@@ -35,7 +35,7 @@ pub struct RoomView<'a> {
     pub segments: &'a [(Segment, Option<usize>)],
     /// Strokes on one plane of the room (any one), and strokes on other surfaces, if any.
     pub strokes: &'a [PlaneStroke<'a>],
-    /// The room as it is known already; absent, it is laid out from the segments and the strokes.
+    /// The layout of the room if it is known. If `None`, the room is laid out from the segments and the strokes.
     pub layout: Option<Layout>,
 }
 

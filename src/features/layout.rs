@@ -1,11 +1,11 @@
 //! The built-in depth: the room as a single box aligned with its axes, seen from inside (after Hedau, Hoiem and
 //! Forsyth 2009).
 //!
-//! In room axes the [box](Layout) is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall at distance one
-//! fixes the scale, which a single image cannot determine (a camera 1.6 m above the floor makes it `1.6 / bottom` metres).
-//! The four numbers are thus the sides of the back wall in its central projection. Their candidates are the detected
-//! segments that could be these sides, and the search covers all boxes that the candidates form (see `search`).
-//! `score` rates a box.
+//! In room axes the [box](Layout) is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`. The back wall is at distance
+//! one. This fixes the scale, which a single image cannot determine (if the camera is 1.6 m above the floor, the wall
+//! is at `1.6 / bottom` metres). The four numbers are thus the sides of the back wall in its central projection. Their
+//! candidates are the detected segments that could be these sides, and the search covers all boxes that the candidates
+//! form (see `search`). `score` rates a box.
 
 use super::box_room::{Face, Layout, facing_axes};
 use super::depth::Surface;

@@ -1,8 +1,8 @@
 //! Candidates for the ceiling
 //!
 //! The objects and materials of a scene with their area, height and direction, the likeliest ceilings first: for hosts
-//! that let the user choose the surface with the lights. luxfer_scene_find_surface and luxfer_transfer_set_target take
-//! the names. A list is a copy, which stays as it is when the scene changes.
+//! that let the user choose the surface with the lights. Pass the name of a candidate to luxfer_scene_find_surface or
+//! luxfer_transfer_set_scene. A list is a copy, which stays as it is when the scene changes.
 
 use super::context::Context;
 use super::guard::enter;
@@ -21,7 +21,7 @@ pub struct luxfer_candidates {
     _opaque: [u8; 0],
 }
 
-/// What a candidate is: a LUXFER_CANDIDATE_ value.
+/// The kind of a candidate: a LUXFER_CANDIDATE_ value.
 pub type luxfer_candidate_kind = i32;
 /// All meshes of one name.
 pub const LUXFER_CANDIDATE_OBJECT: luxfer_candidate_kind = 0;
@@ -38,26 +38,27 @@ pub struct luxfer_candidate {
     pub kind: luxfer_candidate_kind,
     /// Index of the object's first mesh, or of the material.
     pub index: u32,
-    /// Number of triangles with an area.
+    /// Number of triangles whose area is not 0.
     pub triangles: u32,
     /// Area in m².
     pub area: f32,
     /// Area in m² of the triangles that are inclined by less than 15 degrees, on either side.
     pub level_area: f32,
-    /// Mean height in metres of the triangles of level_area; of all triangles if level_area is 0.
+    /// Mean height in metres of the triangles that level_area counts; of all triangles if level_area is 0.
     pub height: f32,
     /// Lowest point, in metres.
     pub low: f32,
     /// Highest point, in metres.
     pub high: f32,
-    /// Mean direction of the front sides by area, a unit vector; 0 if they cancel, as for a box.
+    /// Mean normal of the front sides, weighted by area, as a unit vector; 0 if the normals cancel, as for a box.
     pub normal: [f32; 3],
-    /// Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan that it
-    /// covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts too.
+    /// Resemblance to a ceiling, in [0, 1]: the product of level_area / area, of level_area as a share of the floor
+    /// area of the scene's bounding box, and of the square of the height as a share of the scene's height. A name such
+    /// as "ceiling" raises the score.
     pub score: f32,
     /// 0.
     pub reserved: u32,
-    /// Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates.
+    /// Name of the candidate, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates.
     pub name: *const c_char,
     /// The reason for the score, in English and with its figures.
     pub reason: *const c_char,
@@ -115,8 +116,8 @@ impl Candidates {
     }
 }
 
-/// Lists the objects of a scene, and the materials in use, the likeliest ceilings first. It reads each triangle once.
-/// The caller releases *candidates. Any thread.
+/// Lists the objects of a scene and the materials in use, the likeliest ceilings first. The call reads each triangle
+/// once. The caller releases *candidates. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_candidates(

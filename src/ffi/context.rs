@@ -4,9 +4,10 @@
 //! context and keep it alive, so objects may be released in any order. Objects of two contexts cannot be mixed
 //! (LUXFER_INVALID_ARGUMENT).
 //!
-//! Structs: a function that fills a struct takes its size: the _init function of settings, and the functions that get
-//! reports. Pass sizeof. These functions set struct_size, the first field; leave it as it is. So a program that was
-//! built with an older header works with a newer library: fields that it does not know keep their defaults.
+//! Structs: a function that fills a struct takes the size of the struct; pass sizeof. Such functions are the _init
+//! functions of settings and the functions that get reports. They set struct_size, the first field; leave it as it is.
+//! So a program that was built with an older header works with a newer library: settings that the program does not know
+//! keep their defaults.
 //!
 //! Each call checks its handles: NULL and a handle of another kind give LUXFER_INVALID_ARGUMENT; so does a released
 //! handle in most cases, but not if its memory has been reused.
@@ -54,11 +55,11 @@ pub struct luxfer_context_params {
     pub struct_size: u32,
     /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs share
     /// these threads. Calls that return when their work is done never wait for a job: they run on the calling thread,
-    /// or on as many further threads, which the context starts for the first of them.
+    /// or on another set of as many threads, which the context starts when such a call first needs it.
     pub num_threads: u32,
     /// Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context; a call
-    /// that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a picture file
-    /// takes counts while the file is read. The working memory of jobs and their results do not count.
+    /// that would exceed it returns LUXFER_OUT_OF_MEMORY. 0, the default: no limit. While a picture file is read, the
+    /// memory of its decoder counts too. The working memory of jobs and their results do not count.
     pub memory_budget_mib: u64,
 }
 

@@ -120,10 +120,10 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
     })
 }
 
-/// Finds the temperature and luminance of the blackbody light that brings a target nearest to a mean radiance. Each
-/// array holds three channels: response is the response to a white emission, from luxfer_relight_get_report or
-/// luxfer_importance_respond; background is the radiance from other lights; target is the wanted radiance. size is
-/// sizeof *fit. Any thread.
+/// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
+/// a wanted radiance. Each array holds three channels: response is the response to a white emission, from
+/// luxfer_relight_get_report or luxfer_importance_respond; background is the radiance from other lights; target is the
+/// wanted radiance. size is sizeof *fit. Any thread.
 /// LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(

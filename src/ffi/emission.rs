@@ -36,7 +36,7 @@ pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
 pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 /// Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3 channels.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
-/// Metadata of the result, with these channels.
+/// Metadata of the result, with the channels of LUXFER_EMISSION_EXEMPLAR_METADATA.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 
 /// Settings of the emission. Fill them with luxfer_emission_params_init.
@@ -84,14 +84,16 @@ pub struct luxfer_emission_params {
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// How the lights go on: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
+    /// The law by which the texture continues the lights: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default
+    /// LUXFER_LAW_BEST.
     pub law: luxfer_emission_law,
-    /// With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and lie at
-    /// the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the outline of the
-    /// mask.
+    /// 1, the default: all lamps of a kind get one size and an outline that is exact at any resolution, and lie exactly
+    /// at the sites of their lattice; this needs the photo and whole_lamps. 0: each lamp is shown with its outline in
+    /// the mask.
     pub clean_lamps: u32,
-    /// Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in [1,
-    /// 1e6]: what is magnified more counts as not shown. Default 0: all of it is used.
+    /// Largest magnification at which parts of the exemplar are used, in [1, 1e6]: the factor in length by which the
+    /// photo is magnified at a pixel, relative to the pixel of the exemplar that is magnified least. Parts beyond it
+    /// count as not shown. Default 0: all parts are used.
     pub max_magnification: f64,
 }
 
@@ -164,22 +166,23 @@ pub struct luxfer_emission_report {
     /// Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
     pub regularity: f64,
     /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
-    /// large part of the lamps. Without a whole lamp the texture shows the cut ones.
+    /// large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border cuts.
     pub exemplar_lamps: u32,
     /// Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined for
     /// error, between the whole texture and parts of it that are as large as the exemplar. If error is at most twice
     /// this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
     /// exemplars, and for a plan.
     pub sampling_error: f32,
-    /// How the lights go on: a LUXFER_LAW_ value.
+    /// The law by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
-    /// The law that would have been next best: a LUXFER_LAW_ value.
+    /// The best of the other laws: a LUXFER_LAW_ value.
     pub runner_up: luxfer_emission_law,
-    /// How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
-    /// NaN where too few of the lights are whole lamps to tell.
+    /// How well the law predicts each lamp of the photo from the other lamps, in [0, 1]; lamps weigh in proportion to
+    /// their pixels in the photo. NaN if laws were not compared, for example because too few of the lights are whole
+    /// lamps.
     pub law_score: f64,
-    /// By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
-    /// slightly better.
+    /// law_score minus the score of runner_up. Negative if the law was kept although another law scores slightly
+    /// better.
     pub margin: f64,
 }
 
@@ -214,7 +217,7 @@ pub struct luxfer_luminaire {
     pub orientation: f64,
     /// Area in texels; texels at the edge count with the share that the lamp covers.
     pub area: f64,
-    /// Share of the luminous flux of the whole texture, in [0, 1].
+    /// Share of the luminous flux of all lamps of the texture, in [0, 1].
     pub flux_share: f64,
     /// Mean linear colour, relative to the photo's white.
     pub colour: [f32; 3],
@@ -366,8 +369,8 @@ pub unsafe extern "C" fn luxfer_emission_create(
 }
 
 /// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
-/// (1 channel, in [0, 1]) and the mask where both are valid (1 channel, 1 or 0). luxfer_emission_add_style adds more
-/// exemplars. Any thread.
+/// (1 channel, in [0, 1]) and the mask of the pixels where both images are valid (1 channel, 1 or 0).
+/// luxfer_emission_add_style adds more exemplars. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     emission: *mut luxfer_emission,
@@ -482,8 +485,8 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
     })
 }
 
-/// Describes a luminaire of the texture. A plan has no texels yet, so its luminaires are described as the exemplar
-/// shows them, cut at the edges of the texture; only lights that cross their whole exemplar are described as in the
+/// Describes a luminaire of the texture. A plan has no texels yet, so it describes each luminaire as the exemplar shows
+/// it, cut at the edges of the texture; only lights that cross their whole exemplar are described as they are in the
 /// texture. size is sizeof *luminaire. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
@@ -514,11 +517,11 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 
 /// Gets a corner of a luminaire's outline, in texels. Any thread.
 ///
-/// The outline is where the lamp would cover half of a texel. If the confidence of the lights has values between 0 and
-/// 1, it is accurate to a quarter of a texel (or of an unwarped pixel, if that is larger), at corners of the lamp to
-/// 0.71. It follows the sides of texels for lamps up to two texels wide, for masks of only 0 and 1, and for lights of a
-/// plan that follow its patches. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such
-/// luminaire or corner.
+/// The outline runs where the lamp would cover half of a texel. If the confidence of the lights has values between 0
+/// and 1, the outline is accurate to a quarter of a texel, or to 0.71 texels at corners of the lamp; if unwarped pixels
+/// are larger than texels, these figures are in unwarped pixels. The outline follows the sides of texels instead for
+/// lamps up to two texels wide, for masks of only 0 and 1, and for lights of a plan that follow its patches.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(
     emission: *mut luxfer_emission,

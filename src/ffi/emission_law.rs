@@ -5,24 +5,25 @@
 use crate::emission::{Continuation, Law};
 use crate::error::{Error, Result};
 
-/// How the lights of an exemplar go on: a LUXFER_LAW_ value.
+/// The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better.
+/// The law that predicts the lamps of the photo best: the law of LUXFER_LAW_CORRELATION, unless another law is clearly
+/// better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that the correlation of the lights shows, by min_regularity.
+/// The law that follows from the autocorrelation of the lights and from min_regularity.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
-/// A lattice of two periods.
+/// The lamps form a lattice with two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
-/// A row of one period; the extent of the exemplar serves as the other.
+/// The lamps form a row with one period; the extent of the exemplar serves as the other period.
 pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
 /// The exemplar repeats as a whole.
 pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
-/// Patches go anywhere.
+/// The lights have no period: patches of the exemplar may lie anywhere.
 pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
-/// Of results only: the texture is a part of the exemplar, or was given.
+/// In results only: the texture is a part of the exemplar, or the caller gave it.
 pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;
 
-/// The law of settings with this number.
+/// The law that a LUXFER_LAW_ value of the settings stands for.
 pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
     Ok(match number {
         LUXFER_LAW_BEST => Law::Best,
@@ -38,7 +39,7 @@ pub(super) fn law(number: luxfer_emission_law) -> Result<Law> {
     })
 }
 
-/// The number of a law in results.
+/// The LUXFER_LAW_ value that stands for a law in results.
 pub(super) fn number(continuation: Continuation) -> luxfer_emission_law {
     match continuation {
         Continuation::Copy => LUXFER_LAW_COPY,

@@ -6,7 +6,7 @@ use super::status::luxfer_status;
 use crate::error::Result;
 use std::sync::Arc;
 
-/// Runs an entry point on an object; an error's message is kept in the object's context for the calling thread.
+/// Runs an entry point on an object. The context of the object keeps the message of an error for the calling thread.
 pub(super) fn enter<H: Handle>(handle: *const H, work: impl FnOnce(&Arc<H::Object>) -> Result<()>) -> luxfer_status {
     guard(|| {
         let object = handle::borrow(handle, "the handle")?;

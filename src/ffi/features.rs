@@ -30,7 +30,7 @@ use std::ffi::c_char;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Left out of the build: there never is one.
+/// Stands in for the network in builds without the Cargo feature onnx; no value of this type exists.
 #[cfg(not(feature = "onnx"))]
 enum DepthNetwork {}
 
@@ -48,7 +48,7 @@ pub const LUXFER_DEPTH_ALONG_RAY: luxfer_depth_kind = 1;
 
 /// An image of the features: a LUXFER_FEATURES_ value.
 pub type luxfer_features_image = i32;
-/// The ten channels; luxfer_image_read reads some of them.
+/// The ten channels; luxfer_image_read reads up to four of them at a time.
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
 /// Confidence of the depth of each pixel, in [0, 1]; 1 channel.
 pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
@@ -56,7 +56,7 @@ pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
 /// later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// Normalisation of the photo's colours for a network, which its file does not state: a LUXFER_NORMALISATION_ value.
+/// How the photo's colours are normalised for a network, whose file does not state it: a LUXFER_NORMALISATION_ value.
 pub type luxfer_normalisation = i32;
 /// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
 /// LUXFER_NORMALISATION_HALF.
@@ -271,7 +271,7 @@ fn compute(
 
 /// Sets the lines and the camera from the latest result of a luxfer_rectify of this photo. rectify may be NULL: no
 /// lines. Any thread.
-/// LUXFER_NOT_READY if it has no result yet.
+/// LUXFER_NOT_READY if rectify has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_view(
     features: *mut luxfer_features,

@@ -1,7 +1,8 @@
 //! Glare of observers
 //!
-//! The unified glare rating (CIE 117) of observers in a scene, from its luminaires: their intensity over the area of
-//! their luminous openings, as seen from the eye.
+//! Computes the unified glare rating (CIE 117) of observers in a scene. The glare sources are its luminaires. The
+//! luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
+//! the eye.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -40,15 +41,15 @@ pub struct luxfer_observer_glare {
     pub unrated_lux: f64,
     /// Solid angle of the visible parts of all rated luminaires in view, in steradians.
     pub solid_angle: f64,
-    /// Number of these luminaires.
+    /// Number of rated luminaires in view.
     pub sources: u32,
-    /// Number of these whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid.
+    /// Number of these luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid.
     pub outside_range: u32,
 }
 
 /// Rates the glare of count observers in a scene. samples is the number of paths per observer for the background, in
-/// [16, 16777216]; 4096 suit most rooms. Returns when the work is done, which takes as long as count * samples paths;
-/// the first call after a scene is loaded or changed also prepares it for tracing. Any thread.
+/// [16, 16777216]; 4096 suit most rooms. Returns when the work is done; the time is proportional to count * samples.
+/// The first call after a scene is loaded or changed also prepares the scene for tracing. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
 /// straight up or down, or is inside a luminaire: the message names it. Then no rating is written.
 #[unsafe(no_mangle)]

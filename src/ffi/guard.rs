@@ -1,4 +1,5 @@
-//! The guard of each entry point: no panic and no message of one reaches the host, every error becomes a status.
+//! The guard of each entry point: it keeps panics and their messages from the host, and turns every error into a
+//! status.
 
 pub(super) use super::entry::enter;
 use super::float_mode::FloatMode;
@@ -37,7 +38,7 @@ fn panic_text(panic: &(dyn Any + Send)) -> &str {
     }
 }
 
-/// Locks a mutex, also after a panic of another holder: every holder leaves the state consistent.
+/// Locks a mutex, even if another holder has panicked: every holder leaves the state consistent.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }

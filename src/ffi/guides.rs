@@ -177,8 +177,8 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 }
 
 /// Computes the motion between two frames of one scene under a moving camera, for luxfer_stylize_set_motion: for each
-/// pixel of this frame, the offset to its position in the frame before, x and y in pixels; NaN where it was not
-/// visible. The caller releases *motion. Any thread.
+/// pixel of this frame, the offset to the position of the same point in the frame before, x and y in pixels; NaN where
+/// the frame before does not show the point. The caller releases *motion. Any thread.
 /// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(

@@ -39,7 +39,7 @@ pub struct luxfer_illuminance_params {
     pub struct_size: u32,
     /// Points along the first edge or texture coordinate, in [1, 65536]; default 32.
     pub columns: u32,
-    /// Points along the second, in [1, 65536]; default 32.
+    /// Points along the second edge or texture coordinate, in [1, 65536]; default 32.
     pub rows: u32,
     /// Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024.
     pub samples: u32,

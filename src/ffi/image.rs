@@ -174,7 +174,7 @@ impl Pixels {
         (self.image().width, self.image().height)
     }
 
-    /// The image with an owner of its own; a part of a result is copied.
+    /// The image, independent of the result of a stage; an image that is part of such a result is copied.
     pub(super) fn shared(&self) -> Result<Arc<Image>> {
         match &self.source {
             Source::Own(image, _) => Ok(image.clone()),
@@ -192,7 +192,7 @@ impl Pixels {
         &self.metadata
     }
 
-    /// Pixels of the caller's, counted in the budget.
+    /// An image that the caller owns, counted in the budget.
     fn own(context: &Arc<Context>, image: Image, charge: Charge, metadata: PhotoMetadata) -> Arc<Self> {
         Arc::new(Self {
             context: context.clone(),
@@ -258,7 +258,7 @@ impl Handle for luxfer_image {
     const NAME: &'static str = "luxfer_image";
 }
 
-/// Bytes of an image of the library.
+/// Bytes that an image takes in memory.
 fn cost(width: usize, height: usize, channels: usize) -> u64 {
     (width as u64) * (height as u64) * (channels as u64) * size_of::<f32>() as u64
 }
@@ -293,9 +293,10 @@ pub unsafe extern "C" fn luxfer_image_create(
 /// becomes RGBA, palettes and CMYK become RGB; colours are not multiplied by alpha. The caller releases *image. Any
 /// thread.
 /// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of no known format, LUXFER_UNSUPPORTED if
-/// it is of a known format or kind that is not read, which the message names (AVIF, HEIC, JPEG XL, raw data of
-/// cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G, B nor
-/// a single channel), or larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// the library knows the format or kind of the file but does not read it, as the message says (AVIF, HEIC, JPEG XL, raw
+/// data of cameras, a TIFF with JPEG compression, deep or luminance-chroma OpenEXR, an OpenEXR layer with neither R, G,
+/// B nor a single channel), or if the picture is larger than 2^28 pixels or 65536 on a side, LUXFER_OUT_OF_MEMORY
+/// beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_load(
     context: *mut luxfer_context,
@@ -338,7 +339,7 @@ fn encoding(value: luxfer_colour_space) -> Result<io::Encoding> {
     })
 }
 
-/// Decodes a file once its picture, and what decoding takes beside it, are known to fit the budget.
+/// Decodes a file after checking that the picture and the working memory of the decoder fit the budget.
 fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Result<Arc<Pixels>> {
     let monitor = context.monitor();
     let _working = context.charge(io::working_bytes(bytes)?)?;
@@ -377,7 +378,8 @@ pub unsafe extern "C" fn luxfer_image_save(
     })
 }
 
-/// Channels are named as other programs expect them for colours, and numbered otherwise.
+/// Encodes an image as OpenEXR. Images of 1, 3 or 4 channels get the names that other programs expect for colours; in
+/// other images the channels are numbered.
 fn encode_exr(image: &Image) -> Result<Vec<u8>> {
     let numbered: Vec<String> = (0..image.channels).map(|c| format!("C{c:02}")).collect();
     let names: Vec<&str> = match image.channels {

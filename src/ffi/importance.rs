@@ -79,8 +79,8 @@ pub struct luxfer_importance_report {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
-    /// cells is about a third of it.
+    /// Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
+    /// size of the cells is about a third of this change.
     pub band_error: [f64; 3],
 }
 
@@ -93,7 +93,7 @@ pub(super) struct Inputs {
     emitter: Option<Emitter>,
 }
 
-/// The map, and the best placement of a texture once one has been looked for.
+/// The map, and the best placement of a texture after a search for it.
 pub(super) struct Traced {
     pub map: Arc<Importance>,
     pub placement: Option<Placement>,
@@ -197,9 +197,9 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
     })
 }
 
-/// Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps
-/// texture coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL
-/// for the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
+/// Computes the light that the target receives from a texture (linear, in cd/m²; it repeats). placement maps texture
+/// coordinates of the surface to texture coordinates of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for
+/// the identity. Takes a few milliseconds. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_respond(

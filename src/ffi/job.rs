@@ -5,8 +5,8 @@
 //! refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after the job has
 //! succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
 //!
-//! Jobs of one context share its threads, so a job may have to wait until another ends; cancelling it then ends it at
-//! once. All other calls run at once, whatever the jobs do, also from a progress function.
+//! Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
+//! waiting job at once. All other calls run at once, even while jobs run, and even from a progress function.
 
 use super::context::Context;
 use super::guard::{catch, enter, lock};
@@ -27,10 +27,10 @@ pub struct luxfer_job {
     _opaque: [u8; 0],
 }
 
-/// Receives the progress of a job: fraction starts at 0 and never falls. Only after success it is exactly 1, once, in
-/// the last call. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the function about 50
-/// times a second, on the waiting thread and with no lock held, so it may call any luxfer function. It must not throw
-/// an exception or leave by longjmp.
+/// Receives the progress of a job: fraction starts at 0 and never falls. It is exactly 1 only once: in the last call,
+/// after the job has succeeded. Return 0 to continue, any other value to cancel the job. luxfer_job_wait calls the
+/// function about 50 times a second, on the waiting thread and with no lock held, so it may call any luxfer function.
+/// It must not throw an exception or leave by longjmp.
 pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
 /// How often a waiting thread reports.
@@ -64,7 +64,7 @@ impl Handle for luxfer_job {
 }
 
 impl Job {
-    /// Runs `work` in the context's pool, from a thread of its own. A job that is cancelled before the pool begins it
+    /// Starts a thread that runs `work` in the context's pool. If the job is cancelled before the pool begins it, it
     /// ends at once.
     pub(super) fn start(
         context: &Arc<Context>,
@@ -125,9 +125,9 @@ impl Drop for Job {
 /// progress may be NULL; it receives user. Any thread; several threads may wait for one job.
 ///
 /// Returns LUXFER_OK if the job has succeeded, or its error status, with its message. LUXFER_CANCELLED if a cancel
-/// request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if the
-/// function of the job waits for its own job. In the function of another job (luxfer_job_start), a cancel request to that
-/// job also cancels this one.
+/// request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues; LUXFER_INVALID_OPERATION if
+/// the function of the job waits for its own job. If the function of another job (luxfer_job_start) waits for this job,
+/// a cancel request to the other job also cancels this job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
     job: *mut luxfer_job,
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn luxfer_job_wait(
             let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
             let result = job.wait(left.min(REPORT_INTERVAL));
 
-            // Report the progress, also as that of the job whose function waits; 1 is reserved for the end.
+            // Report the progress, also to the job whose function waits; 1 is reserved for the end.
             if let Some(caller) = &caller {
                 caller.job().report(job.shared.monitor.progress());
             }

@@ -15,8 +15,8 @@ use crate::quiet;
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;
 
-/// A function of the caller that runs as a job; it receives the pointer given to luxfer_job_start and returns the status
-/// with which the job ends. It must not throw an exception or leave by longjmp.
+/// A function of the caller that runs as a job; it receives the pointer given to luxfer_job_start and returns the
+/// status with which the job ends. It must not throw an exception or leave by longjmp.
 pub type luxfer_work_fn = Option<unsafe extern "C" fn(user: *mut c_void) -> i32>;
 
 /// A pointer of the caller, which its function receives on another thread.
@@ -25,11 +25,12 @@ struct User(*mut c_void);
 // SAFETY: luxfer_job_start says that the function runs on another thread; what it does there is the caller's concern.
 unsafe impl Send for User {}
 
-/// Starts a function of the caller, which receives user, as a job on a thread of its own, with 4 MiB of stack. The
-/// function may call any function of the library. A cancel request to this job ends the calls that it makes in this
-/// context with LUXFER_CANCELLED, between the meshes or pictures of a file, and cancels the jobs that it waits for; the
-/// progress of this job is that of these calls and waits, and never falls. If the function returns an error, the message
-/// of the job is that of the last call that failed on the job's thread. The caller releases *job. Any thread.
+/// Starts a job that runs a function of the caller, work, on a thread of its own with 4 MiB of stack. work receives
+/// user, and may call any function of the library. A cancel request to this job ends the calls that work makes in this
+/// context with LUXFER_CANCELLED; a call that loads a file ends between two meshes or pictures. The request also
+/// cancels the jobs that work waits for. The progress of this job is the progress of these calls and jobs, and never
+/// falls. If work returns an error, the job gets the message of the last call that failed on its thread. The caller
+/// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_start(

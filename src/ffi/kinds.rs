@@ -1,4 +1,4 @@
-//! The kinds of handles, and what the functions for handles of any kind do with them.
+//! The kinds of handles, and for each kind the functions behind luxfer_retain, luxfer_release and luxfer_get_warnings.
 
 use super::candidates::luxfer_candidates;
 use super::context::luxfer_context;
@@ -31,7 +31,7 @@ use std::ffi::c_void;
 /// Creates the list of an object's warnings.
 type CreateWarnings = fn(*mut c_void, *mut *mut luxfer_warnings) -> luxfer_status;
 
-/// What the functions for handles of any kind do with one kind.
+/// One kind of handle, with the functions that serve it.
 pub(super) struct Kind {
     tag: u64,
     pub retain: fn(*mut c_void) -> Result<()>,

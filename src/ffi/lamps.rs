@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Solves for the powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and
-//! calculation grids that should receive a given light. One set of paths per goal measures its response to all lamps at
-//! once, even to thousands.
+//! Finds powers of the lamps of an emission, within bounds, that come nearest to several goals. A goal is a surface or
+//! a calculation grid that should receive a given light. For each goal, one set of paths measures its response to all
+//! lamps at once, even to thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -41,8 +41,8 @@ pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
 pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 /// Lamps whose centres agree in their third coordinate form a group: z of meshes.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
-/// Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and all
-/// luminaires of one distribution.
+/// Lamps of one type form a group: lamps of about equal area; for punctual lights, all points, all spots, and all
+/// luminaires with one distribution.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
 /// Settings of the calculation. Fill them with luxfer_lamps_params_init.
@@ -64,8 +64,8 @@ pub struct luxfer_lamps_params {
     /// Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep the
     /// powers equal; default 1e-6.
     pub regularisation: f64,
-    /// A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise; default
-    /// 0.01.
+    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], or is within its noise;
+    /// default 0.01.
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
@@ -136,8 +136,8 @@ pub unsafe extern "C" fn luxfer_lamps_create(
     })
 }
 
-/// Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission that
-/// they have in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
+/// Sets the scene and the emitting material whose lamps are solved for; the solution is a factor for the emission of
+/// each lamp in the scene. With LUXFER_NONE as material the lamps are the scene's punctual lights, by their index, as
 /// luxfer_scene_add_light and luxfer_scene_add_luminaire add them. Removes all goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material.
 #[unsafe(no_mangle)]

@@ -75,9 +75,9 @@ fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
     })
 }
 
-/// Makes a goal a limit, separately in each channel: LUXFER_CONSTRAINT_ values. The three values of a goal in lux must
-/// be equal. Goals are numbered from 0 in the order in which they were added; a new goal has LUXFER_CONSTRAINT_EQUAL.
-/// Any thread.
+/// Makes a goal a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three channels.
+/// The three values of a goal in lux must be equal. Goals are numbered from 0 in the order in which they were added; a
+/// new goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
 /// LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_constraint(
@@ -104,8 +104,9 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
 }
 
 /// Sets the dimming levels of the lamps' drivers, as factors for the emission, each finite and >= 0, in any order;
-/// count is at most 4096, or 0 for drivers without steps. The solution then chooses for each group the level
-/// that is best for the goals, all groups together. Half-widths are computed for powers without steps. Any thread.
+/// count is at most 4096, or 0 for drivers without steps. The solution then gives each group one of these levels,
+/// chosen for all groups together so that the goals are met best. Half-widths are computed for powers without steps.
+/// Any thread.
 /// LUXFER_INVALID_ARGUMENT if a level is negative or not finite, or if there are too many.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_levels(

@@ -46,7 +46,7 @@ versioned!(luxfer_lamps_report, [24], {
 pub struct luxfer_lamp {
     /// sizeof(luxfer_lamp), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Index of its group.
+    /// Index of the group that the lamp belongs to.
     pub group: u32,
     /// Centre: texture coordinates and 0, or, without a texture, the position in metres.
     pub centre: [f64; 3],
@@ -81,7 +81,8 @@ pub struct luxfer_lamps_goal {
     pub target_lux: f64,
     /// Illuminance with the powers found, in lux.
     pub achieved_lux: f64,
-    /// Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side.
+    /// Half-width of the 95 % confidence interval of achieved_lux, in lux, as if the errors of all channels had one
+    /// sign.
     pub half_width_lux: f64,
     /// Illuminance from all other light, in lux.
     pub background_lux: f64,

@@ -6,7 +6,8 @@
 
 use crate::error::{Error, Result};
 
-/// Largest size of any struct, now and later; a larger `struct_size` is not initialised.
+/// Largest size that a struct has in this or any later version; a larger `struct_size` shows that the struct was not
+/// initialised.
 const LARGEST: usize = 4096;
 
 /// A versioned C struct.

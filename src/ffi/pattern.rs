@@ -9,8 +9,8 @@ use glam::DVec2;
 
 /// The length that sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
 pub type luxfer_pattern_scale = i32;
-/// The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or the
-/// estimate from the lamps where that is 0.
+/// The distance of the photo's camera from the plane with the lights: plane_distance of luxfer_transfer_params, or if
+/// that is 0, the estimate from the size of the lamps.
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
 /// The length of a lamp: the median of the longer sides of the photo's lamps.
 pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;
@@ -41,8 +41,8 @@ pub struct luxfer_pattern_params {
     /// without a lattice have no fixed places and are not shifted.
     pub offset: [f64; 2],
     /// Minimum distance in metres of lamps from the edge of the surface and from the zones of
-    /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
-    /// default -1, keeps the lamps at the edge of the surface, which cuts them.
+    /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the
+    /// default -1, lamps at the edge of the surface stay, cut by the edge.
     pub margin: f64,
 }
 

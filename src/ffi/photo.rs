@@ -23,8 +23,8 @@ pub const LUXFER_FILE_COLOUR_ASSUMED: luxfer_file_colour = 1;
 pub const LUXFER_FILE_COLOUR_STATED: luxfer_file_colour = 2;
 /// The file states another colour space. The colours were converted to linear Rec.709.
 pub const LUXFER_FILE_COLOUR_CONVERTED: luxfer_file_colour = 3;
-/// A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the inks
-/// of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
+/// A warning: the file states a colour space that the library cannot convert, such as a damaged profile, or has the
+/// inks of CMYK without a profile. The colours were read as if the file stated none, so saturated colours may be wrong.
 /// Export the photo as sRGB.
 pub const LUXFER_FILE_COLOUR_UNCONVERTED: luxfer_file_colour = 4;
 /// The image was loaded with LUXFER_COLOUR_LINEAR. Its samples are unchanged.
@@ -55,9 +55,11 @@ pub struct luxfer_photo_metadata {
     /// speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change the
     /// brightness keep these tags.
     pub white_luminance: f64,
-    /// Lower bound of white_luminance: 0.71 times it, if the camera states its standard output sensitivity instead.
+    /// Lower bound of white_luminance: 0.71 times white_luminance, which holds if the ISO speed is a standard output
+    /// sensitivity instead.
     pub white_luminance_low: f64,
-    /// Upper bound of white_luminance: one stop above it, if the camera states a recommended exposure index.
+    /// Upper bound of white_luminance: one stop above white_luminance, which is assumed for an ISO speed that is a
+    /// recommended exposure index.
     pub white_luminance_high: f64,
     /// How the colours of the file were understood.
     pub colour: luxfer_file_colour,

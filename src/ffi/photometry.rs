@@ -32,8 +32,9 @@ pub struct luxfer_glare_report {
     /// Solid angle of all sources in steradians.
     pub solid_angle: f64,
     /// Number of lights of the rendered scene that shine from points: the image does not show them, and ugr leaves them
-    /// out; rate them with luxfer_scene_get_glare. Known for images of luxfer_render_get_image and
-    /// luxfer_render_get_layer; 0 for others, whose scene has LUXFER_WARNING_NOT_IN_PICTURE.
+    /// out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image and
+    /// luxfer_render_get_layer; 0 for other images. The scene of such an image has LUXFER_WARNING_NOT_IN_PICTURE if it
+    /// has luminaires.
     pub unseen_lights: u32,
     /// 0.
     pub reserved: u32,

@@ -112,8 +112,8 @@ pub struct luxfer_placement {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of response.
     pub half_width: [f64; 3],
-    /// Change of response if the cells of the map were twice as wide and high, noise included. The error due to the
-    /// cells is about a third of it.
+    /// Change of response, noise included, if the cells of the map were twice as wide and high. The error due to the
+    /// size of the cells is about a third of this change.
     pub band_error: [f64; 3],
 }
 

@@ -1,9 +1,9 @@
 //! Planning
 //!
-//! Chooses settings for a given error or a given time before anything is rendered: of relighting and rendering, or of a
-//! stylisation. A plan also predicts the time and the error of each. The cost of a path and the noise depend on the
-//! scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a second, besides the
-//! preparation of the scene. It assumes that the load of the machine by other programs does not change.
+//! Chooses the settings of relighting and rendering, or of a stylisation, for a given error or a given time, before
+//! anything is rendered. A plan also predicts the time and the error of each. The cost of a path and the noise depend
+//! on the scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a second,
+//! besides the preparation of the scene. A plan assumes that the load of the machine by other programs does not change.
 //!
 //! The error of a picture is the root mean square error over its pixels, divided by its mean; it includes the noise and
 //! the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the error of
@@ -82,13 +82,12 @@ pub struct luxfer_plan_report {
     pub error: f64,
     /// Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer.
     pub relight_seconds: f64,
-    /// Predicted field error of luxfer_relight_report, half the width of its interval; 0 unless the plan is of a
-    /// transfer.
+    /// Predicted value of luxfer_relight_report.error; 0 unless the plan is of a transfer.
     pub relight_error: f64,
     /// Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
     /// stylisation.
     pub render_seconds: f64,
-    /// Predicted field error of luxfer_render_report; 0 in a plan of a stylisation.
+    /// Predicted value of luxfer_render_report.error; 0 in a plan of a stylisation.
     pub render_error: f64,
 }
 
@@ -198,8 +197,9 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
 
 /// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
 /// made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
-/// its relight and render by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, which change the
-/// settings that affect quality. params gives the goal. The caller releases *job. Any thread.
+/// the fields relight and render of settings by the results of luxfer_plan_get_relight_params and
+/// luxfer_plan_get_render_params, which differ in the settings that affect quality. params gives the goal. The caller
+/// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
 /// LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
@@ -248,9 +248,9 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
 }
 
 /// Gets the settings to render with: the given settings with the choices of the plan. If the goal is an error,
-/// rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths and sets
-/// time_budget_ms to a quarter more than they should take, so that every run gives an equal picture unless the machine
-/// becomes slower. Set params->struct_size before the call. size is sizeof *params. Any thread.
+/// rendering stops when it is reached. If the goal is a time, the plan chooses the number of paths, and sets
+/// time_budget_ms to a quarter more than the time that these paths should take. So every run gives an equal picture
+/// unless the machine becomes slower. Set params->struct_size before the call. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(

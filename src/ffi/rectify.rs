@@ -54,9 +54,9 @@ pub const LUXFER_FOCAL_GIVEN: luxfer_focal_source = 0;
 pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
 /// Assumed: 0.85 times the width of the photo.
 pub const LUXFER_FOCAL_ASSUMED: luxfer_focal_source = 2;
-/// Mainly from what the photo's file says; see luxfer_image_get_metadata.
+/// Mainly from the metadata of the photo's file; see luxfer_image_get_metadata.
 pub const LUXFER_FOCAL_FROM_METADATA: luxfer_focal_source = 3;
-/// From lamps that are alike, as their plane shows them (lighting transfer only).
+/// Estimated so that lamps of one kind look alike when their plane is seen straight on (lighting transfer only).
 pub const LUXFER_FOCAL_FROM_LAMPS: luxfer_focal_source = 4;
 
 /// An image of a rectification: a LUXFER_RECTIFY_ value.
@@ -93,8 +93,8 @@ pub struct luxfer_rectify_params {
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are cut
-    /// off.
+    /// Largest magnification of the photo, > 0; default 16. Parts of the plane that are so far away that they would be
+    /// magnified more are cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -171,7 +171,7 @@ pub struct luxfer_rectify_report {
     /// Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0 at
     /// infinity.
     pub vanishing_points: [[f64; 3]; 3],
-    /// Standard deviations of their directions in camera space, in radians.
+    /// Standard deviations of the directions of the vanishing points in camera space, in radians.
     pub vanishing_errors: [f64; 3],
     /// Number of segments that agree with each vanishing point; 0: derived from the other two.
     pub vanishing_support: [u32; 3],

@@ -210,7 +210,7 @@ pub(super) struct Inputs {
     constraint: [Constraint; 3],
 }
 
-/// A scene, its material that emits, and its mesh that is the target, as a host has named them.
+/// The scene, the emitting material and the target mesh, as the host has named them.
 #[derive(Clone)]
 pub(super) struct Emitter {
     pub scene: Arc<SceneObject>,
@@ -274,9 +274,10 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
     })
 }
 
-/// Makes the target a limit, separately in each channel: LUXFER_CONSTRAINT_ values. A channel that the photo clips
-/// should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale of the channels that should equal their
-/// target if this respects the limit, else the scale that reaches the limit. Any thread.
+/// Makes the target a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three
+/// channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A limited channel uses the mean scale
+/// of the channels that should equal their target if this scale respects the limit, else the scale that just reaches
+/// the limit. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_constraint(

@@ -30,8 +30,8 @@ pub struct luxfer_render {
 pub type luxfer_render_image = i32;
 /// Mean radiance of each pixel, linear RGB in cd/m².
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
-/// Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their errors are
-/// correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
+/// Variance of the mean radiance of each pixel; 3 channels. Groups of eight pixels share the results of their paths, so
+/// their errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
 /// Number of paths of each pixel; 1 channel.
 pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
@@ -53,7 +53,7 @@ pub struct luxfer_render_params {
     pub width: u32,
     /// Height of the image in pixels, in [1, 65536]; default 720.
     pub height: u32,
-    /// Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the image.
+    /// Paths per pixel, in [1, 1048576]; default 64. With a target error: the largest mean over the image.
     pub samples: u32,
     /// Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they reduce the
     /// error most. Default 0: no target.
@@ -74,8 +74,8 @@ pub struct luxfer_render_params {
     /// 0: no preview, as for final images. It does not change the other images.
     pub preview: f32,
     /// Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where they
-    /// reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no target. With
-    /// several targets, rendering stops when all are reached.
+    /// reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright ones. Default 0: no
+    /// target. With several targets, rendering stops when all are reached.
     pub relative_error: f32,
 }
 
@@ -163,7 +163,7 @@ impl Inputs {
         Ok((object, scene, camera))
     }
 
-    /// The same with settings, as one rendering; params may be NULL for the defaults.
+    /// The current scene, the camera and the settings, as one rendering; params may be NULL for the defaults.
     pub(super) fn shot(&self, params: *const luxfer_render_params) -> Result<Shot> {
         let (object, scene, camera) = self.view()?;
         let params = render::Params { outputs: self.outputs.clone(), ..params::read(params)?.params()? };
@@ -180,7 +180,7 @@ pub(super) struct Shot {
 }
 
 impl Shot {
-    /// The scene made ready.
+    /// The scene prepared for tracing.
     pub(super) fn world(&self, job: Job) -> Result<Arc<World>> {
         self.object.world(&self.scene, job)
     }
@@ -258,7 +258,7 @@ pub unsafe extern "C" fn luxfer_render_start(
     })
 }
 
-/// Where the preview of a rendering is, if one was asked for.
+/// The function that gets the preview of a rendering; an error if the rendering has no preview.
 pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
     if film.preview.is_none() {
         let message = "the rendering has no preview: start it with luxfer_render_params.preview above 0";

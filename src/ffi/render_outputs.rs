@@ -7,12 +7,14 @@
 //!
 //! An expression is a regular expression over the events of a path. It starts at the light (L) and ends at the eye (E),
 //! as in "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (here S is every event that is not diffuse), or it starts at the
-//! camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Event types are R T V, scattering modes D G
-//! S s (a clear pane is both S and s), lights L O B; . [..] [^..] * + ? {n,m} | ( ) have their usual meaning in regular
-//! expressions. A label in quotes is the name of a mesh or of its material; Name#0, Name#1, ... are the patches of its
-//! emission texture, numbered as luxfer_lamps numbers them; light0, light1, ... are the scene's punctual lights in
-//! their order, environment is the scene's environment. Arnold's built-in names work too: direct, indirect, emission,
-//! background, and diffuse, specular, transmission, each alone or with _direct or _indirect.
+//! camera (C), as in Open Shading Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". The types of events are R (reflection), T
+//! (transmission) and V (volume, never occurs here). The scattering modes are D (diffuse), G (glossy), S (mirror or
+//! clear pane) and s (clear pane). Lights are L, O and B; see luxfer_emitter_as. The characters . [..] [^..] * + ?
+//! {n,m} | ( ) have their usual meaning in regular expressions. A label in quotes is the name of a mesh or of its
+//! material; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
+//! light0, light1, ... are the scene's punctual lights in their order, environment is the scene's environment. Arnold's
+//! built-in names work too: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
+//! with _direct or _indirect.
 
 use super::guard::enter;
 use super::handle::{self, Owned};

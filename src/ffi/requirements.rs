@@ -49,8 +49,9 @@ pub struct luxfer_requirements {
     pub lights: u32,
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// Number of bounces that matter: light that is scattered more often is at most the share error, given in the call,
-    /// of all light that surfaces scatter. 0 if the albedos give no bound. It informs: no render ends paths there.
+    /// Number of bounces that matter: light that is scattered more often is at most a share of all light that surfaces
+    /// scatter; the argument error gives this share. 0 if the albedos give no bound. For information only: no rendering
+    /// ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,

@@ -105,7 +105,7 @@ pub(super) struct SceneObject {
 
 struct State {
     scene: Arc<Scene>,
-    /// The scene made ready for tracing, if it has been since the last change.
+    /// The scene prepared for tracing; `None` if no call has prepared it since the last change.
     world: Option<Arc<World>>,
     charges: Vec<Charge>,
 }
@@ -140,7 +140,7 @@ impl SceneObject {
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
     }
 
-    /// A scene that a stage has made, which is not counted.
+    /// A scene that a stage has made; its size is not counted in the budget.
     pub(super) fn of_result(context: &Arc<Context>, scene: Arc<Scene>) -> Arc<Self> {
         let state = State { scene, world: None, charges: Vec::new() };
         Arc::new(Self { context: context.clone(), state: Mutex::new(state) })
@@ -164,7 +164,7 @@ impl SceneObject {
         Ok(result)
     }
 
-    /// The scene `scene` ready for tracing, if an earlier call has made it so.
+    /// The scene `scene` prepared for tracing, if an earlier call has prepared it.
     fn kept_world(&self, scene: &Arc<Scene>) -> Option<Arc<World>> {
         lock(&self.state).world.clone().filter(|world| Arc::ptr_eq(world.scene(), scene))
     }
@@ -181,7 +181,7 @@ impl SceneObject {
         }
     }
 
-    /// The scene `scene` made ready for tracing; kept until the scene changes.
+    /// Prepares the scene `scene` for tracing; the result is kept until the scene changes.
     pub(super) fn world(&self, scene: &Arc<Scene>, job: Job) -> Result<Arc<World>> {
         if let Some(world) = self.kept_world(scene) {
             job.report(1.0);
@@ -394,7 +394,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 /// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
 /// luxfer_scene_find_surface finds for this name. The surface becomes a separate mesh with a copy of its material,
 /// which emits texture * (red, green, blue) in cd/m², each in [0, 1e15]. *mesh and *material receive the indices of the
-/// two; mesh and material may be NULL. Any thread.
+/// new mesh and material; mesh and material may be NULL. Any thread.
 /// Errors: those of luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_place_emission(
@@ -423,14 +423,14 @@ pub unsafe extern "C" fn luxfer_scene_place_emission(
     })
 }
 
-/// A colour that light can have.
+/// A colour of light, after a check of its range.
 pub(super) fn colour(name: &str, red: f32, green: f32, blue: f32) -> Result<Vec3> {
     let colour = Vec3::new(red, green, blue);
     check_light(name, colour)?;
     Ok(colour)
 }
 
-/// An index into a list that is too short.
+/// The error for an index beyond the end of a list.
 pub(super) fn missing(what: &str, index: u32, count: usize) -> Error {
     Error::new(ErrorKind::NotFound, format!("there is no {what} {index}; there are {count}"))
 }

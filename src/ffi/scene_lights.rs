@@ -139,7 +139,8 @@ versioned!(luxfer_luminaire_params, [64], {
 });
 
 impl luxfer_luminaire_params {
-    /// As light of a distribution of a flux, which gets an index.
+    /// The luminaire as a punctual light. `rated` is the flux of its distribution, `distribution` the distribution's
+    /// index.
     fn light(&self, rated: f64, distribution: usize) -> Result<PunctualLight> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
@@ -151,7 +152,7 @@ impl luxfer_luminaire_params {
             Error::argument(format!("luminaire.axis is {:?}; it must be finite and not zero", self.axis))
         })?;
         let c0 = Vec3::from_array(self.c0).try_normalize().and_then(|c0| {
-            // Nearly along the axis is as good as along it.
+            // Refuse a direction that is nearly along the axis, as one exactly along it.
             let across = c0 - axis * c0.dot(axis);
             across.try_normalize().filter(|_| across.length() > 1e-4)
         });
@@ -190,7 +191,7 @@ pub unsafe extern "C" fn luxfer_scene_add_luminaire(
         let distribution = handle::borrow_in(object.context(), distribution, "distribution")?;
         let luminaire = distribution.luminaire();
         let added = object.change(0, |scene| {
-            // Luminaires of a kind share their distribution.
+            // Luminaires with one distribution share its entry in the scene.
             let known = scene.distributions.iter().position(|d| Arc::ptr_eq(d, luminaire));
             let light = params.light(luminaire.flux(), known.unwrap_or(scene.distributions.len()))?;
             if known.is_none() {

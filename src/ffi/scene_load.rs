@@ -22,16 +22,16 @@ use std::path::Path;
 pub struct luxfer_scene_load_params {
     /// sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init.
     pub struct_size: u32,
-    /// 1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the default:
-    /// this gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices or
-    /// addresses on a network.
+    /// 1: files outside the folder of the file, which it names by .. or an absolute path, are read; 0, the default:
+    /// such a name gives LUXFER_UNSUPPORTED. Set it only for files that you trust. Only files are read, never devices
+    /// or addresses on a network.
     pub allow_external_files: u32,
     /// Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions, and
     /// leaves intensities and luminances as they are. 0.001: the file is in millimetres.
     pub unit: f64,
-    /// 0, the default: positions of a scene that lies far from the origin of its file, as on a national grid, are
-    /// relative to an origin of the scene's own, which luxfer_scene_get_origin gives; 1: they keep the origin of the
-    /// file, and are rounded to floats there.
+    /// 0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
+    /// relative to an origin of its own, which luxfer_scene_get_origin gives; 1: positions stay relative to the origin
+    /// of the file, and are rounded to floats there.
     pub keep_origin: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -39,7 +39,7 @@ pub struct luxfer_scene_load_params {
 
 const SIZE: usize = 24;
 
-/// Units that can be meant: a micrometre to a thousand kilometres. [convention]
+/// Lengths in metres that a unit may have: a micrometre to a thousand kilometres. [convention]
 const UNITS: RangeInclusive<f64> = 1e-6..=1e6;
 
 versioned!(luxfer_scene_load_params, [SIZE], {

@@ -109,7 +109,7 @@ pub struct luxfer_texture_use {
     pub struct_size: u32,
     /// Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0.
     pub texture: u32,
-    /// Set of the mesh's texture coordinates that it uses, 0 or 1.
+    /// The mesh's set of texture coordinates that the material uses for this texture, 0 or 1.
     pub uv_set: u32,
     /// LUXFER_WRAP_ value along u.
     pub wrap_u: luxfer_wrap,
@@ -358,7 +358,7 @@ fn material_mut(scene: &mut Scene, index: u32) -> Result<&mut Material> {
     scene.materials.get_mut(index as usize).ok_or_else(|| missing("material", index, count))
 }
 
-/// Where a material keeps its texture of a role.
+/// The field of a material that holds its texture for a purpose.
 fn slot(material: &mut Material, role: luxfer_texture_role) -> Result<&mut Option<TextureRef>> {
     match role {
         LUXFER_TEXTURE_BASE_COLOR => Ok(&mut material.base_color_texture),
@@ -378,7 +378,7 @@ fn wrapping(wrap: luxfer_wrap, name: &str) -> Result<Wrap> {
     }
 }
 
-/// Two rows of three numbers, if there are any.
+/// The two rows of three numbers at a pointer; `None` for NULL.
 fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     if pointer.is_null() {
         return Ok(None);
@@ -386,7 +386,7 @@ fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     Ok(Some(floats(bytes(pointer.cast(), size_of::<[f32; 6]>(), "transform")?)))
 }
 
-/// The report of a texture's use.
+/// The C struct that describes a material's use of a texture.
 fn told(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
     let wrap = scene.textures.get(used.texture).map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
         Wrap::Repeat => LUXFER_WRAP_REPEAT,

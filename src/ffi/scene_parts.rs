@@ -212,7 +212,7 @@ fn array<const N: usize, T: Copy + Default>(
     Ok(rows)
 }
 
-/// Vectors of rows that are all finite.
+/// Turns rows of numbers into vectors; an error if a number is not finite.
 fn check_finite<const N: usize, V: From<[f32; N]>>(rows: Vec<[f32; N]>, name: &str) -> Result<Vec<V>> {
     match rows.iter().position(|row| row.iter().any(|v| !v.is_finite())) {
         Some(i) => Err(Error::argument(format!("element {i} of {name} is {:?}; it must be finite", rows[i]))),
@@ -279,7 +279,7 @@ pub unsafe extern "C" fn luxfer_scene_get_camera(
     })
 }
 
-/// Appends to a list of the scene and tells the index.
+/// Appends an item to a list of the scene and returns its index.
 pub(super) fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
     list.push(item);
     (list.len() - 1) as u32

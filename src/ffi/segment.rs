@@ -64,8 +64,8 @@ pub struct luxfer_segment_params {
     pub ridge: f64,
     /// Seed of the samples; default 1.
     pub seed: u64,
-    /// Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
-    /// neighbours as one surface, in [1e-3, 1e6]; default 8.
+    /// Difference of the first three channels, in their units (CIELAB units for colour), below which the refinement
+    /// treats neighbours as one surface, in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
     /// The subject of the positive strokes: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. For lamps the
     /// settings above have no effect.
@@ -195,8 +195,8 @@ pub unsafe extern "C" fn luxfer_segment_set_region(
     })
 }
 
-/// Sets the strokes from which this mask is made: those in strokes that are for phase, a LUXFER_PHASE_ value. The
-/// stage copies them, and they replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
+/// Sets the strokes from which this mask is made. The stage copies those strokes that are for phase, a LUXFER_PHASE_
+/// value; they replace all earlier strokes. strokes may be NULL: no strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if strokes is for images of another size than the features.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_strokes(
@@ -214,12 +214,13 @@ pub unsafe extern "C" fn luxfer_segment_set_strokes(
     })
 }
 
-/// Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. With the features of
-/// luxfer_features the job proposes a mask if strokes are missing, with LUXFER_WARNING_PROPOSED: the face of the room
-/// under the positive strokes, else the ceiling; lamps among the brightest things of the region. The job may end with
-/// LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a
-/// feature is not finite or a setting is out of range.
+/// Starts a job that segments. If strokes are missing and the features come from luxfer_features, the job proposes a
+/// mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive strokes, or
+/// else the ceiling; for lamps it proposes lamps among the brightest things of the region. params may be NULL for the
+/// defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
+/// if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not
+/// finite or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_start(
     segment: *mut luxfer_segment,

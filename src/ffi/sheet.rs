@@ -71,8 +71,8 @@ pub struct luxfer_sheet_report {
     pub struct_size: u32,
     /// Number of marks found, of 10; at least 6 are needed.
     pub marks: u32,
-    /// Root mean square distance between the marks and their positions by to_photo, in pixels of the photo. More than
-    /// one or two pixels mean that the paper is not flat or that the lens distorts.
+    /// Root mean square distance in pixels of the photo between the marks and the positions that to_photo gives them.
+    /// More than one or two pixels mean that the paper is not flat or that the lens distorts.
     pub residual: f64,
     /// Expected alignment error in pixels of the picture.
     pub error: f64,

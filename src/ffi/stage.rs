@@ -67,7 +67,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         Ok(())
     }
 
-    /// Starts a job on the inputs as they are; its result becomes the stage's when it succeeds.
+    /// Starts a job on a copy of the current inputs. If it succeeds, its result becomes the result of the stage.
     pub(super) fn start(
         self: &Arc<Self>,
         place: *mut *mut luxfer_job,

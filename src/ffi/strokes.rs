@@ -2,7 +2,7 @@
 //!
 //! What the user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a drawing
 //! or as a text, then hand them to a stage: luxfer_transfer_set_strokes, luxfer_segment_set_strokes or
-//! luxfer_features_set_strokes. A stage copies the strokes; to show it later strokes, set them again.
+//! luxfer_features_set_strokes. A stage copies the strokes; after you have added strokes, hand them to the stage again.
 
 use super::context::{Context, luxfer_context};
 use super::guard::{enter, lock};
@@ -61,14 +61,14 @@ impl Strokes {
 /// A stage's copy of the caller's strokes.
 #[derive(Clone, Default)]
 pub(super) struct Painted<T> {
-    /// The strokes that the stage takes of them.
+    /// The part of the caller's strokes that the stage uses.
     pub(super) taken: T,
     /// Width and height of the image they are for; `None` without strokes of the caller.
     size: Option<(usize, usize)>,
 }
 
 impl<T: Default> Painted<T> {
-    /// Copies what `select` takes of the caller's strokes; NULL stands for no strokes.
+    /// Copies the part of the caller's strokes that `select` returns; NULL stands for no strokes.
     pub(super) fn copy(
         context: &Arc<Context>,
         strokes: *mut luxfer_strokes,

@@ -102,7 +102,7 @@ impl Inputs {
     }
 }
 
-/// Adds a guide, or replaces the one of its name.
+/// Adds a guide, or replaces the guide of that name.
 fn add(guides: &mut Vec<Pair>, pair: Pair) -> Result<()> {
     let others = guides.iter().filter(|g| g.name != pair.name);
     let channels = others.map(|g| g.source.image().channels).sum::<usize>() + pair.source.image().channels;
@@ -330,7 +330,7 @@ pub unsafe extern "C" fn luxfer_stylize_start(
 }
 
 /// Starts a job that updates the picture after a change of the artwork. artwork has the size and channels of the first
-/// artwork, and new paint where the 1-channel image changed is above 0.5; the pixels of the picture that were painted
+/// artwork. changed (1 channel) is above 0.5 where artwork has new paint; the pixels of the picture that were painted
 /// from there are painted again. Takes a fraction of the time of luxfer_stylize_start. The caller releases *job. Any
 /// thread.
 /// LUXFER_INVALID_OPERATION unless a job with keep_for_update = 1 has succeeded, or if a job runs. The job may end with
@@ -361,11 +361,12 @@ pub unsafe extern "C" fn luxfer_stylize_update(
     })
 }
 
-/// Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, its size)
-/// is above 0.5 where it is finished; the sources of the guides show its scene, and their targets are NULL. It is a
-/// shorthand for painted as the source mask, its inverse as the target mask, and the artwork as known. Any thread.
-/// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have its size or has
-/// more than 1 channel.
+/// Lets the library paint the rest of a half-painted picture. The artwork is the picture; painted (1 channel, the
+/// artwork's size) is above 0.5 where the picture is finished; the sources of the guides show the scene of the picture,
+/// and their targets are NULL. The call is a shorthand: it sets painted as the source mask, its inverse as the target
+/// mask, and the artwork as known. Any thread.
+/// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
+/// size or has more than 1 channel.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_painted(
     stylize: *mut luxfer_stylize,

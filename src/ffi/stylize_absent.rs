@@ -20,7 +20,7 @@ pub unsafe extern "C" fn luxfer_stylize_create(context: *mut luxfer_context, _: 
     enter(context, |_| left_out())
 }
 
-/// Functions whose arguments do not matter: with the C calling convention the caller removes them.
+/// Defines functions that ignore their arguments: in the C calling convention the caller removes the arguments.
 macro_rules! absent {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]

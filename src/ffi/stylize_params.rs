@@ -91,8 +91,8 @@ pub struct luxfer_stylize_params {
     /// Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100]; default 2;
     /// the paper has 0.
     pub settle: u32,
-    /// Cost of a seam between neighbouring patches in those sweeps, as a share of the mean error, in [0, 100]; default
-    /// 0.2.
+    /// Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0, 100];
+    /// default 0.2.
     pub seam: f32,
     /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,
@@ -132,7 +132,7 @@ const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Gree
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
 const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
 
-/// The setting for an integer of the C interface.
+/// The setting that an integer of the C interface stands for.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {
     let value = usize::try_from(index).ok().and_then(|i| values.get(i));
     value.copied().ok_or_else(|| Error::argument(format!("{name} is {index}; it must be a {prefix} value")))
@@ -202,7 +202,7 @@ impl luxfer_stylize_params {
     }
 }
 
-/// Fills *params with a preset instead: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
+/// Fills *params with a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER; size is sizeof *params.
 /// LUXFER_INVALID_ARGUMENT for another value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_params_preset(

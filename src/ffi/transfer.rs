@@ -81,8 +81,8 @@ pub struct luxfer_transfer_params {
     /// plane_distance and plane_distance_error of luxfer_transfer_report state it.
     pub plane_distance: f64,
     /// Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux. The
-    /// strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
-    /// luxfer_transfer_report.
+    /// strength of the lamps is proportional to it. A photo alone does not determine this luminance: see proposed_white
+    /// of luxfer_transfer_report.
     pub white_luminance: f32,
     /// LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE.
     pub target: luxfer_target,
@@ -373,8 +373,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_zones(
 }
 
 /// Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
-/// plane, the result of the stage UNWARP by that plane. The lamps do not change this camera. Any thread.
-/// LUXFER_NOT_READY if it has no result yet.
+/// plane, the result of the stage UNWARP by that plane. The transfer then keeps this camera, even if its lamps suggest
+/// another one. Any thread.
+/// LUXFER_NOT_READY if rectify has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_rectify(
     transfer: *mut luxfer_transfer,
@@ -393,7 +394,7 @@ pub unsafe extern "C" fn luxfer_transfer_use_rectify(
 }
 
 /// Replaces the result of the stage FEATURES by that of a luxfer_features. Any thread.
-/// LUXFER_NOT_READY if it has no result yet.
+/// LUXFER_NOT_READY if features has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_features(
     transfer: *mut luxfer_transfer,
@@ -407,7 +408,7 @@ pub unsafe extern "C" fn luxfer_transfer_use_features(
 
 /// Replaces the result of the stage PLANE or LIGHTS by that of a luxfer_segment; phase, a LUXFER_PHASE_ value, chooses
 /// the stage. Any thread.
-/// LUXFER_NOT_READY if it has no result yet.
+/// LUXFER_NOT_READY if segment has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_segment(
     transfer: *mut luxfer_transfer,

@@ -80,7 +80,8 @@ pub struct luxfer_transfer_report {
     pub lights_error: f64,
     /// Largest expected error of a corner of the unwarped image, in unwarped pixels.
     pub unwarp_error: f64,
-    /// Relative difference between texture and photo in the share of the lit area.
+    /// As the field error of luxfer_emission_report: largest relative difference between texture and photo in three
+    /// statistics of their lamps.
     pub emission_error: f64,
     /// Largest relative half-width of the solution's 95 % confidence intervals.
     pub relight_error: f64,
@@ -93,24 +94,26 @@ pub struct luxfer_transfer_report {
     pub target: [f32; 3],
     /// 0.
     pub reserved: u32,
-    /// Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN before the
-    /// stage EMISSION has ended, and for a given texture.
+    /// Distance in metres of the photo's camera from the plane that corresponds to the size of the pattern on the
+    /// surface; NaN before the stage EMISSION has ended, and if the caller gave the texture.
     pub plane_distance: f64,
-    /// Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about 0.25
-    /// for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance.
+    /// Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25 for
+    /// lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the distance.
     pub plane_distance_error: f64,
-    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: by the exposure that the photo's file
-    /// states, as luxfer_photo_metadata has it; else 159, which white paper has in the 500 lux of an office.
+    /// Value proposed for luxfer_transfer_params.white_luminance in cd/m²: the white_luminance of luxfer_photo_metadata
+    /// if the photo's file states the exposure, else 159, the luminance of white paper in the 500 lux of an office.
     pub proposed_white: f64,
-    /// Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor.
+    /// Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for the 100
+    /// lux of a corridor.
     pub proposed_white_low: f64,
-    /// Upper bound of proposed_white: by the exposure; else 318, for 1000 lux.
+    /// Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318, for 1000
+    /// lux.
     pub proposed_white_high: f64,
 }
 
 const REPORT_SIZE: usize = 8 + 64 + 72 + 16 + 16 + 24;
 
-/// Illuminances in lux of rooms: of corridors, of offices, and of work on fine things. [convention]: EN 12464-1
+/// Usual illuminances in lux: of corridors, of offices, and for fine work. [convention]: EN 12464-1
 const USUAL_ILLUMINANCE: [f64; 3] = [100.0, 500.0, 1000.0];
 
 versioned!(luxfer_transfer_report, [REPORT_SIZE], {

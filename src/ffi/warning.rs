@@ -32,8 +32,8 @@ pub struct luxfer_warnings {
 
 /// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
 pub type luxfer_warning_code = i32;
-/// The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard
-/// deviation.
+/// The vanishing points do not determine the focal length, which was assumed; the severity is the relative standard
+/// deviation of the focal length.
 pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
 /// The directions of the room axes are uncertain; the severity is the largest standard deviation in radians.
 pub const LUXFER_WARNING_VIEW_UNCERTAIN: luxfer_warning_code = 2;
@@ -42,28 +42,33 @@ pub const LUXFER_WARNING_LENS_DISTORTION: luxfer_warning_code = 3;
 /// The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in
 /// radians.
 pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
-/// The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust,
-/// below the limit.
+/// There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity is the
+/// confidence of the fit, below the limit.
 pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
-/// Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the
-/// severity is their share of the mask and these regions. The place is the pixel where one more stroke helps most.
+/// Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted lamps; the
+/// severity is the share of these pixels in the mask and these regions. The place is the pixel where one more stroke
+/// helps most.
 pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
-/// Strokes of both classes cover the same pixels; the severity is their number per sample.
+/// Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the number of
+/// samples drawn from the strokes.
 pub const LUXFER_WARNING_CONTRADICTORY_STROKES: luxfer_warning_code = 7;
-/// Strokes lie outside the photo; the severity is the number of these pixels per sample.
+/// Pixels of strokes lie outside the photo; the severity is the number of these pixels, divided by the number of
+/// samples drawn from the strokes.
 pub const LUXFER_WARNING_OFF_IMAGE_STROKES: luxfer_warning_code = 8;
 /// A mask is uncertain; the severity is the expected share of wrong pixels.
 pub const LUXFER_WARNING_UNCERTAIN_MASK: luxfer_warning_code = 9;
 /// A mask has no pixel; the severity is 0, below the limit.
 pub const LUXFER_WARNING_EMPTY_MASK: luxfer_warning_code = 10;
-/// A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one of them.
+/// A mask contradicts the strokes that it was made from; the severity is the share of the painted pixels that it
+/// contradicts. The place is one of these pixels.
 pub const LUXFER_WARNING_MISSED_STROKES: luxfer_warning_code = 11;
-/// Lights cover much of their plane; the severity is its share.
+/// Lights cover much of their plane; the severity is the share of the plane that they cover.
 pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
-/// Much of the unwarped plane is magnified; the severity is its share. The place is the one that is magnified most.
+/// Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
+/// strongly magnified. The place is the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
-/// The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the
-/// limit. The place is the flattest.
+/// The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle between
+/// the plane and the viewing ray, below the limit. The place is the point with the smallest angle.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
 /// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
@@ -73,7 +78,7 @@ pub const LUXFER_WARNING_FEW_LAMPS: luxfer_warning_code = 16;
 pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
 /// Colour channels do not meet their target; the severity is their number.
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
-/// The photo clips the target, which is a lower bound; the severity is the number of these channels.
+/// The photo clips channels of the target, which are then lower bounds; the severity is the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
 /// A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in metres,
 /// below the limit if the scene is too small. The message names the likely unit.
@@ -88,7 +93,7 @@ pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
 /// A texture without light would differ less from the photo than this one; the severity is the error of
 /// luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
-/// A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes on lights;
+/// A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are missing;
 /// the severity is the share of the mask that is expected to be wrong.
 pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 /// A scene lies far from the origin. If its positions are relative to an origin of its own (luxfer_scene_get_origin),
@@ -107,12 +112,12 @@ pub struct luxfer_warning {
     pub struct_size: u32,
     /// LUXFER_WARNING_ value.
     pub code: luxfer_warning_code,
-    /// The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look
-    /// within, PLANE without; of a luxfer_scene it is SCENE.
+    /// The stage whose result is in doubt, a LUXFER_STAGE_ value. For a luxfer_segment it is LIGHTS if
+    /// luxfer_segment_set_region gave a mask, else PLANE; for a luxfer_scene it is SCENE.
     pub stage: luxfer_stage,
     /// 1 if the warning has a place in the photo, else 0.
     pub has_place: u32,
-    /// The figure that raised it; each code has its own.
+    /// The figure that caused the warning; its meaning depends on the code.
     pub severity: f64,
     /// The limit that the figure has passed.
     pub limit: f64,

@@ -58,7 +58,8 @@ impl Homography {
         Self(self.rescaled().0.inverse()).rescaled()
     }
 
-    /// The image of a point in homogeneous coordinates; the third changes sign across the line that maps to infinity.
+    /// The image of a point in homogeneous coordinates; the third coordinate changes sign across the line that maps to
+    /// infinity.
     pub fn apply_homogeneous(&self, p: DVec2) -> DVec3 {
         self.0 * p.extend(1.0)
     }

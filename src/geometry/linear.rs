@@ -24,7 +24,7 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
         b.swap(k, row);
         a.iter_mut().for_each(|r| r.swap(k, col));
         order.swap(k, col);
-        // Eliminate the entries below it.
+        // Eliminate the entries below the diagonal.
         for r in k + 1..N {
             let factor = a[r][k] / a[k][k];
             for c in k..N {
@@ -41,7 +41,7 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
     x.iter().all(|v| v.is_finite()).then_some(x)
 }
 
-/// Eigenvalues in rising order, with unit eigenvectors, of a symmetric matrix (cyclic Jacobi rotations).
+/// The eigenvalues of a symmetric matrix in rising order, and its unit eigenvectors (cyclic Jacobi rotations).
 pub fn symmetric_eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
     let mut v: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
     for _ in 0..64 {

@@ -1,9 +1,9 @@
-//! Plane and space geometry in `f64`: homographies, the pinhole camera and its vanishing points, small linear systems, robust
-//! statistics.
+//! Geometry of the plane and of space in `f64`: homographies, the pinhole camera and its vanishing points, polygons,
+//! small linear systems, robust statistics.
 //!
 //! Image points are in pixels, x right, y down, with the centre of the top-left pixel at (0.5, 0.5). Camera space is x
-//! right, y down, z forward. Homogeneous points are divided only where necessary: a vanishing point may be at
-//! infinity.
+//! right, y down, z forward. Homogeneous points are divided by their third coordinate only where necessary, because a
+//! vanishing point may be at infinity.
 
 pub mod homography;
 pub mod linear;

@@ -11,9 +11,9 @@ pub enum FocalSource {
     VanishingPoints,
     /// Assumed as 0.85 of the image width, because the vanishing points do not determine it.
     Assumed,
-    /// Mainly from the metadata of the photo: the vanishing points are less accurate.
+    /// Mainly from the photo's metadata, because the vanishing points are less accurate.
     Metadata,
-    /// From lamps that are alike, as their plane shows them.
+    /// Derived from the shapes of lamps on a plane, which are assumed to be alike.
     Lamps,
 }
 

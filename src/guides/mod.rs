@@ -29,9 +29,10 @@ use crate::rng::Rng;
 use crate::scene::Camera;
 use glam::Vec3;
 
-/// The light components, each with a name and its light path expression (Heckbert's notation): all light; one diffuse
-/// reflection; one glossy reflection; diffuse after diffuse, which is colour bleeding; one or two diffuse reflections,
-/// which distinguishes shadows; and light reflected by glossy onto diffuse surfaces: caustics.
+/// The light components, each with a name and its light path expression in Heckbert's notation: all light; one diffuse
+/// reflection; one glossy reflection; at least two diffuse reflections at the end of the path, which is colour
+/// bleeding; one or two diffuse reflections, which distinguishes shadows; and caustics, light that glossy surfaces
+/// reflect onto diffuse surfaces.
 pub const LIGHT: [(&str, &str); 6] = [
     ("full", "L.*E"),
     ("direct", "LDE"),
@@ -102,7 +103,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<
     let mut light = [film.beauty, next()?, next()?, next()?, next()?, next()?];
     let (mut normals, material, depth) = (next()?, next()?, next()?);
 
-    // Rotate normals to camera axes: the orientation relative to the view is what matters.
+    // Rotate normals to camera axes, because their orientation relative to the view matters.
     let right = camera.forward.cross(camera.up).normalize_or_zero();
     let axes = [right, right.cross(camera.forward).normalize_or_zero(), -camera.forward.normalize_or_zero()];
     for n in normals.data.chunks_exact_mut(3) {
@@ -155,9 +156,9 @@ pub struct Pair {
     pub name: &'static str,
     pub source: Image,
     pub target: Image,
-    /// Whether it is light, in `[0, 1]`, or data.
+    /// Whether the guide is light, in `[0, 1]`, rather than data.
     pub is_light: bool,
-    /// Whether it was requested in [`Extras`].
+    /// Whether the guide was requested in [`Extras`].
     pub is_extra: bool,
 }
 
@@ -193,10 +194,10 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
     Ok(pairs)
 }
 
-/// Exposed value of the 90th percentile of luminance [convention].
+/// Value of the 90th percentile of luminance after the common exposure [convention].
 const BRIGHT: f32 = 0.8;
 
-/// The factor from cd/m² to the common exposure.
+/// The factor from luminance in cd/m² to values at the common exposure.
 pub fn exposure(source: &Image, target: &Image) -> Result<f32> {
     let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
     let mut luminances = try_collect(pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()))?;

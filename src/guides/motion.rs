@@ -8,8 +8,8 @@ use glam::Vec3;
 /// Relative difference in depth above which a surface was occluded in the previous frame [origin not recorded].
 const DEPTH_TOLERANCE: f32 = 0.02;
 
-/// Two channels: the position in the previous frame relative to the position in this one, in pixels; NaN where there
-/// is no surface, or where it was occluded or outside the picture.
+/// Two channels: the displacement in pixels from each pixel to the position of its surface point in the previous frame.
+/// It is NaN where there is no surface, and where the point was occluded or outside the picture.
 pub fn motion(now: &Guides, before: &Guides) -> Result<Image> {
     now.depth.check_same_size("this frame", &before.depth, "the frame before")?;
     let (width, height) = (now.depth.width, now.depth.height);

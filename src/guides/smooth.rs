@@ -38,8 +38,8 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Weighted means over 5 × 5 pixels at distance `step`; `range_weight` weights a pair of positions by their
-    /// brightness in `guide`.
+    /// Weighted means over 5 × 5 pixels that lie `step` pixels apart; `range_weight` gives the weight of a pair of
+    /// pixels from their brightness in `guide`.
     fn average(
         &self,
         light: &Image,

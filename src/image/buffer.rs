@@ -37,7 +37,7 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
     let mut items = items.into_iter();
     let promised = items.size_hint().0;
     let mut data = try_with_capacity(promised)?;
-    // These fit without an allocation, so that a loop may add several at a time.
+    // The promised items fit into the reserved memory. Without checks for room, the loop may add several at a time.
     data.extend(items.by_ref().take(promised));
     for item in items {
         try_push(&mut data, item)?;

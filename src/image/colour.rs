@@ -81,8 +81,8 @@ fn cube_root(t: f64) -> f64 {
     t * r * r
 }
 
-/// CIEDE2000 difference of a linear light from a wanted one, at the exposure at which the wanted one is a middle grey;
-/// 0 if it is black.
+/// CIEDE2000 difference between the linear colours `light` and `wanted`, at the exposure at which `wanted` is a middle
+/// grey; 0 if `wanted` is black.
 pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
     let luminance = f64::from(luminance(wanted.as_vec3()));
     if !(luminance > 0.0) {

@@ -35,8 +35,7 @@ fn failed(path: &Path, e: io::Error) -> Error {
     Error::new(kind, format!("{}: {e}", path.display()))
 }
 
-/// A file to be written. It is checked before the work whose result it receives, so that a missing folder is found
-/// early.
+/// A file to be written. It is checked before its content is computed, so that a missing folder is found early.
 pub struct Target {
     path: PathBuf,
     way: Way,

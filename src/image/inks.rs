@@ -1,8 +1,9 @@
 //! Inks of JPEG files: cyan, magenta, yellow and black, for the colour profiles that describe them.
 //!
-//! The crate `image` converts inks to RGB without a profile; so this file uses the decoder below it, `zune-jpeg`.
-//! Writers store 255 for no ink, as Adobe Photoshop does and every reader assumes (libjpeg, `libjpeg.txt`, "Special
-//! color spaces"). YCCK is the YCbCr of the inverse of the stored cyan, magenta and yellow, with black unchanged.
+//! The crate `image` converts inks to RGB without a profile. So this file uses the decoder on which that crate is
+//! based, `zune-jpeg`. Files store 255 for no ink, as Adobe Photoshop writes them and every reader assumes (libjpeg,
+//! `libjpeg.txt`, "Special color spaces"). In YCCK files, YCbCr encodes the inverse of the stored cyan, magenta and
+//! yellow as R, G and B; black is unchanged.
 
 use super::Image;
 use super::containers::jpeg_segments;
@@ -19,7 +20,8 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 /// Whether the frame of a JPEG has four components.
 pub fn has_inks(bytes: &[u8]) -> bool {
-    // Frames have the markers C0 to CF but for tables (C4, CC) and an extension (C8); the sixth byte counts components.
+    // The markers C0 to CF denote frames, except tables (C4, CC) and an extension (C8). The sixth byte of a frame is
+    // its number of components.
     jpeg_segments(bytes)
         .find(|(marker, _)| matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc))
         .is_some_and(|(_, frame)| frame.get(5) == Some(&4))
@@ -56,7 +58,8 @@ fn of_cmyk(stored: [u8; 4]) -> [f32; 4] {
     stored.map(|v| 1.0 - f32::from(v) / 255.0)
 }
 
-/// YCbCr of JFIF (ITU-T T.871, 7): its R, G and B are the amounts of cyan, magenta and yellow.
+/// Converts YCCK to amounts of inks: the R, G and B of YCbCr (JFIF; ITU-T T.871, 7) are the amounts of cyan, magenta
+/// and yellow.
 fn of_ycck([y, cb, cr, k]: [u8; 4]) -> [f32; 4] {
     let (y, cb, cr) = (f32::from(y), f32::from(cb) - 128.0, f32::from(cr) - 128.0);
     // [convention]: T.871, 7

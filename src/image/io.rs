@@ -91,7 +91,8 @@ enum Read {
     Inks,
 }
 
-/// Reads a picture as stored, and converts it from the space that its file states, or from sRGB without a statement.
+/// Reads a picture as stored, and converts it from the space that its file states, or from sRGB if the file states
+/// none.
 fn convert_stored(
     space: Space,
     encoding: Encoding,

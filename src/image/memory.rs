@@ -1,8 +1,8 @@
-//! Memory that third-party codecs allocate without a way to fail: checked before they run, and charged to the memory
-//! budget of the caller ([`super::working`]).
+//! Memory that third-party codecs need. They abort the process if it cannot be allocated. Therefore it is checked
+//! before they run, and charged to the memory budget of the caller ([`super::working`]).
 //!
-//! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr`, without
-//! the buffers that they are given.
+//! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr`. Buffers
+//! that the library passes to these crates are not included.
 
 use super::containers::riff_chunks;
 use super::{MAX_SIDE, no_memory};
@@ -36,8 +36,8 @@ pub(super) fn check_pixels(
 /// Bytes that the crate `image` needs for the pixels of a file.
 pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> usize {
     match format {
-        // For progressive files the coefficients of four components, two bytes each, in blocks of up to 32 pixels; and
-        // a row of blocks.
+        // In progressive files: the coefficients of four components, two bytes each, in blocks of up to 32 pixels. In
+        // all files: a row of blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
         // The frame, if it is narrower than the screen, and the tables of the LZW decoder.

@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-/// The header of such a file.
+/// The header of a file of exact numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
     /// Width and height of the whole picture.

@@ -21,7 +21,8 @@ pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Primaries with which R, G and B are CIE X, Y and Z [convention].
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
-/// Maximum size in bytes of a tile in a short file; larger tiles need a file of corresponding length.
+/// Tiles of up to this many bytes are accepted in a file of any length. A larger tile is refused if the file is too
+/// short to contain it, even at the maximum compression ratio.
 const MAX_TILE_BYTES: usize = 64 << 20;
 
 pub(super) fn broken(e: exr::error::Error) -> Error {
@@ -129,7 +130,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<(Image, Space)> {
 struct Place {
     /// Width of the layer.
     width: usize,
-    /// First column and row of that part, in the layer and in the picture.
+    /// First column and row of this part, counted in the layer (`from`) and in the picture (`to`).
     from: [usize; 2],
     to: [usize; 2],
     size: [usize; 2],

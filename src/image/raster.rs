@@ -25,7 +25,7 @@ pub fn working_bytes(bytes: &[u8], format: ImageFormat) -> Result<usize> {
     Ok(stored.saturating_add(memory::pixels(bytes, format, width as usize, height as usize, pixel)))
 }
 
-/// Grey with alpha becomes RGBA.
+/// Number of channels of the image for a number of stored channels: grey with alpha becomes RGBA.
 fn channels(stored: usize) -> usize {
     if stored == 2 { 4 } else { stored }
 }

@@ -1,5 +1,5 @@
-//! Strided views of pixels in the caller's memory: checked against its size once, then read into or written from an
-//! [`Image`].
+//! Strided views of pixels in the caller's memory. A view is checked once against the size of the memory; then it is
+//! read into an [`Image`] or written from one.
 
 use crate::error::{Error, Result};
 use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};

@@ -20,7 +20,7 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
         Format::Raster(format) => raster::working_bytes(bytes, format)?,
     };
     let profile = file_colour::profile(bytes, format)?;
-    // Amounts of inks that a profile converts are a picture of four channels.
+    // If a profile converts the inks, their amounts are first read as a picture of four channels.
     let inks = match &profile {
         Some(_) if file_colour::has_inks(bytes, format) => {
             let (width, height, _) = probe(bytes)?;

@@ -6,7 +6,7 @@ use super::tensor::Tensor;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 
-/// A network with one input image and one output, the first.
+/// A network with one input image. Of its outputs, only the first is computed.
 pub struct Network {
     pub(super) nodes: Vec<Node>,
     /// For each value passed between nodes, its contents if known before the run.

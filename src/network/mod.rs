@@ -5,14 +5,14 @@
 //! bytes ─▶ protobuf ─▶ graph (checked, only what the output needs) ─▶ run: node by node, parallel inside ─▶ output
 //! ```
 //!
-//! Files are not trusted. Shapes are checked where they are used, the output of a node is charged to a
-//! [`MemoryBudget`](tensor::MemoryBudget) before it is allocated, and a value is dropped after its last use; a file
-//! cannot make a run take more memory than [`MAX_BYTES`] in addition to its own weights. All loops work in units that
-//! do not depend on the number of threads: equal input yields equal bits. A cancel request is answered within one row
-//! of the largest layer.
+//! Files are not trusted. Shapes are checked where they are used. The output of a node is checked against a
+//! [`MemoryBudget`](tensor::MemoryBudget) before it is allocated, and a value is dropped after its last use.
+//! [`MAX_BYTES`] limits the memory that a file can make a run take, in addition to the file's own weights and to the
+//! temporary memory of a node. All loops work in units that do not depend on the number of threads, so equal input
+//! yields equal bits. A cancel request is answered within one row of the largest layer.
 //!
-//! Existing runtimes are not used because they are unsuitable for a host's process: they keep threads of their own for
-//! good, print, abort the process when memory runs out, or cannot be cancelled.
+//! Existing runtimes are not used because they are unsuitable for a library in another program's process: they never
+//! end their own threads, print to the console, abort the process when memory runs out, or cannot be cancelled.
 //!
 //! Computes in `f32`; doubles and halves in a file are converted to it, all integers and booleans to `i64`. Opsets 7
 //! to 21.

@@ -37,9 +37,9 @@ impl Field {
         Ok(field)
     }
 
-    /// The field at twice the resolution; its matches are hints: twice the coarse match plus the parity of the pixel,
-    /// clamped to `base`. At the border, where the finer image has more patches than twice the coarse one, it extends
-    /// the nearest entry.
+    /// The field at twice the resolution, as hints. Each match is twice the coarse match plus the parity of the fine
+    /// position, clamped to `base`. Where the finer image has more than twice the patches of the coarse image, the
+    /// patches beyond continue the match of the last coarse patch.
     pub fn upsample(&self, width: usize, height: usize, base: &Domain) -> Result<Self> {
         let mut field = Self::new(width, height)?;
         for (i, at) in field.at.iter_mut().enumerate() {
@@ -54,7 +54,8 @@ impl Field {
         Ok(field)
     }
 
-    /// The inverse field, as hints: if several patches share a match, the closest one is taken (the first, if equal).
+    /// The inverse field: for each patch of `base`, the patch of this field that is matched to it, and their distance.
+    /// Hints are left out. If several patches share a match, the closest one is taken (the first, if equal).
     pub fn invert(&self, base: &Domain) -> Result<Self> {
         let mut inverse = Self::new(base.width, base.height)?;
         for (i, (&at, &error)) in self.at.iter().zip(&self.error).enumerate() {

@@ -10,10 +10,10 @@
 //! A patch is identified by its top-left pixel and always lies inside its image: an image of `W × H` pixels has `(W -
 //! w + 1) × (H - w + 1)` patches of width `w`.
 //!
-//! Profile, on the real pair of `tests/real_stylize.rs` at 1200 × 912 with 16 channels: a third of the time is spent
-//! on distances, a quarter on choosing candidates, a seventh on voting, a twentieth on sorting errors. The images take
-//! 32 bytes per pixel on each side and exceed the caches, but tiles fit. A neighbour that continues the same match is
-//! no candidate, so sweeps get cheaper as a field gets more coherent.
+//! Profile, on the real pair of `tests/real_stylize.rs` at 1200 × 912 with 16 channels: a third of the time is spent on
+//! distances, a quarter on choosing candidates, a seventh on voting, a twentieth on sorting errors. The images of
+//! exemplar and target take 32 bytes per pixel each. They exceed the caches, but tiles fit. A neighbour whose match
+//! continues a patch's own match offers no new candidate, so sweeps become faster as a field becomes more coherent.
 //!
 //! Not modelled: rotated, mirrored, scaled or recoloured patches.
 

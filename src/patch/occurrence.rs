@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-/// Updated with every match that changes, by a search on one thread.
+/// The occurrence map. A search on one thread updates it with every match that changes.
 pub struct Occurrence {
     /// Width of the image in pixels, and of a patch.
     width: usize,
@@ -25,8 +25,8 @@ pub struct Occurrence {
 }
 
 impl Occurrence {
-    /// Counts the matches of `field` among the `allowed` patches of width `patch`; under uniform usage a match costs
-    /// `weight`, in the units of a distance.
+    /// Counts the matches of `field` among the `allowed` patches of width `patch`. Under uniform usage, the penalty of
+    /// a match is `weight`, in the units of a distance.
     pub fn new(field: &Field, allowed: &Domain, patch: usize, weight: f64) -> Result<Self> {
         let (width, height) = (allowed.width + patch - 1, allowed.height + patch - 1);
         let matched = field.at.iter().filter(|&&at| at != NONE);
@@ -47,7 +47,7 @@ impl Occurrence {
     pub fn cost(&self, position: u32) -> u32 {
         let cost: f32 =
             pixels(position, self.width, self.patch).map(|i| self.uses[i].load(Relaxed) as f32 * self.each[i]).sum();
-        // A distance has the same bound, so that their sum does not overflow.
+        // A distance stays below 2³¹, so the sum of cost and distance does not overflow.
         cost.min(i32::MAX as f32 / 2.0) as u32
     }
 

@@ -1,7 +1,7 @@
 //! PatchMatch (Barnes et al. 2009): propagation and random search, with results independent of the number of threads.
 //!
-//! The query image is divided into fixed tiles. A sweep visits each tile forwards and backwards, sees the rest of the
-//! field as it was before the sweep, and writes all tiles back at the end.
+//! The query image is divided into fixed tiles. A sweep visits each tile forwards and backwards. It uses the current
+//! matches inside the tile, and the matches from before the sweep outside it. All tiles are written back at the end.
 
 use super::domain::Domain;
 use super::field::Field;
@@ -54,7 +54,7 @@ impl Search<'_> {
         self.kernel.distance(at(self.query, x, y), at(self.base, match_x, match_y), run, self.patch, limit)
     }
 
-    /// The penalty of a match at a position, or of [`NONE`].
+    /// The usage penalty of a match at a position; 0 for [`NONE`], or without penalties.
     fn cost(&self, position: u32) -> u32 {
         match self.occurrence {
             Some(occurrence) if position != NONE => occurrence.cost(position),
@@ -135,9 +135,10 @@ impl Search<'_> {
 }
 
 impl Search<'_> {
-    /// Lets each active patch continue a neighbour's match if that lowers its distance plus `seam` per neighbour (of
-    /// four) that its match does not continue: one forward and one backward round of iterated conditional modes (Besag
-    /// 1986). No new matches are searched for, so the sum of distances and seams of a tile never rises.
+    /// Lets each active patch continue a neighbour's match if that lowers its cost: its distance, plus `seam` for each
+    /// of its four neighbours whose match it does not continue. Runs one forward and one backward round of iterated
+    /// conditional modes (Besag 1986). It searches for no new matches, and the sum of distances and seams of a tile
+    /// never rises.
     pub fn join(&self, field: &mut Field, seam: u32, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let tiles = exec::map(columns * rows, job, |t| {
@@ -232,7 +233,7 @@ impl Tile {
         for step in 0..2 * count {
             let i = if step < count { step } else { 2 * count - 1 - step };
             let (x, y) = (self.x0 + i % self.width, self.y0 + i / self.width);
-            // The match here that would continue each neighbour's match.
+            // For each neighbour, the match of this patch that would continue the neighbour's match.
             let around = [(-1, 0), (1, 0), (0, -1), (0, 1)].map(|(dx, dy)| {
                 let at = self.neighbour(before, x as isize + dx, y as isize + dy)?;
                 let (px, py) = unpack(at);

@@ -1,5 +1,5 @@
-//! An alternative to PatchMatch: a k-d tree over the channel means of patches (Bentley 1975), traversed without
-//! backtracking; the neighbours in tree order are compared in full.
+//! An alternative to PatchMatch: a k-d tree over the channel means of patches (Bentley 1975). A query descends to one
+//! leaf without backtracking, and is compared in full with the patches around that leaf in tree order.
 //!
 //! Means carry little information about texture, so the matches are worse than PatchMatch's, but no iterations and no
 //! initial field are needed.

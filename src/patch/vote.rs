@@ -88,7 +88,7 @@ pub fn vote(
     })
 }
 
-/// Collects the exemplar pixels that the patches over a position place there; `weight` is that of a patch.
+/// Collects the exemplar pixels that the patches over a position place there; `weight(i)` is the weight of patch `i`.
 #[inline(always)]
 fn collect(ballots: &mut Vec<Ballot>, field: &Field, patch: usize, [x, y]: [usize; 2], weight: impl Fn(usize) -> f64) {
     ballots.clear();

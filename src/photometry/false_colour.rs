@@ -30,8 +30,8 @@ pub enum Unit {
 pub struct Params {
     pub scale: Scale,
     pub unit: Unit,
-    /// Value of the darkest colour, ≥ 0; must be > 0 on a logarithmic scale, where 0 selects a thousandth of the
-    /// largest.
+    /// Value of the darkest colour, ≥ 0. On a logarithmic scale, 0 selects a thousandth of the value of the lightest
+    /// colour.
     pub minimum: f64,
     /// Value of the lightest colour, > `minimum`; 0 selects the largest value of the image.
     pub maximum: f64,
@@ -95,7 +95,7 @@ fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
 /// An invalid range; no value above 0 where the range is derived from the image.
 pub fn render(image: &Image, params: &Params) -> Result<Image> {
     let range = Range::new(params, image)?;
-    // 256 steps are below the visible difference.
+    // With 256 steps, the difference between neighbouring colours is too small to see.
     let table: Vec<Vec3> = (0..256).map(|i| colour_of(f64::from(i) / 255.0)).collect();
     let seen = |x: usize, y: usize| {
         let share = range.share(f64::from(value(image, x, y)));

@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
 use std::fmt::Write;
 
-/// [convention]
+/// Metres per foot [convention].
 const FEET: f64 = 0.3048;
 
 /// The words of the lines after `TILT=`, each with its line number.
@@ -64,7 +64,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         words.list("a tilt factor", pairs, 1e9)?;
     }
 
-    // Ten numbers on one line and three on the next by the standard; in practice on any lines.
+    // The standard puts ten numbers on one line and three on the next; in practice they are on any lines.
     let lamps = words.within("the number of lamps", 0.0, 1e6)?;
     let (line, word) = words.next("lumens per lamp")?;
     let lumens: f64 = number(line, word, "lumens per lamp")?;

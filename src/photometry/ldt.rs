@@ -130,7 +130,7 @@ fn lamp_sets<'a>(rows: &mut Rows<'a, impl Iterator<Item = (usize, &'a str)>>) ->
     Ok(first)
 }
 
-/// Angles and intensities of all planes of the circle: each equals a stored plane.
+/// Angles and intensities of all planes of the circle. By symmetry, each plane equals a stored plane.
 fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
     let single = symmetry == 1;
     let planes = angles.len();
@@ -147,7 +147,7 @@ fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gam
     (shown, candela)
 }
 
-/// Indices of the planes that a file stores, by its symmetry.
+/// Indices of the planes that a file with the given symmetry stores.
 fn stored_planes(symmetry: usize, planes: usize) -> std::result::Result<Vec<usize>, &'static str> {
     match symmetry {
         0 => Ok((0..planes).collect()),

@@ -17,8 +17,8 @@ pub struct Luminaire {
     pub lamp_flux: f64,
     /// Electric power in watts including the ballast; 0 if unknown.
     pub watts: f64,
-    /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for round ones, as
-    /// in IES.
+    /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis; negative for the diameters
+    /// of round openings, as in IES.
     pub size: [f64; 3],
 }
 
@@ -92,7 +92,7 @@ impl Luminaire {
         in_plane(before) + (in_plane(after) - in_plane(before)) * s
     }
 
-    /// The angle γ in degrees from which on there is no light.
+    /// The angle γ in degrees beyond which the luminaire emits no light.
     pub fn widest(&self) -> f64 {
         let n = self.gammas.len();
         let dark = |i: usize| self.candela.iter().skip(i).step_by(n).all(|v| *v == 0.0);
@@ -100,8 +100,8 @@ impl Luminaire {
         self.gammas[first_dark.min(n - 1)]
     }
 
-    /// Luminous flux in lumens: the integral over the sphere of the intensity, linear between angles, integrated
-    /// exactly.
+    /// Luminous flux in lumens: the integral of the intensity over the sphere, which is exact for an intensity that is
+    /// linear between the vertical angles.
     pub fn flux(&self) -> f64 {
         let (n, m) = (self.gammas.len(), self.planes.len());
         // The share of the circle that each plane represents.

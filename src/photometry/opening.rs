@@ -1,5 +1,5 @@
-//! The luminous opening of a luminaire: its shape, by the conventions of LM-63 for the signs of the dimensions, and its
-//! area as seen from a direction, by which an intensity becomes a luminance (CIE 117: `L = I / A_p`).
+//! The luminous opening of a luminaire: its shape, which LM-63 encodes in the signs of the dimensions, and its area as
+//! seen from a direction, which converts an intensity to a luminance (CIE 117: `L = I / A_p`).
 //!
 //! Points are in the luminaire's own coordinates, in metres from the centre of the opening: x along C = 0, y along
 //! C = 90, z along the axis, towards γ = 0.
@@ -17,7 +17,7 @@ pub enum Opening {
     Box(DVec3),
     /// A cylinder along coordinate axis `axis`, with diameters along the next two axes; a disc if the length is 0.
     Cylinder { axis: usize, length: f64, diameters: [f64; 2] },
-    /// A ball of a diameter.
+    /// A ball with this diameter.
     Ball(f64),
 }
 
@@ -51,8 +51,8 @@ impl Face {
 }
 
 impl Opening {
-    /// The opening of dimensions along C = 0, along C = 90 and along the axis, negative for round ones; `None` for a
-    /// luminaire without area, which is a point.
+    /// The opening with the given dimensions along C = 0, along C = 90 and along the axis; a negative dimension is a
+    /// diameter. `None` for a luminaire without area, which is a point.
     pub fn new([x, y, z]: [f64; 3]) -> Option<Self> {
         // A round opening may state one of its diameters only.
         let (x, y) = match (x, y) {
@@ -72,7 +72,8 @@ impl Opening {
         (sides.iter().all(|s| s.is_finite()) && sides.iter().any(|s| *s > 0.0)).then_some(opening)
     }
 
-    /// The faces that are seen from far away in a unit direction; their projections cover that of the opening once.
+    /// The faces that a distant observer in a unit direction sees. The projections of the faces cover the projection of
+    /// the opening exactly once.
     pub fn faces(&self, direction: DVec3) -> Vec<Face> {
         match *self {
             Self::Box(size) => (0..3)
@@ -113,7 +114,8 @@ impl Opening {
     }
 }
 
-/// The end of a cylinder that faces a direction, and the rectangle that its side projects like.
+/// The end of a cylinder that faces a direction, and a rectangle with the same projected area as the side of the
+/// cylinder.
 fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec<Face> {
     let [along, first, second] = [axis, (axis + 1) % 3, (axis + 2) % 3].map(|i| DVec3::AXES[i]);
     let end = along * (length / 2.0 * direction[axis].signum());

@@ -12,7 +12,8 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 pub const MIN_KELVIN: f64 = 1000.0;
 pub const MAX_KELVIN: f64 = 20_000.0;
 
-/// Steps in mired of the initial scan: the distance to the locus has a single minimum within two of them.
+/// Number of steps of the initial scan, equal in mired. Within two neighbouring steps the distance to the locus has a
+/// single minimum.
 const SCAN: usize = 96;
 /// Golden-section steps, down to rounding.
 const SECTIONS: usize = 60;
@@ -76,11 +77,13 @@ pub fn blackbody(kelvin: f64) -> DVec3 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     pub kelvin: f64,
-    /// Factor ≥ 0 on [`blackbody`] of that temperature: the luminance of the emission, if its strength was 1 cd/m².
+    /// Factor ≥ 0 on [`blackbody`] of that temperature. It is the luminance of the emission in cd/m² if the response is
+    /// given per 1 cd/m² of emission.
     pub luminance: f64,
     /// The target's mean radiance under this light and the other lights.
     pub achieved: DVec3,
-    /// CIEDE2000 difference between it and the wanted radiance, at the exposure that shows the latter as middle grey.
+    /// CIEDE2000 difference between the achieved and the wanted radiance, at the exposure that shows the wanted
+    /// radiance as middle grey.
     pub delta_e: f64,
 }
 

@@ -5,7 +5,7 @@ use super::Goal;
 /// The error of a stage as a function of its time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curve {
-    /// Minimum and maximum time in seconds that it can use; 0 < minimum <= maximum.
+    /// Minimum and maximum time in seconds that the stage can use; 0 < minimum <= maximum.
     pub min_seconds: f64,
     pub max_seconds: f64,
     /// Ascending times in seconds, each with the squared error after it. Between two of them the squared error falls

@@ -61,7 +61,7 @@ impl Strength {
         Ok(Self { seconds_per_path: seconds / trials / f64::from(TRIAL), half_width: (squares / trials).sqrt() })
     }
 
-    /// The error that it contributes to a picture of the given contrast, against time.
+    /// The error that the solution contributes to a picture of the given contrast, against time.
     pub fn curve(&self, contrast: f64) -> Curve {
         let [min_seconds, max_seconds] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
         Curve::of_independent(

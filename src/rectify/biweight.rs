@@ -1,4 +1,5 @@
-//! Expectations under normal noise of Tukey's biweight: means over the residuals `r` within its limit, which is 1.
+//! Expected values of Tukey's biweight for normally distributed residuals `r`: means over the residuals within the
+//! limit of the biweight, which is 1.
 
 use std::sync::LazyLock;
 

@@ -31,7 +31,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let orthogonal = &found.points[..found.points.len().min(3)];
     let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, expected);
 
-    // Drop directions far from orthogonal to a better supported direction: they are not room axes.
+    // Drop each direction that is far from orthogonal to a direction with better support: it is no room axis.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, p) in orthogonal.iter().enumerate() {
@@ -94,8 +94,8 @@ fn focal_length(
     match (given, focal_from_points(points, principal, expected.focal)) {
         (Some(f), _) => (f, FocalSource::Given),
         (None, Some((log_focal, spread))) => {
-            // Combine with the prior by inverse variance; the prior decides only where the points constrain the focal
-            // length weakly.
+            // Combine this estimate with the prior, weighting both by inverse variance; the prior decides only where
+            // the points constrain the focal length weakly.
             let (a, b) = (spread.powi(-2), expected.spread.powi(-2));
             let focal = ((log_focal * a + expected.focal.ln() * b) / (a + b)).exp();
             (focal, if a > b { FocalSource::VanishingPoints } else { expected.source })
@@ -193,7 +193,7 @@ fn orthonormal(directions: [Option<(DVec3, f64)>; 3]) -> DMat3 {
     polar([a, down, ahead])
 }
 
-/// `M (Mᵀ M)^(-1/2)` of the matrix `M` whose columns are scaled by their certainties.
+/// The rotation `M (Mᵀ M)^(-1/2)`, where `M` has the given columns, scaled by their certainties.
 fn polar(columns: [(DVec3, f64); 3]) -> DMat3 {
     // Limit the ratio of weights to 1e4: a larger one would only lose digits.
     let min_error = columns.iter().map(|c| c.1).fold(f64::INFINITY, f64::min).max(1e-12);

@@ -41,8 +41,9 @@ const MAX_RESIDUAL: f64 = 0.25;
 const BIWEIGHT_LIMIT: f64 = 4.685;
 /// Segments per physical line: both sides of a frame, or the pieces of one line [origin not recorded].
 const SEGMENTS_PER_LINE: f64 = 2.0;
-/// Deviation of real lenses from the model: the root mean square estimate over views cut out of panoramas, which have
-/// no lens distortion apart from stitching, where their lines agree [bench: `tests/real_rectify.rs`].
+/// Error caused by the deviation of real lenses from the model. It is the root mean square of the estimates over views
+/// that were cut out of panoramas and whose lines agree; these views have no lens distortion apart from stitching
+/// [bench: `tests/real_rectify.rs`].
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
@@ -57,7 +58,7 @@ pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Op
 /// The estimate from one line.
 #[derive(Clone, Copy, Debug)]
 struct LineEstimate {
-    /// Estimate of k that neglects the quadratic term of the curvature.
+    /// Estimate of k that neglects the term `3 k d² / R²` of the curvature.
     corner: f64,
     /// Inverse variance of the estimate.
     weight: f64,
@@ -66,7 +67,8 @@ struct LineEstimate {
 }
 
 impl LineEstimate {
-    /// The estimate of k with the quadratic term evaluated at an approximate k.
+    /// The estimate of k if the term `3 k d² / R²` of the curvature is evaluated at the approximate value `nearly` of
+    /// k.
     fn at_corner(&self, nearly: f64) -> f64 {
         self.corner * (1.0 - 3.0 * nearly * self.squared_offset)
     }
@@ -83,8 +85,9 @@ impl LineEstimate {
     }
 }
 
-/// Positions of the edge along and across a segment, one per pixel of length: the maximum of the gradient component
-/// that agrees with the edge's polarity, so that neighbouring edges do not bias it.
+/// Positions of the edge along and across a segment, one per pixel of length: each is the maximum of the gradient
+/// across the segment with the polarity of the edge, so that neighbouring edges of opposite polarity do not bias the
+/// position.
 fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
     let length = segment.length();
     if length < MIN_LENGTH {

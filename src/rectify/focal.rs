@@ -17,7 +17,7 @@ pub struct Expected {
 }
 
 impl Expected {
-    /// From the photo's metadata, or else the prior of photos of that width.
+    /// The prior from the photo's metadata or, without metadata, from the usual focal length of photos of this width.
     pub(super) fn new(params: &Params, width: usize) -> Self {
         match params.expected_focal {
             Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },

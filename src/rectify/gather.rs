@@ -10,7 +10,8 @@ use glam::Vec4;
 /// Up to three channels of each pixel; the remaining lanes are undefined.
 pub type Sums = [Vec4; RUN];
 
-/// Adds the weighted taps of all channels if the image has one or three, else of the given channel.
+/// Adds the weighted taps of each pixel to the sums: those of all channels if the image has one or three channels,
+/// otherwise those of the given channel only.
 #[inline(always)]
 pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], to: &mut Sums) {
     match (source.channels, level) {
@@ -39,7 +40,7 @@ fn gather_wide(source: &Image, taps: &Taps, to: &mut Sums) {
     gather::<super::lanes::RgbLanesAvx512>(source, taps, to);
 }
 
-/// Processes the pixels whose taps all lie inside the source.
+/// Adds the weighted taps of the pixels whose taps all lie inside the source.
 #[inline(always)]
 fn gather<F: PixelLanes>(source: &Image, taps: &Taps, to: &mut Sums) {
     match (taps.is_sharp, taps.is_sheared) {
@@ -94,7 +95,8 @@ fn within(value: Vec4, low: Vec4, high: Vec4) -> Vec4 {
     Vec4::select(raised.cmpgt(high), high, raised)
 }
 
-/// Processes some channels of pixel `i`, extending the border of the image.
+/// Adds the weighted taps of some channels of pixel `i`. A tap outside the image takes the value of the nearest border
+/// pixel.
 #[cold]
 #[inline(never)]
 fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: usize, to: &mut Sums) {
@@ -114,7 +116,8 @@ fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: 
     }
 }
 
-/// Writes the mean over `parts` sums: three channels, or a single one of any number.
+/// Writes the mean over the `parts` of each footprint: all channels of an image with three, otherwise only the given
+/// channel.
 #[inline(always)]
 pub fn store(sums: &Sums, parts: usize, channels: usize, channel: usize, mut out: &mut [f32]) {
     let share = 1.0 / parts as f32;

@@ -4,7 +4,7 @@
 
 use glam::{Vec4, Vec4Swizzles};
 
-/// Taps along each side of a pixel, and pixels in a register.
+/// Number of taps along each side of a pixel's filter, and number of pixels in a register.
 pub const TAPS: usize = 4;
 
 /// Maximum number of samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after
@@ -30,8 +30,8 @@ pub trait PixelLanes: Copy {
     fn add(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
-    /// The sum over the four pixels for each channel; the remaining lanes are undefined. The same holds for the next
-    /// two.
+    /// The sum over the four pixels for each channel; the remaining lanes are undefined. The remaining lanes of the
+    /// next two functions are undefined too.
     fn sum(self) -> Vec4;
     fn min_over_pixels(self) -> Vec4;
     fn max_over_pixels(self) -> Vec4;

@@ -10,12 +10,12 @@ use crate::job::Job;
 use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Focal lengths tried where the candidates imply none, in half image sides: 20 to 110 degrees of view [origin not
-/// recorded].
+/// Focal lengths that are tried besides those that pairs of candidates imply, in units of half the longer image side:
+/// angles of view from 20 to 110 degrees [origin not recorded].
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// Prior of the focal length in half image sides (0.85 of the width), and the standard deviation of its logarithm
-/// [origin not recorded].
+/// Prior of the focal length in units of half the longer image side (0.85 of the width), and the standard deviation of
+/// its logarithm [origin not recorded].
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
@@ -23,7 +23,8 @@ pub const USUAL_SPREAD: f64 = 0.4;
 /// [origin not recorded].
 const FOCAL_COST: f64 = 0.004;
 
-/// Pairs of lines drawn, candidates kept, lines paired with a candidate, triplets rescored, and triplets refined.
+/// Numbers of pairs of lines drawn, of candidates kept, of lines paired with each candidate, of triplets rescored, and
+/// of triplets refined.
 const PAIRS: usize = 800;
 const CANDIDATES: usize = 8;
 const PARTNERS: usize = 40;
@@ -203,7 +204,8 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
             else {
                 continue;
             };
-            // The sine is l · p divided by the distance of p, with p = (dx, dy, dz / f); take its derivative.
+            // The sine is l · p divided by the distance of p from the midpoint of the line, with p = (dx, dy, dz / f);
+            // take its derivative.
             let (l, d, p) = (e.line.line, current.axes.col(k), points[k]);
             let distance = (p.truncate() - e.line.centre * p.z).length();
             if distance < 1e-9 {

@@ -10,18 +10,18 @@
 //! ```
 //!
 //! The paper's method (gradient-restricted Hough lines and successive RANSAC groups) is available as printed:
-//! [`Params::printed`]. The default differs from it where measurements favoured another choice. It uses segments with
-//! end points instead of infinite lines; it searches for three orthogonal directions and the unknown focal length
-//! jointly, then refines each direction freely on the sphere. The paper maps a rectangle of any shape onto the
-//! quadrilateral; here the focal length gives the plane its true aspect ratio.
+//! [`Params::printed`]. The default differs from the paper's method where measurements favoured another choice. The
+//! default uses segments with end points instead of infinite lines; it searches for three orthogonal directions and the
+//! unknown focal length jointly, then refines each direction freely on the sphere. The paper maps a rectangle of any
+//! shape onto the quadrilateral; here the focal length gives the plane its true aspect ratio.
 //!
 //! Known weaknesses. Stated errors assume five segments per independent observation and an error floor of 0.2°, both
-//! calibrated on re-projected panoramas. There, half of the true errors lie below 0.73 of the stated ones, as they
-//! should, but one in fourteen lies beyond 2. Chance lines of a floor can displace a direction that few lines support,
-//! and its stated error does not show this. Short segments share a bias of about 0.01 rad on re-projected photos; its
-//! cause is unknown. Where lines are few, and noisy for their length, stated errors of directions are up to an eighth
-//! too small: the mean square of true over stated errors is 1.3 with 14 lines per axis and a pixel of noise, and 1.0
-//! to 1.15 with more lines or less noise.
+//! calibrated on re-projected panoramas. There, half of the true errors are below 0.73 times the stated error, as
+//! expected, but one in fourteen exceeds twice the stated error. Lines found on a floor by chance can displace a
+//! direction that few lines support; the stated error of the direction does not show this. Short segments share a bias
+//! of about 0.01 rad on re-projected photos; its cause is unknown. Where lines are few and noisy for their length, the
+//! stated errors of directions are up to an eighth too small: the mean square of the ratio of true to stated error is
+//! 1.3 with 14 lines per axis and a pixel of noise, and 1.0 to 1.15 with more lines or less noise.
 //!
 //! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixels that are not
 //! square; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
@@ -81,8 +81,8 @@ pub struct View {
     /// One vanishing point for each column of `perspective.axes`.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
-    /// For each axis, the deviation from a right angle of the angle between the two other axes, estimated from the
-    /// lines of these two alone; absent if one of them has no lines.
+    /// For each axis, how far the angle between the two other axes deviates from a right angle, estimated from the
+    /// lines of these two axes alone. Absent if one of the two has no lines.
     pub squareness: [Option<Squareness>; 3],
     /// Distortion of straight lines by the lens; absent if the photo has too few lines, or if only segments were
     /// given.

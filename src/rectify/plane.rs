@@ -10,7 +10,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// Maximum number of mask pixels used; larger masks are subsampled evenly.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// Minimum median over the mask of the sine of the angle between the plane and the viewing rays [origin not recorded].
+/// Minimum median, over the pixels of the mask, of the sine of the angle between the plane and the viewing ray
+/// [origin not recorded].
 const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.
@@ -37,8 +38,8 @@ impl Plane {
         (depth > 1e-9).then(|| DVec2::new(self.right.dot(ray), self.down.dot(ray)) / depth)
     }
 
-    /// Side, in plane units, of the square with the area that a pixel covers on the plane: the square root of the
-    /// determinant of the Jacobian, which is `1 / (f² (n · ray)³)`.
+    /// Side, in plane units, of a square with the same area as the patch of the plane that a pixel covers. It is the
+    /// square root of the determinant of the Jacobian, and this determinant is `1 / (f² (n · ray)³)`.
     pub fn pixel_side(&self, pixel: DVec2) -> f64 {
         self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal
     }
@@ -103,8 +104,8 @@ fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Pl
 }
 
 /// The two axes whose plane fits the mask best: the mask lies on one side of the plane's horizon, and the lines inside
-/// it run along both axes and not along the third. A mask entirely above the horizon is a ceiling, unless the lines
-/// contradict it.
+/// the mask run along both axes and not along the third axis. A mask entirely above the horizon is a ceiling, unless
+/// the lines contradict it.
 fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
     // Length of the segments inside the mask along each axis.
     let inside = |p: DVec2| {

@@ -8,8 +8,8 @@ use glam::DVec2;
 
 /// Cells along each side of the grid on which the rectangle is searched for.
 const GRID: usize = 96;
-/// Cost of a cell outside the mask relative to the gain of a cell inside it. Low, because later stages ignore holes,
-/// whereas a lamp at the rim is lost if the rim is cut off [origin not recorded].
+/// Cost of a cell outside the mask relative to the gain of a cell inside it. The cost is low because later stages
+/// ignore holes, whereas a lamp at the rim is lost if the rim is cut off [origin not recorded].
 const HOLE: f64 = 0.25;
 
 /// A rectangle in plane coordinates.
@@ -17,11 +17,13 @@ const HOLE: f64 = 0.25;
 pub struct Rectangle {
     pub low: DVec2,
     pub high: DVec2,
-    /// Side, in plane units, of the smallest square of the plane that one photo pixel covers.
+    /// Side, in plane units, of the square that a photo pixel covers on the plane where the photo shows the plane in
+    /// most detail (the 2 % quantile over the mask).
     pub densest: f64,
 }
 
-/// The rectangle that maximises the marked cells it contains minus the weighted unmarked cells.
+/// The rectangle with the highest score: the number of marked cells in the rectangle minus `HOLE` times the number of
+/// unmarked cells.
 pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
     // Keep the pixels on the camera's side of the horizon, with the size each covers on the plane.
     let mut seen = try_collect(pixels.iter().filter_map(|&p| plane.meet(p).map(|q| (plane.pixel_side(p), q))))?;

@@ -17,8 +17,8 @@ use crate::simd::{Level, widest};
 use glam::{DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maximum number of parts of a footprint before a coarser level is used, and maximum number along a side at the
-/// coarsest level.
+/// Maximum number of parts of a footprint; footprints that need more parts use a coarser level. At the coarsest level,
+/// this is the maximum number of parts along a side.
 const MAX_PARTS: usize = 16;
 
 /// Rows per unit of work. One row of each band is examined to find the number of pyramid levels needed.

@@ -46,8 +46,8 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     Ok(segments)
 }
 
-/// Indices of the pixels with a gradient, strongest first, by a counting sort. Its classes are so narrow that hardly
-/// two pixels of an edge share one: within a class the order is that of the rows.
+/// Indices of the pixels whose gradient is not too weak, strongest first, by a counting sort. The classes of the sort
+/// are so narrow that two pixels of an edge rarely share a class. Pixels of one class stay in row order.
 fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
     const CLASSES: usize = 1 << 16;
     let top = magnitude.iter().fold(MIN_GRADIENT, |m, &v| m.max(v));
@@ -148,7 +148,8 @@ impl Grower<'_> {
     }
 
     /// Collects the pixels connected to the seed whose gradients agree with the region's mean direction. Grows ring by
-    /// ring and compares each ring with the mean before it, so that the result does not depend on the order of pixels.
+    /// ring and compares each ring with the mean direction of the rings before it, so that the result does not depend
+    /// on the order of pixels.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
         let min_cos = tolerance.cos() as f32;

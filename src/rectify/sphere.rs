@@ -1,7 +1,7 @@
 //! One vanishing point on the Gaussian sphere: agreement with lines, refinement and covariance.
 //!
-//! The paper optimises `alpha = 1 - 1 / (rho + 1)`. On the sphere, points at infinity are ordinary points and all
-//! coordinates are well conditioned there.
+//! The paper optimises `alpha = 1 - 1 / (rho + 1)`. On the sphere, points at infinity are ordinary points, and the
+//! coordinates are well conditioned at every point.
 
 use super::biweight::Biweight;
 use super::metric::Line;
@@ -9,7 +9,7 @@ use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Largest distance of a segment's endpoints from the line to its vanishing point, in units of half the image's longer
-/// side: about 2 pixels of 640 [origin not recorded].
+/// side: about 2 pixels in an image of 640 pixels [origin not recorded].
 const ENDPOINT_LIMIT: f64 = 0.006;
 
 /// Largest sine of the angle between a segment and the line to its vanishing point: a second limit, which matters for
@@ -19,25 +19,27 @@ const SINE_LIMIT: f64 = 0.06;
 /// Squared distance between a point and the midpoint of a line below which they coincide up to rounding [rounding].
 const COINCIDENT: f64 = 1e-18;
 
-/// Prior of the endpoint noise, in the same unit, and the number of segments that the prior counts as [origin not
-/// recorded].
+/// Prior of the endpoint noise, in units of half the image's longer side, and the number of segments that the prior
+/// counts as [origin not recorded].
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
-/// Segments found per independent observation: both sides of a bar, the pieces of one edge and rows of equal objects
-/// share their errors. Calibrated on photos with exactly known cameras, like the next constants [bench vp].
+/// Number of segments that count as one independent observation: both sides of a bar, the pieces of one edge and rows
+/// of equal objects share their errors. Calibrated on photos with exactly known cameras, like the next constants
+/// [bench vp].
 const PER_OBSERVATION: f64 = 5.0;
 
-/// Iterations that estimate the noise and the share of it visible within the limit from each other; the minimum of
-/// that share; and the minimum slope of the biweight. Below these minima noise fills the whole limit and cannot be
-/// estimated. `MIN_SLOPE` is the smallest value that loses no vanishing point of the development sets, in which short
-/// lines are more precise than their residuals suggest [bench vp].
+/// `NOISE_ROUNDS` is the number of iterations that alternately estimate the endpoint noise and the share of the noise
+/// that is visible within the biweight's limit. `MIN_SHOWN` is the minimum of this share; `MIN_SLOPE` is the minimum of
+/// the biweight's expected slope. Below these minima, the noise exceeds the limit and cannot be estimated. `MIN_SLOPE`
+/// is the smallest value that loses no vanishing point of the development sets, in which short lines are more precise
+/// than their residuals suggest [bench vp].
 const NOISE_ROUNDS: usize = 5;
 const MIN_SHOWN: f64 = 0.25;
 const MIN_SLOPE: f64 = 0.3;
 
-/// Standard deviation in radians of the directions of the room's own edges, which no number of lines reduces: errors
-/// of lens, stitching and construction [bench vp].
+/// Standard deviation in radians of the error that all lines of a direction share, so that more lines do not reduce it:
+/// errors of the lens, of stitching and of the room's construction [bench vp].
 pub const STRAIGHTNESS: f64 = 0.0035;
 
 /// Image coordinates relative to the principal point, in units of half the longer image side.
@@ -86,8 +88,8 @@ impl WeightedLine {
         Self { line, weight: 2.0 * line.half, stiffness }
     }
 
-    /// Squared residual; a line with a residual above 1 does not belong to the point. A line whose midpoint is the
-    /// point belongs to it.
+    /// Squared residual; a line with a residual above 1 does not belong to the point. A line whose midpoint coincides
+    /// with the point has the residual 0.
     pub fn residual(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.line.centre * p.z;
         let distance = away.length_squared();
@@ -101,7 +103,8 @@ impl WeightedLine {
     }
 }
 
-/// The homogeneous frame point where a camera-space direction vanishes, and the inverse; `focal` in frame units.
+/// Maps a camera-space direction to its vanishing point in homogeneous frame coordinates; [`unproject`] is the inverse.
+/// `focal` is in frame units.
 pub fn project(direction: DVec3, focal: f64) -> DVec3 {
     direction.truncate().extend(direction.z / focal)
 }
@@ -142,7 +145,7 @@ pub fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// Expectation of a right angle between a direction and another, up to an angle of the given variance.
+/// A prior that expects a right angle between a direction and the direction `to`; the angle has the given variance.
 #[derive(Clone, Copy, Debug)]
 pub struct RightAngle {
     pub to: DVec3,
@@ -157,7 +160,8 @@ pub fn refine(lines: &[WeightedLine], start: DVec3, focal: f64) -> Option<Refine
     Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
-/// As [`refine`], with expected right angles as priors; the lines are weighted by their own covariance at the start.
+/// Like [`refine`], with expected right angles as priors. The covariance that the lines give at the start determines
+/// the weight of the lines relative to the priors.
 pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
     let own = covariance(lines, start, focal)?;
     // The normal matrix of the lines is the inverse of their covariance up to a factor; express the priors in its
@@ -203,10 +207,10 @@ struct Row {
     /// Weight of the line at zero residual, and after the biweight.
     base_weight: f64,
     weight: f64,
-    /// Variance of the sine under unit endpoint noise: of the segment's direction, plus that of its midpoint as seen
-    /// from the point, which matters for segments near their vanishing point.
+    /// Variance of the sine under unit endpoint noise: the variance of the segment's direction, plus the variance of
+    /// the direction from the segment's midpoint to the vanishing point, which matters for segments near the point.
     variance: f64,
-    /// Variance of the normalised residual (limit 1) under that noise.
+    /// Variance of the normalised residual (limit 1) under unit endpoint noise.
     residual_variance: f64,
     sine: f64,
 }
@@ -220,8 +224,8 @@ fn row(weighted: &WeightedLine, direction: DVec3, focal: f64) -> Option<Row> {
     }
     let (l, half) = (weighted.line.line, weighted.line.half);
     let nearness = (half * p.z / distance).powi(2);
-    // Endpoint noise alone would justify the stiffness as weight. The exponent of the length is larger because long
-    // segments are rarely false detections.
+    // If endpoint noise were the only error, the stiffness would be the right weight. The additional factor, the root
+    // of the length, favours long segments, because they are rarely false detections.
     let base_weight = weighted.weight.sqrt() * weighted.stiffness / (1.0 + nearness);
     let variance = (1.0 + nearness) / (half * half);
     Some(Row {
@@ -259,8 +263,8 @@ struct Covariance {
 fn endpoint_noise(rows: &[Row]) -> f64 {
     let count = rows.len() as f64;
     let squares: f64 = rows.iter().map(|row| row.sine * row.sine / row.variance).sum();
-    // A direction has two degrees of freedom, fitted to independent observations: subtract the segments that
-    // correspond to them.
+    // A direction has two degrees of freedom, fitted to independent observations: subtract the number of segments that
+    // correspond to two observations.
     let freedom = (count - 2.0 * PER_OBSERVATION).max(0.0) + PRIOR_COUNT;
     let seen = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / freedom;
     // Correct for the residuals that the limit truncates.

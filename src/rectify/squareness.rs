@@ -1,8 +1,9 @@
-//! Tests whether the room has right angles and the camera square pixels: deviations from right angles between the
-//! room's directions, where each direction is estimated from its own lines alone.
+//! Measures how far the angles between the room's directions deviate from right angles, where each direction is
+//! estimated from its own lines alone.
 //!
-//! Walls at other angles show here; so do non-square pixels and a wrong principal point. Some photos cannot reveal
-//! this: where two directions run parallel to the image sides, any pixel aspect ratio is consistent.
+//! Deviations reveal walls that are not at right angles, non-square pixels and a wrong principal point. Some photos
+//! cannot reveal non-square pixels: where two directions run parallel to the image sides, any pixel aspect ratio agrees
+//! with the lines.
 
 use super::focal::Expected;
 use super::sphere::Refined;
@@ -17,11 +18,12 @@ pub struct Squareness {
     pub error: f64,
 }
 
-/// Two of the directions, for the focal length they were estimated with.
+/// The angle between two of the three directions, at the focal length with which they were estimated.
 struct Pair {
     /// Index of the third direction.
     beside: usize,
-    /// Cosine of the angle between them, and its derivative with respect to the logarithm of the focal length.
+    /// Cosine of the angle between the two directions, and its derivative with respect to the logarithm of the focal
+    /// length.
     cosine: f64,
     slope: f64,
     variance: f64,
@@ -44,11 +46,11 @@ impl Pair {
     }
 }
 
-/// For each axis, the angle between the two other axes; `None` if one of them is unknown. The directions point the
-/// same way as the axes.
+/// For each axis, how far the angle between the two other axes deviates from a right angle; `None` if one of these two
+/// is unknown. Each direction must point the same way as its axis.
 ///
-/// `focal` is the focal length in pixels they were estimated with. Unless it was given by the user, each angle is
-/// evaluated at the focal length expected from the other angles and the prior.
+/// `focal` is the focal length in pixels with which the directions were estimated. Unless the user gave it, each angle
+/// is evaluated at the focal length expected from the other angles and the prior.
 pub fn measure(
     directions: &[Option<Refined>; 3],
     focal: f64,

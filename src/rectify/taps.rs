@@ -128,7 +128,7 @@ fn integer(whole: f64) -> i32 {
 /// As [`integer`], in single precision; the value is clamped to ±4 million.
 #[inline(always)]
 fn integer_of_single(whole: f32) -> i32 {
-    /// Adding it moves a whole number into the low bits of the mantissa [rounding].
+    /// Adding this constant moves a whole number into the low bits of the mantissa [rounding].
     const SHIFT: f32 = 12_582_912.0;
     (whole.max(-4e6).min(4e6) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }

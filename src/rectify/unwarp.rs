@@ -87,8 +87,8 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
         }
     }
     moved.push(flat(&camera::reestimate(camera, points, expected.moved(SMALL))));
-    // A single point leaves the rotation about it free: give that rotation the uncertainty of an axis fixed by
-    // convention.
+    // A single vanishing point does not determine the rotation about its direction: give this rotation the uncertainty
+    // of an axis fixed by convention.
     if points.iter().filter(|p| p.support > 0).count() < 2 {
         for axis in (0..3).filter(|&k| points[k].support > 0).map(|k| camera.axes.col(k)) {
             let turn = DMat3::from_quat(DQuat::from_axis_angle(axis, FREE_ERROR * SMALL));

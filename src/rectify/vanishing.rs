@@ -17,8 +17,8 @@ const MAX_LINES: usize = 2500;
 /// Directions with a larger error, in radians, are rejected [origin not recorded].
 const MAX_ERROR: f64 = 0.2;
 
-/// Prior standard deviations: of the angle between two room directions about a right angle, in radians, and of the
-/// logarithm of the focal length during their refinement [bench vp].
+/// Prior standard deviations: of the angle between two room directions, whose mean is a right angle, in radians, and of
+/// the logarithm of the focal length during their refinement [bench vp].
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
 
@@ -42,8 +42,8 @@ pub struct Vanishing {
     pub points: Vec<VanishingPoint>,
     /// For each segment, the index of the point it runs to.
     pub members: Vec<Option<usize>>,
-    /// Each direction estimated from its own lines without priors on right angles, for a camera of the focal length
-    /// below.
+    /// Each direction estimated from its own lines without priors on right angles, for a camera with the focal length
+    /// `focal`.
     pub(super) free: Vec<Refined>,
     /// Focal length in pixels for which the points are most nearly orthogonal; a weak guess if there is one finite
     /// point only.
@@ -163,9 +163,10 @@ fn assign(lines: &[(usize, WeightedLine)], points: &[DVec3], count: usize) -> (V
     (members, support)
 }
 
-/// Refines each direction on the lines that agree with it better than with the others; then once more with priors on
-/// right angles to the others' own estimates, which help where a direction has few lines. Drops directions that no two
-/// lines determine and directions that drift into another.
+/// Refines each direction with the lines that agree with it better than with the other directions. Then refines each
+/// direction once more with priors that expect right angles to the other directions; these priors help where a
+/// direction has few lines. Drops directions that fewer than two lines determine, directions with an error above
+/// `MAX_ERROR`, and directions that drift into another direction.
 fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Found> {
     let mut current: Vec<Refined> =
         axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();

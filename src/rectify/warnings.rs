@@ -23,9 +23,10 @@ const SIGNIFICANT: f64 = 3.0;
 
 /// Magnification of the photo above which the position of a lamp's edge is uncertain. [judged on 38 photos]
 const SHARP_MAGNIFICATION: f64 = 4.0;
-/// Maximum share of the plane with a larger magnification. [judged on 38 photos]
+/// Maximum share of the plane whose magnification exceeds `SHARP_MAGNIFICATION`. [judged on 38 photos]
 const MAX_MAGNIFIED: f64 = 0.8;
-/// Minimum sine of the angle between the plane and the viewing rays, for half of the plane. [judged on 38 photos]
+/// Minimum median, over the plane, of the sine of the angle between the plane and the viewing ray.
+/// [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
 /// Number of sampled pixels of the unwarped plane along each side.
 const GRID: usize = 96;
@@ -89,9 +90,9 @@ impl View {
     }
 }
 
-/// The footprint in the photo of a pixel of the unwarped plane.
+/// The area of the photo that a pixel of the unwarped plane covers.
 struct Footprint {
-    /// Its centre in pixels of the photo.
+    /// Centre of the footprint in pixels of the photo.
     place: DVec2,
     /// Unwarped pixels per photo pixel along a side: the root of the ratio of areas.
     magnification: f64,

@@ -1,11 +1,11 @@
 //! Bounded least squares for few equations and any number of unknowns.
 //!
-//! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The Tikhonov term, `λ > 0`, makes the solution unique
-//! even for identical columns. The optimality conditions are `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: as many
-//! equations in `z` as there are rows. They are the gradient of a convex, piecewise quadratic function of `z`, which
-//! Newton's method with an exact line search minimises in a few steps. Each step solves for the unknowns between their
-//! bounds: this is the primal-dual active set method (Hintermüller, Ito and Kunisch 2002) in the dual of the problem,
-//! which is small.
+//! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The Tikhonov term, `λ > 0`, makes the solution unique even
+//! for identical columns. The optimality conditions are `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: as many
+//! equations in `z` as there are rows. These equations state that the gradient of a convex, piecewise quadratic
+//! function of `z` is zero. Newton's method with an exact line search minimises this function in a few steps. Each step
+//! solves for the unknowns between their bounds: this is the primal-dual active set method (Hintermüller, Ito and
+//! Kunisch 2002), applied to the dual problem, which has few unknowns.
 
 use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};

@@ -36,7 +36,7 @@ impl<const N: usize> Bounds<N> {
         std::array::from_fn(|i| self.min[i] + share[i] * (self.max[i] - self.min[i]))
     }
 
-    /// The same point within the bounds, moved by whole periods.
+    /// The point moved by whole periods into the bounds; the function has the same value there.
     pub fn wrapped(&self, x: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
             if self.is_open(i) { self.min[i] + (x[i] - self.min[i]).rem_euclid(self.period[i]) } else { x[i] }

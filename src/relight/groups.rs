@@ -1,13 +1,13 @@
 //! Powers of groups of lamps that best meet several goals, within bounds.
 //!
 //! Radiance is linear in the powers `x`. The best powers minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and
-//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which decides
-//! what the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without it). With
-//! one group and one goal this is the closed form of [`super::run`].
+//! channels, where `s` is the brightness of a goal, plus a small regularisation towards equal lamps, which determines
+//! the powers that the goals leave open ("Painting with light", Schoeneman et al. 1993, minimises the same sum without
+//! regularisation). With one group and one goal, the solution is the closed form of [`super::run`].
 //!
 //! A goal may be a limit, which counts only where it is violated ([`Constraint`]).
 //!
-//! The residuals are those of goals, each a mean over many paths. Single texels are never compared: their noise would
+//! Each residual belongs to a goal and is a mean over many paths. Single texels are never compared: their noise would
 //! bias the powers towards dark.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
@@ -270,7 +270,7 @@ impl System<'_> {
         self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.regularisation))
     }
 
-    /// The powers rounded to levels.
+    /// The powers after rounding to the available dimming levels.
     fn stepped(&self, measured: &Measured, whole: &[DVec3]) -> Vec<DVec3> {
         let upper = self.upper();
         let mut levels = self.params.levels.clone();
@@ -311,7 +311,7 @@ impl System<'_> {
                 Aspect::Colour => channels.iter().map(|&c| (DVec3::AXES[c], goal.constraint[c])).collect(),
                 Aspect::Luminance => vec![(LUMINANCE, goal.constraint[0])],
             };
-            // Relate a goal of darkness to the light of all lamps.
+            // A goal of darkness has no brightness of its own: relate its residual to the light of all lamps.
             let bright = target.max_element();
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };

@@ -46,7 +46,7 @@ impl Default for MapParams {
 pub struct Importance {
     width: usize,
     height: usize,
-    /// For each batch the cells, row by row: the target's mean radiance if only that cell emits, 1 cd/m².
+    /// For each batch and each cell, row by row: the target's mean radiance if only this cell emits, with 1 cd/m².
     batches: Vec<Vec<DVec3>>,
     /// For each batch the target's mean radiance under all other light.
     background: Vec<DVec3>,
@@ -59,8 +59,8 @@ pub struct Importance {
 pub struct Response {
     /// Mean radiance of the target in cd/m² per channel, for texture values in cd/m².
     pub light: Estimate,
-    /// Change of the result with cells of twice the side, noise included. Where `I` is smooth, the error of the result
-    /// is a third of it.
+    /// Change of the result if the cells had twice the side, noise included. Where `I` is smooth, the error of the
+    /// result is a third of this change.
     pub band_error: DVec3,
     measured: Vec<DVec3>,
 }
@@ -75,9 +75,9 @@ pub(super) struct Cells {
 /// Largest number of cells along each side: such a map takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells if that is less; at most
-/// 64. With too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
-/// [origin not recorded]
+/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells along that side if this is
+/// less (but never less than 4); at most 64. With too few look-ups, texels cut by cell borders would get wrong weights,
+/// with a bias for periodic patterns. [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;
@@ -156,7 +156,7 @@ impl Importance {
         Self { width, height, batches: vec![cells; BATCHES], background: vec![background; BATCHES], paths: 0 }
     }
 
-    /// The map as an image of `width × height` cells: the target's mean radiance if only that cell emits, 1 cd/m².
+    /// The map as an image with one pixel per cell: the target's mean radiance if only this cell emits, with 1 cd/m².
     pub fn image(&self) -> Result<Image> {
         let mut image = Image::new(self.width, self.height, 3)?;
         for (i, pixel) in image.data.chunks_exact_mut(3).enumerate() {
@@ -166,9 +166,9 @@ impl Importance {
         Ok(image)
     }
 
-    /// The response of the target to a texture on the surface, in the unit of its values. `placement` transforms the
-    /// surface's texture coordinates to those of the texture (as `KHR_texture_transform`), which wraps according to
-    /// its mode.
+    /// The response of the target to a texture on the surface, in the unit of the texture's values. `placement`
+    /// transforms the surface's texture coordinates to those of the texture (as `KHR_texture_transform`), which wraps
+    /// according to its mode.
     ///
     /// # Errors
     /// A placement that is not finite; cancelled.
@@ -180,7 +180,7 @@ impl Importance {
         Ok(Response { light, band_error: self.coarse(&emission) - light.mean, measured })
     }
 
-    /// The scale of a texture that meets a target; the equivalent of tracing with [`super::run`].
+    /// The scale of a texture at which the target is met. Replaces the tracing of [`super::run`].
     ///
     /// # Errors
     /// `Unreachable`, as in [`super::run`].

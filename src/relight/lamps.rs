@@ -16,7 +16,7 @@ pub struct Lamps {
     division: Division,
     /// Centre of each lamp: texture coordinates with z = 0, or metres.
     centres: Vec<Vec3>,
-    /// Area of each lamp in texels or m²; for punctual lights a number of their kind.
+    /// Area of each lamp in texels or m²; for punctual lights, a number that identifies their kind.
     sizes: Vec<f32>,
 }
 
@@ -190,7 +190,8 @@ impl Lamps {
         self.chained(|i| self.centres[i][axis.min(2)], |a, b| b - a > tolerance)
     }
 
-    /// Groups lamps sorted by a number; a new group begins where `leaps` holds between two successive lamps.
+    /// Sorts the lamps by `number` and groups them: a new group begins where `leaps` holds between two successive
+    /// lamps.
     fn chained(&self, number: impl Fn(usize) -> f32, leaps: impl Fn(f32, f32) -> bool) -> (Vec<u32>, usize) {
         let mut order: Vec<usize> = (0..self.count).collect();
         order.sort_by(|&a, &b| number(a).total_cmp(&number(b)).then(a.cmp(&b)));

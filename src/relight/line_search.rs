@@ -3,11 +3,11 @@
 
 /// The derivative along a step, on [0, 1].
 pub(super) struct Slope {
-    /// Its value at 0.
+    /// The derivative at 0.
     pub start: f64,
-    /// Its initial slope, ≥ 0.
+    /// The slope of the derivative at 0, ≥ 0.
     pub growth: f64,
-    /// Positions at which its slope changes, and the changes.
+    /// Positions at which the slope of the derivative changes, and the changes.
     pub changes: Vec<(f64, f64)>,
 }
 
@@ -35,7 +35,8 @@ impl Slope {
         self.changes.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mut at, mut slope, mut growth) = (0.0, self.start, self.growth);
         for (next, change) in self.changes.into_iter().chain([(1.0, 0.0)]) {
-            // Clamp the slope to 0: what is subtracted was added before, so a negative slope is rounding.
+            // Clamp the slope to 0: every subtracted amount was added before, so only rounding makes the slope
+            // negative.
             let rise = growth.max(0.0) * (next - at);
             if slope + rise >= 0.0 {
                 return if rise > 0.0 { at - slope / growth } else { at };

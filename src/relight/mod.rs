@@ -5,11 +5,11 @@
 //! under the current emission and its mean radiance `b` under all other light are measured once; the solution is
 //! `(target - b) / r`. The measurement is a Monte Carlo estimate, so the solution has a confidence interval.
 //!
-//! Sorting the same paths by light source (`bins`) yields more. By lamp, they give the responses of several targets to
-//! thousands of lamps ([`lamp_responses`]), and a small convex problem gives the powers of groups of lamps within
-//! bounds ([`solve_groups`]) or at dimming levels. [`mix_primaries`] mixes a colour from LEDs. By cell of a surface,
-//! they give its [`Importance`]: the response to any texture there for one dot product, and, by its gradient, the best
-//! placement of a texture ([`Importance::place`]).
+//! The same paths can also be sorted by light source (`bins`). Sorted by lamp, they give the responses of several
+//! targets to thousands of lamps ([`lamp_responses`]), and a small convex problem gives the powers of groups of lamps
+//! within bounds ([`solve_groups`]) or at dimming levels. [`mix_primaries`] mixes a colour from LEDs. Sorted by cell of
+//! a surface, they give the [`Importance`] of the surface: one dot product with it gives the response to any texture on
+//! the surface, and its gradient leads to the best placement of a texture ([`Importance::place`]).
 //!
 //! Not modelled here: the photo's camera response beyond sRGB, and fluorescence (a channel never feeds another).
 

@@ -6,7 +6,8 @@
 //! placement first, and descends from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
 //! [`Importance::respond`] compares the results at full resolution.
 //!
-//! All placements share the map's noise; the best of many is overestimated by a small part of its interval.
+//! All placements share the noise of the map. The light of the best of many placements is therefore overestimated by a
+//! small part of its confidence interval.
 
 use super::band::Pyramid;
 use super::descent::{self, Bounds};
@@ -93,12 +94,12 @@ pub struct Placement {
 
 /// Largest number of cells along each side of the map used for the search. [origin not recorded]
 const MAX_CELLS: usize = 64;
-/// Number of starting points that are descended from. [origin not recorded]
+/// Number of starting points from which the search descends. [origin not recorded]
 const MAX_DESCENTS: usize = 8;
 
 impl Importance {
-    /// The target's light under a placed texture, band-limited as in the search, without other light; and its
-    /// derivatives by the offset along u and v, the scale along both, and the rotation.
+    /// The target's light under a placed texture, band-limited as in the search and without other light, and the
+    /// derivatives of this light by the offset along u and v, the scale along both, and the rotation.
     ///
     /// # Errors
     /// Cancelled.

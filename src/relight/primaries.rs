@@ -2,7 +2,8 @@
 //!
 //! Light is additive and non-negative: the reachable colours form a cone, or a part of it with bounded drives. The
 //! nearest reachable colour is a least squares problem of three equations in linear light ([`super::bounded`]). Among
-//! mixtures of equal colour, it selects the smallest sum of squared drives, which spreads the load.
+//! mixtures of equal colour, the regularisation selects the one with the smallest sum of squared drives, which spreads
+//! the load.
 
 use super::bounded::Problem;
 use crate::error::{Error, Result, check_range};

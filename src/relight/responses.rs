@@ -27,7 +27,7 @@ pub enum Aspect {
 pub struct Goal<'a> {
     pub place: Place<'a>,
     pub quantity: Quantity,
-    /// Mean radiance to achieve, in cd/m² per channel, ≥ 0; for incident light illuminance / π.
+    /// Mean radiance to achieve, in cd/m² per channel, ≥ 0; for incident light, the illuminance divided by π.
     pub target: Vec3,
     pub aspect: Aspect,
     /// Whether the target of each channel is exact or a limit; equal for all channels of a luminance goal.

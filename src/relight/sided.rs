@@ -2,8 +2,8 @@
 //!
 //! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r` for exact targets, the negative
 //! part of `r` for "at least", and the positive part for "at most". The function is convex, smooth and piecewise
-//! quadratic. Newton's method: with the terms that are active at the current point, it is a problem of
-//! [`super::bounded`]; the step ends at the minimum along the way to its solution. The method ends after finitely many
+//! quadratic. Each step of Newton's method solves the problem with only the terms that are active at the current point
+//! ([`super::bounded`]), then moves to the minimum on the line to this solution. The method ends after finitely many
 //! steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in practice after a few.
 
 use super::bounded::{self, dot};
@@ -85,7 +85,8 @@ impl Problem<'_> {
         &self.matrix[i * n..(i + 1) * n]
     }
 
-    /// The terms active at `x`; within rounding of the limit they keep the state of `before`.
+    /// The terms that are active at `x`. A term whose value equals its limit up to rounding keeps its state from
+    /// `before`.
     fn active(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
         let is_active = |i: usize| {
             let (light, right) = (dot(self.row(i), x), self.right[i]);
@@ -100,7 +101,7 @@ impl Problem<'_> {
         (0..self.right.len()).map(is_active).collect()
     }
 
-    /// The solution with only these terms, as exact ones.
+    /// The solution with only the active terms, which are treated as exact targets.
     fn solve_active(&self, active: &[bool], regularisation: f64) -> Result<Vec<f64>> {
         let Self { matrix, right, preferred, upper, .. } = *self;
         if active.iter().all(|is_active| *is_active) {
@@ -136,8 +137,8 @@ impl Problem<'_> {
 }
 
 /// The common power `q ≥ 0` of all lamps that minimises `½ Σ ψ(a q − b)²`, with `a ≥ 0`, in closed form. Among several
-/// minima it returns the smallest, which uses the least light; if no term requires light, the one nearest to 1, the
-/// current power.
+/// minima it returns the smallest, which uses the least light; if no term requires light, it returns the minimum
+/// nearest to 1, which is the current power.
 pub(super) fn common_power(responses: &[f64], right: &[f64], constraints: &[Constraint]) -> f64 {
     let rows = || {
         responses

@@ -31,7 +31,7 @@ struct Answer {
     scale: f64,
     half_width: f64,
     status: TargetStatus,
-    /// Pseudo-values of the batches minus the solution.
+    /// Deviation of each batch's pseudo-value from the solution.
     deviations: [f64; BATCHES],
 }
 
@@ -50,7 +50,8 @@ pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3
     if status.iter().all(|&r| r != TargetStatus::Met) {
         return Err(Error::new(ErrorKind::Unreachable, explain(&status)));
     }
-    // Give channels without response the mean scale of the others: neither black nor an extrapolation.
+    // Give channels without response the mean scale of the channels that met their target, so that they are neither
+    // black nor extrapolated.
     let met: Vec<f64> = answers.iter().filter(|a| a.status == TargetStatus::Met).map(|a| a.scale).collect();
     let neutral = met.iter().sum::<f64>() / met.len() as f64;
     let scale = answers.each_ref().map(|a| if a.status == TargetStatus::Dark { neutral } else { a.scale });

@@ -1,9 +1,10 @@
 //! Rounding of powers to dimming levels.
 //!
-//! Rounding each group separately adds up: lamps of equal power are all rounded to the same side. Instead, coordinate
-//! descent chooses for each group in turn the level that minimises the sum of squares of the goals, given the levels
-//! of the others, until none changes. It runs from two starting points and keeps the better result. Along one group
-//! the sum is convex, so its best level is found by stepping through the levels while the sum decreases.
+//! If each group were rounded separately, the errors would add up, because lamps of equal power would all be rounded to
+//! the same side. Instead, coordinate descent chooses for each group in turn the level that minimises the sum of
+//! squares of the goals, given the levels of the others, until none changes. It runs from two starting points and keeps
+//! the better result. Along one group the sum is convex, so its best level is found by stepping through the levels
+//! while the sum decreases.
 
 use super::bounded::dot;
 use super::sided::Constraint;
@@ -29,8 +30,8 @@ struct State {
 }
 
 impl Terms<'_> {
-    /// Rounds the powers `x` to levels (ascending, not empty), none of them above its bound unless the lowest level
-    /// is.
+    /// Rounds the powers `x` to levels (ascending, not empty). The level of a group exceeds the bound of the group only
+    /// if even the lowest level does.
     pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
         let max_level: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
         let nearest = |j: usize| {

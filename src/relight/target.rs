@@ -24,7 +24,7 @@ pub(super) struct Surface<'a> {
     quantity: Quantity,
 }
 
-/// A target point, with the factor from its irradiance to the quantity to match.
+/// A target point, and the factor that converts its irradiance to the quantity to match.
 pub(super) struct Target {
     at: At,
     pub factor: Vec3,
@@ -65,7 +65,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Point `index` of the sequence with offset `shift`; `None` on a lamp, which the photo's mean excludes too.
+    /// Point `index` of the sequence with offset `shift`; `None` if the point lies on a lamp, because the mean of the
+    /// photo excludes lamps too.
     pub fn point(&self, index: u32, shift: [f64; 2]) -> Option<Target> {
         let [u, v] = std::array::from_fn(|i| (shift[i] + f64::from(index) * KRONECKER[i]).fract());
         match self {

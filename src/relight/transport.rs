@@ -38,8 +38,8 @@ impl Stop {
         Self { clock: Instant::now(), budget, target_error: f64::from(params.target_error), max_paths: params.paths }
     }
 
-    /// Growth factor for the number of paths after a relative half-width of `error`; `None` if no more paths are
-    /// needed.
+    /// Growth factor for the number of paths, given that the current relative half-width is `error`; `None` if no more
+    /// paths are needed.
     pub fn growth(&self, error: f64, paths: u32) -> Option<f64> {
         let spent = self.clock.elapsed().as_secs_f64().max(1e-6);
         if error <= self.target_error && self.target_error > 0.0 || spent >= self.budget || paths >= self.max_paths {
@@ -71,9 +71,9 @@ struct Batch {
 /// unbiased, whereas squares of single paths include their noise.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pairs {
-    /// Of the squared response.
+    /// The squared response.
     pub own: DVec3,
-    /// Of response × background.
+    /// The product of response and background.
     pub cross: DVec3,
 }
 

@@ -50,7 +50,7 @@ impl Aov {
         Self::Luminance,
     ];
 
-    /// Name of its layer in files: that of Blender or Nuke, if they have one.
+    /// Name of the attribute's layer in files. If Blender or Nuke has a name for the attribute, that name is used.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "Depth",
@@ -206,8 +206,8 @@ impl Vote {
         self.lead = if self.candidate == candidate { self.lead + 1 } else { self.lead - 1 };
     }
 
-    /// Merges with the outcome of other votes, stored as two numbers; a majority of all votes still wins (Agarwal et
-    /// al. 2013, "Mergeable summaries").
+    /// Merges this vote into the outcome of other votes, which `totals` stores as a candidate and its lead. A candidate
+    /// with a majority of all votes still wins (Agarwal et al. 2013, "Mergeable summaries").
     fn join(self, totals: &mut [f32]) {
         let (candidate, lead) = (self.candidate as f32, self.lead as f32);
         if totals[0] == candidate {

@@ -1,10 +1,10 @@
 //! The BSDF of a surface point: glTF 2.0's metallic-roughness model (appendix B).
 //!
-//! A Lambertian layer below a GGX layer; below a roughness of 1/1000 the top layer is a mirror. The share
-//! `transmission` of the light that passes the top layer continues straight, as through a thin pane
-//! (`KHR_materials_transmission` without volume). Appendix B mixes the layers by the Fresnel factor of the half
-//! vector, which reflects up to twice the incident light at grazing angles. Here the diffuse layer is attenuated by
-//! the albedo of the top layer for both directions instead. An index of refraction of 1 has no top layer.
+//! The model has a Lambertian layer below a GGX layer. At a roughness below 1/1000, the top layer is a mirror. The
+//! share `transmission` of the light that passes the top layer continues straight, as through a thin pane
+//! (`KHR_materials_transmission` without volume). Appendix B mixes the layers by the Fresnel factor of the half vector,
+//! which reflects up to twice the incident light at grazing angles. Here the diffuse layer is attenuated by the albedo
+//! of the top layer for both directions instead. A dielectric with an index of refraction of 1 has no top layer.
 //!
 //! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
 
@@ -68,7 +68,8 @@ struct Layers<'a> {
     shares: [f32; 2],
     /// The GGX lobe with its albedo, unless the top layer is a mirror or absent.
     lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,
-    /// Attenuation of the diffuse layer on the way to the viewer, divided by its cosine-weighted mean.
+    /// Attenuation of the diffuse layer on the way to the viewer, divided by the cosine-weighted mean of this
+    /// attenuation over all directions.
     left_over: f32,
 }
 

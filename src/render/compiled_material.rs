@@ -41,7 +41,7 @@ pub fn substance(material: &Material, base: Vec3, metallic: f32, roughness: f32)
     let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
     let transmission = material.transmission.clamp(0.0, 1.0);
     let dielectric_f0 = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
-    // An index of refraction of 1 is no interface: it does not reflect at grazing angles either.
+    // A dielectric with an index of refraction of 1 has no interface, so it does not reflect at grazing angles either.
     let has_interface = material.ior > 1.0;
     Substance {
         diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),

@@ -7,12 +7,12 @@
 //! have the same normal, and differ by no more than their errors explain. The variance of the average is propagated to
 //! the next level. With zero variance, the filter leaves the image unchanged.
 //!
-//! The filter is biased: features that the guides do not show, such as soft shadows, are blurred by about the height
-//! of their error. [`Output::bias`] estimates this bias; final images are rendered without the filter. To measure it,
-//! two halves of the paths are filtered separately (as by Rousselle et al. 2012, "Adaptive rendering with non-local
-//! means filtering", for a different purpose), and the preview is their mean. The filter changes each half by its bias
-//! plus noise, and the noises of the halves are independent: the mean product of the two changes is the squared bias,
-//! for any weights.
+//! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, and changes their
+//! radiance by about their standard error. [`Output::bias`] estimates this bias; final images are rendered without the
+//! filter. To measure it, two halves of the paths are filtered separately (as by Rousselle et al. 2012, "Adaptive
+//! rendering with non-local means filtering", for a different purpose), and the preview is their mean. The filter
+//! changes each half by its bias plus noise, and the noises of the halves are independent: the mean product of the two
+//! changes is the squared bias, for any weights.
 //!
 //! Not modelled: motion; reflections, which are smoothed like light on the mirror; textures seen in mirrors.
 
@@ -25,7 +25,8 @@ use glam::Vec3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Tolerated difference between neighbours in units of their error, in `[0, 10]`. 0 leaves the image unchanged.
+    /// Strength of the smoothing, in `[0, 10]`. It scales the squared difference in luminance between neighbours that
+    /// the filter tolerates relative to their variances. 0 leaves the image unchanged.
     pub strength: f32,
 }
 
@@ -52,8 +53,8 @@ pub struct Input<'a> {
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// Estimated bias of the preview: root mean square over squares of 8 × 8 pixels, relative to the mean of the
-    /// image. The square of the estimate is unbiased; it misses blur within a square.
+    /// Estimated bias of the preview: root mean square over squares of 8 × 8 pixels, relative to the mean of the image.
+    /// The square of the estimate is unbiased. The estimate does not detect blur within a square of pixels.
     pub bias: f64,
 }
 
@@ -150,7 +151,7 @@ fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<
         for x in 0..width {
             let albedo: Vec3 = [0, 1, 2].map(|c| guide[(y * GUIDE + c) * width + x].max(MIN_ALBEDO)).into();
             let colour = half.rgb(x, y) / albedo;
-            // Add the standard errors of the channels: they are correlated within a path.
+            // Add standard errors instead of variances, because the channels are correlated within a path.
             let error = variance.rgb(x, y).map(f32::sqrt) / albedo;
             let luminance = colour::luminance(colour);
             let error = if error.is_finite() { colour::luminance(error) } else { luminance };
@@ -264,8 +265,8 @@ fn luminance(r: f32, g: f32, b: f32) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Estimates the bias of the filter: the root of the mean product, over squares of pixels, of the changes of the
-/// halves.
+/// Estimates the bias of the filter relative to the mean of the image. In each square of pixels, the mean change of one
+/// half is multiplied by the mean change of the other half. The bias is the root of the mean of these products.
 fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
     let Image { width, height, .. } = *before[0];
     let across = width.div_ceil(SQUARE);

@@ -12,8 +12,9 @@ use std::f32::consts::{PI, TAU};
 pub enum EnvironmentSampler {
     /// Uniform over the sphere.
     Constant,
-    /// By the pixels of an equirectangular image. The weight of a pixel is its solid angle times the mean of its 3 × 3
-    /// neighbourhood, which is positive wherever bilinear interpolation is.
+    /// Selects pixels of an equirectangular image in proportion to their weights. The weight of a pixel is its solid
+    /// angle times the mean brightness of its 3 × 3 neighbourhood. This mean is positive wherever bilinear
+    /// interpolation gives a positive radiance.
     Image { rows: Distribution, columns: Vec<Distribution> },
 }
 
@@ -86,7 +87,8 @@ impl EnvironmentSampler {
     }
 }
 
-/// Radiance from a unit direction: bilinear, wrapping around the horizon, clamped at the poles.
+/// Radiance from a unit direction. Images are interpolated bilinearly; columns wrap around the horizon, and rows are
+/// clamped at the poles.
 pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
     let image = match environment {
         Environment::Constant(radiance) => return radiance.max(Vec3::ZERO),

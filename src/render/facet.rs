@@ -16,26 +16,28 @@ pub struct Facet {
     /// Offset that exceeds the rounding error of a point on the triangle.
     pub offset: f32,
     pub mesh: u32,
-    /// Index of the material; the highest bit is set if the shading normal varies.
+    /// Index of the material; the highest bit is set if the shading normal may differ from the geometric normal.
     material: u32,
-    /// Index of its emitter, or `NONE`.
+    /// Index of the emitter of this triangle, or `NONE`.
     pub emitter: u32,
 }
 
-/// Relative rounding error of an interpolated point: sixteen errors of 2^-24 of its largest coordinate. [rounding]
+/// Bound of the rounding error of an interpolated point, relative to the largest coordinate of its triangle: sixteen
+/// times the rounding error 2^-24 of an f32 number. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
 /// Largest extent of the scene, in metres, that counts for the offset of a free point, which belongs to no triangle but
 /// may happen to lie in a surface. The offset must move it clear of such a surface in a building, yet must not move it
 /// through a wall in a scene as large as a country. [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
-/// The detail of a scene is far from its other parts beyond this multiple of its own size. [convention]
+/// The detail of a scene (the region where most triangles lie) is far from the origin if its distance exceeds this
+/// multiple of its size. [convention]
 const FAR: f64 = 32.0;
-/// Number of triangles, or twice as many, whose corners tell where the detail of a scene lies: few enough for the
-/// reserve of memory. [convention]
+/// Smallest number of triangles whose corners locate the detail of a large scene; fewer than twice as many are used.
+/// The number is small, so that the list of corners fits in the reserve of memory. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Marks a missing triangle or emitter.
 pub const NONE: u32 = u32::MAX;
-/// Flag of a varying shading normal.
+/// Bit of `Facet::material` that is set if the shading normal may differ from the geometric normal.
 const SMOOTH: u32 = 1 << 31;
 
 impl Facet {
@@ -86,7 +88,7 @@ impl Facet {
         Self { material: self.material | SMOOTH, ..*self }
     }
 
-    /// Whether the vertex normals vary over the triangle.
+    /// Whether the shading normal may differ from the geometric normal.
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.material & SMOOTH != 0
@@ -112,9 +114,10 @@ fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
 /// multiples of the spacing there, so the differences of the coordinates from a grid point are exact. A scene nearer
 /// to the origin stays in place: a translation would gain next to nothing.
 ///
-/// An object that was left at the origin of a national grid makes a scene as large as its distance. If most triangles
-/// lie close together and far from the origin, the middle of these counts: their translation is exact, and only the
-/// rest is rounded, to the spacing that the building had in its file.
+/// A stray object at the origin of a national grid makes the scene as large as the distance from that origin to the
+/// building. If most triangles lie close together and far from the origin, the centre is therefore their median
+/// position, rounded to a grid. The translation of these triangles is exact. Only the coordinates of the other
+/// triangles are rounded, to the f32 spacing that the building had in its file.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {
@@ -133,7 +136,7 @@ pub fn centre(meshes: &[Mesh]) -> DVec3 {
     if whole == DVec3::ZERO { centre_of_detail(meshes).unwrap_or(whole) } else { whole }
 }
 
-/// The centre of a scene whose triangles are mostly far from the origin and close together; `None` for others.
+/// The centre of a scene most of whose triangles lie close together and far from the origin; `None` for other scenes.
 fn centre_of_detail(meshes: &[Mesh]) -> Option<DVec3> {
     let count: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let triangles = meshes.iter().flat_map(|mesh| (0..mesh.triangles.len()).map(move |triangle| (mesh, triangle)));

@@ -59,7 +59,7 @@ impl Lobe {
 }
 
 /// A point uniform in the unit disc, and its squared distance from the centre, by the concentric map (Shirley and Chiu
-/// 1997), which preserves neighbourhoods. Their series give sine and cosine of up to 45 degrees.
+/// 1997), which preserves neighbourhoods. Taylor series give the sine and cosine, whose angles are at most 45 degrees.
 #[inline]
 pub fn disc(u: Vec2) -> (Vec2, f32) {
     let p = u * 2.0 - 1.0;
@@ -132,7 +132,8 @@ fn cell(x: f32) -> (usize, f32) {
     (i, x - i as f32)
 }
 
-/// Twice the integral of a row times the cosine, of the same interpolant as the look-ups.
+/// Cosine-weighted mean of a row: twice the integral of the row times the cosine. The row is interpolated linearly, as
+/// in look-ups.
 fn cosine_average(row: &[Vec2]) -> Vec2 {
     let step = 1.0 / (SIDE - 1) as f32;
     row.windows(2)

@@ -2,9 +2,9 @@
 //! `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)`.
 //!
 //! The luminance of a luminaire towards the eye is its intensity over the projected area of its opening, and its solid
-//! angle is that area over the squared distance, as in CIE 117. Hidden parts of an opening do not count: rays to a grid
-//! of points on it decide. The background luminance is `E / π`, with the indirect illuminance E at the eye on the plane
-//! that faces along the line of sight.
+//! angle is that area over the squared distance, as in CIE 117. Hidden parts of an opening do not count; rays from the
+//! eye to a grid of points on the opening test which parts are visible. The background luminance is `E / π`, where E is
+//! the indirect illuminance at the eye on a plane perpendicular to the line of sight.
 //!
 //! Not modelled: emissive surfaces, the environment and lights without area as glare sources. Their direct illuminance
 //! at the eye is reported, because the rating leaves it out.
@@ -32,7 +32,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
     pub position: Vec3,
-    /// Of any length but 0, and not vertical.
+    /// Direction of any length except 0; it must not be vertical.
     pub direction: Vec3,
 }
 
@@ -52,7 +52,7 @@ impl Default for Params {
 /// The glare of an observer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
-    /// `-∞` without glare sources in view, `∞` if there are some before a black background.
+    /// `-∞` if no glare source is in view; `∞` if a glare source is in view and the background is black.
     pub ugr: f64,
     /// Background luminance in cd/m², and its standard error.
     pub background: f64,
@@ -85,14 +85,16 @@ impl Rating {
 /// Range of solid angles in steradian for which CIE 117 is valid. [convention]
 const MIN_SOLID_ANGLE: f64 = 3e-4;
 const MAX_SOLID_ANGLE: f64 = 0.1;
-/// Smallest horizontal component of a unit line of sight. Steeper ones are refused: the position index needs to know
-/// which way is up in the field of view. [convention]
+/// Smallest length of the horizontal part of the unit vector along the line of sight. Steeper directions are refused,
+/// because the position index needs to know which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
-/// Smallest share of its largest face as which an opening is seen, below which it is edge-on. [rounding]
+/// An opening counts as seen edge-on if its projected area is at most this share of its largest projection along an
+/// axis. [rounding]
 const EDGE_ON: f64 = 1e-6;
-/// Rays across and down each face of an opening.
+/// Number of visibility rays along each side of each face of an opening.
 const RAYS: usize = 16;
-/// Share of the distance to a face at which its rays end: a ceiling may lie in the plane of the face. [rounding]
+/// Visibility rays end at this share of the distance to the face, because a ceiling may lie in the plane of the face.
+/// [rounding]
 const NEARLY: f64 = 0.999;
 /// Number of independent estimates of the background; their variance gives its standard error.
 const BATCHES: u32 = 16;
@@ -134,11 +136,11 @@ fn check(eye: &Eye, lamps: &[Lamp]) -> Result<()> {
 struct Lamp {
     light: usize,
     position: DVec3,
-    /// Directions of C = 0, of C = 90 and of the axis.
+    /// Directions of C = 0°, of C = 90° and of the axis of the luminaire.
     frame: [DVec3; 3],
     opening: Opening,
     distribution: usize,
-    /// Luminance of its colour.
+    /// Luminance of the colour of the light: the factor on its intensity distribution.
     factor: f64,
 }
 
@@ -170,7 +172,7 @@ impl Lamp {
         (area > largest * EDGE_ON).then_some(Sight { towards, distance, area, candela })
     }
 
-    /// Visible share of the projected area, and the mean over that share of the squared transmittance.
+    /// The visible share of the projected area, and the mean squared transmittance over the visible part.
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);
@@ -266,7 +268,7 @@ fn luminance(light: DVec3) -> f64 {
 
 /// Splits the light of a path that ends at an eye into indirect light and direct light that is not rated.
 struct Split<'a> {
-    /// By the lights of the scene.
+    /// For each light of the scene, whether the rating includes it.
     rated: &'a [bool],
     /// Whether the path has met a surface other than a clear pane.
     scattered: bool,
@@ -277,7 +279,8 @@ struct Split<'a> {
 impl Observer for Split<'_> {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let light = (importance * emission).as_dvec3();
-        // A vertex of a mesh samples its light before it scatters the path; the eye belongs to no mesh.
+        // A vertex samples a light before `scatter` is called for the vertex. A light sample at a mesh is therefore
+        // indirect light even if `scattered` is still false. The eye belongs to no mesh.
         let is_at_mesh = matches!(strategy, Strategy::LightSample { mesh, .. } if mesh != NONE);
         match source {
             _ if self.scattered || is_at_mesh => self.indirect += light,

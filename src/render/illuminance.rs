@@ -125,7 +125,8 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
 
 /// The points at which light is gathered.
 enum Receivers {
-    /// In world coordinates, in which neighbouring points differ however far away the scene is.
+    /// The grid in world coordinates, so that neighbouring points remain distinct even if the scene is far from the
+    /// origin.
     Grid {
         origin: Vec3,
         across: Vec3,
@@ -178,7 +179,8 @@ fn receivers(world: &World, place: &Place, params: &Params) -> Result<Receivers>
     }
 }
 
-/// The triangle at the centre of each texel with its barycentric coordinates. Where triangles overlap, the first one.
+/// For each texel, the triangle that covers the centre of the texel, and the barycentric coordinates of the centre.
+/// Where triangles overlap, the first triangle is used.
 fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
     let meshes = &world.scene().meshes;
     let found = meshes

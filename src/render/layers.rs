@@ -67,12 +67,12 @@ pub struct Layer {
     pub name: String,
     /// Names of its channels in files.
     pub channels: &'static [&'static str],
-    /// The text of its expression, for images of light.
+    /// The text of a light path expression; `None` for a surface attribute.
     pub expression: Option<String>,
     pub image: Image,
 }
 
-/// The totals of all layers so far, tile by tile as the pixels of the main image.
+/// The totals of all layers so far. They are stored tile by tile, like the pixels of the main image.
 pub struct Layers<'a> {
     pub(super) world: &'a World,
     outputs: &'a Outputs,
@@ -135,7 +135,7 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// Length of the sums of a pixel in [`Recorder::add_to`].
+    /// Number of sums per pixel that [`Recorder::add_to`] writes.
     pub fn summed(&self) -> usize {
         let Outputs { expressions, aovs, .. } = self.outputs;
         3 * expressions.len() + if aovs.is_empty() { 0 } else { 1 + aovs.iter().map(|a| a.summed()).sum::<usize>() }
@@ -171,7 +171,8 @@ impl<'a> Layers<'a> {
         (0..MAX_SHARED).map(|_| self.recorder()).collect()
     }
 
-    /// The images so far. `places` has the tile, the number within the tile and the sample count of each pixel.
+    /// The images so far. `places` has, for each pixel of the image, the tile, the index within the tile and the number
+    /// of samples of the pixel to show.
     pub fn images(&self, beauty: &Image, places: &[(u32, u32, u32)], job: Job) -> Result<Vec<Layer>> {
         let guards = try_collect(self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)))?;
         let tiles = try_collect(guards.iter().map(|guard| guard.as_slice()))?;
@@ -223,7 +224,7 @@ pub struct Recorder<'a> {
     /// Radiance of the current path in the main image.
     pub(super) beauty: Vec3,
     pub(super) trail: Trail<'a>,
-    /// Sums over the paths of a pixel, for each list of expressions that accept the same paths.
+    /// Sums over the paths of a pixel: one sum for each list of expressions that accept the same paths.
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }

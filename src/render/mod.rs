@@ -3,8 +3,8 @@
 //! 3.2).
 //!
 //! [`World`] prepares a scene for tracing; [`run`] renders the view of a camera; [`irradiance`] samples the light that
-//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target. A
-//! seed gives the same bits on any number of threads.
+//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target. The
+//! same seed gives the same bits on any number of threads.
 //!
 //! A sample passes through these files: `sampler` draws its random numbers → `path` traces it (`vertex` describes a
 //! hit, `bsdf` and `ggx` scatter, `light` samples one of the lights of `emissive` and `environment`) → a [`PathSink`]

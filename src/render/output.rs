@@ -24,7 +24,7 @@ pub struct Film {
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// Number of lights that shine from points and are not in the image.
+    /// Number of lights that shine from points, so that the image does not show them.
     pub unseen_lights: usize,
     /// The additional images: those of expressions in order, then the AOVs in order.
     pub layers: Vec<Layer>,

@@ -11,15 +11,16 @@ pub struct Params {
     /// Size of the image in pixels, each in `[1, 65536]`.
     pub width: usize,
     pub height: usize,
-    /// Paths per pixel, in `[1, 1 << 20]`: for each pixel without an error target, the mean over the image with one.
+    /// Paths per pixel, in `[1, 1 << 20]`. Without an error target, every pixel gets this number of paths. With an
+    /// error target, this number limits the mean over the image.
     pub samples: u32,
     /// Stop when [`super::Film::error`] falls to this value, with paths allocated to minimise it; 0 = never.
     pub target_error: f32,
-    /// Stop when each tile of 8 × 8 pixels reaches this error: the root mean square over its pixels of the half-width
-    /// of the 95 % interval of the luminance, relative to that luminance. 0.1 means "within 10 % of the value, 19
-    /// times out of 20". Pixels darker than a tenth of the image's mean luminance are measured against that tenth. A
-    /// tile gets at most 64 times `samples` paths per pixel, though it may miss the target. 0 = never. If several
-    /// targets are set, all of them are met.
+    /// Stop when the error of each tile of 8 × 8 pixels falls to this value. The error of a pixel is the half-width of
+    /// the 95 % confidence interval of its luminance, relative to its luminance. The error of a tile is the root mean
+    /// square over its pixels. 0.1 means "within 10 % of the value, 19 times out of 20". Pixels darker than a tenth of
+    /// the image's mean radiance are measured against that tenth. A tile gets at most 64 times `samples` paths per
+    /// pixel, though it may miss the target. 0 = never. If several targets are set, all of them are met.
     pub pixel_error: f32,
     /// Stop when [`super::Film::relative_error`] falls to this value, with paths allocated to minimise it; 0 = never.
     pub relative_error: f32,

@@ -18,20 +18,19 @@ use glam::{Vec2, Vec3};
 
 /// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
-/// Paths whose expected contribution is at least this share of the mean survive with certainty, up to
-/// [`MAX_SURVIVAL`]. Measured on rooms, the product of time and variance is smallest near this value. [judged on
-/// rooms]
+/// Paths whose expected contribution is at least this share of the mean survive with the largest probability,
+/// [`MAX_SURVIVAL`]. Measured on rooms, the product of time and variance is smallest near this value. [judged on rooms]
 const CERTAIN_SHARE: f32 = 0.5;
-/// Largest survival probability: a path between white walls must end eventually. Walls of an albedo above its square
-/// root make the variance infinite. [origin not recorded]
+/// Largest survival probability: a path between white walls must end eventually. The variance is infinite if the albedo
+/// of the walls exceeds the square root of this probability. [origin not recorded]
 const MAX_SURVIVAL: f32 = 0.998;
 
 /// Largest number of bounces. It only guards against endless paths: at [`MAX_SURVIVAL`] one path in ten million gets
 /// so far.
 pub const MAX_BOUNCES: u32 = 8192;
 
-/// Observes a path. Only observers of light path expressions and AOVs implement more than [`Observer::add`]; the empty
-/// defaults cost other observers nothing.
+/// Observes a path. Many observers implement only [`Observer::add`]; the empty defaults of the other methods cost
+/// nothing.
 pub trait Observer {
     /// Receives a contribution, as [`PathSink::add`], with the sampling strategy that found the light.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy);
@@ -80,7 +79,7 @@ impl PrimaryHit {
 pub enum Strategy {
     /// A BSDF sample hit the light.
     BsdfSample,
-    /// A light sample at a vertex of a mesh; `lobes` are the BSDF values times the cosine towards it.
+    /// A light sample at a vertex of a mesh; `lobes` are the BSDF values times the cosine towards the light.
     LightSample { mesh: u32, lobes: Lobes },
 }
 
@@ -97,7 +96,7 @@ impl<S: PathSink> Observer for Contributions<'_, S> {
 /// A path segment about to leave a vertex or the eye.
 pub(super) struct Leg {
     pub ray: Ray,
-    /// The triangle at its origin.
+    /// Id of the triangle at the origin of the ray, or `NONE`.
     pub from: u32,
     pub throughput: Vec3,
     /// The competing strategy for MIS: the point at which a light was sampled last, and the solid-angle pdf of the
@@ -206,7 +205,8 @@ pub(super) fn continue_path<O: Observer>(
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
     {
-        // Keep more of the dim paths than their expected share: where bright light is rare, it is underestimated.
+        // Keep more of the dim paths than their expected share, because that share underestimates bright light that is
+        // rare.
         let expected_share = (throughput * roulette_weight).max_element();
         let survival = (expected_share / CERTAIN_SHARE).max(expected_share.sqrt()).min(MAX_SURVIVAL);
         if !(sampler.chance() < survival) {

@@ -11,7 +11,7 @@ use crate::job::Job;
 /// Guide images of the filter.
 const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
 
-/// The parameters of a render with the guide images of the filter behind the requested outputs.
+/// The parameters of a render, with the guide images of the filter added after the requested outputs.
 pub fn guided(params: &Params) -> Params {
     let mut guided = params.clone();
     if params.preview > 0.0 {

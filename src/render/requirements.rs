@@ -1,9 +1,9 @@
 //! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and the largest
 //! share of light that a bounce can leave.
 //!
-//! Values range over the material factors times the texels of their textures; only materials of meshes with triangles
-//! count. Tracing skips whatever cannot occur, which changes no estimate. The number of bounces that matter is
-//! reported, but limits no render: paths end by Russian roulette alone.
+//! The analysis considers every value that a material factor times a texel of its texture can have. Only materials of
+//! meshes with triangles count. Tracing skips whatever cannot occur, which changes no estimate. The number of bounces
+//! that matter is reported, but limits no render: paths end by Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -42,7 +42,7 @@ pub struct Requirements {
     /// Number of closed transparent meshes, and the first of them: refraction in solids is not modelled.
     pub solids: usize,
     pub first_solid: Option<usize>,
-    /// A transparent and rough material: frosted glass is not modelled.
+    /// The first material that is transparent and rough: frosted glass is not modelled.
     pub frosted: Option<usize>,
 }
 
@@ -65,7 +65,8 @@ impl Requirements {
         Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
     }
 
-    /// The contents of the scene that the renderer does not model, one sentence each.
+    /// The shading features that the scene does not need and that tracing therefore omits, and the contents of the
+    /// scene that the renderer does not model; one sentence each.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {
@@ -122,7 +123,7 @@ impl Range {
         self.low == self.high
     }
 
-    /// The range of the products of a value of each range.
+    /// The range of the products of a value in `self` and a value in `other`.
     fn times(&self, other: &Self) -> Self {
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         Self {
@@ -233,8 +234,8 @@ impl Requirements {
         }
     }
 
-    /// Takes back the emission of surfaces if no part of any has an area that emits, as of a lamp whose lit texels lie
-    /// outside its triangles. `pieces` is the number of parts that emit.
+    /// Clears the flags of surface emission if no part of any surface emits. An example is a lamp whose lit texels all
+    /// lie outside its triangles. `pieces` is the number of parts that emit.
     pub fn keep_surfaces_that_emit(&mut self, pieces: usize) {
         self.surfaces &= pieces > 0;
         self.textured_surfaces &= pieces > 0;

@@ -1,8 +1,9 @@
 //! Owen-scrambled Sobol' points (Burley 2020, "Practical hash-based Owen scrambling"), four dimensions at a time.
 //!
-//! A path draws its numbers in blocks of four: each block is one four-dimensional Sobol' point. Successive blocks are
-//! padded: they shuffle and scramble the same sequence anew. Within each block, every 2^k samples of a pixel are
-//! stratified. A block serves numbers that act together, such as a direction and the light sample at the next vertex.
+//! A path draws its numbers in blocks of four: each block is one four-dimensional Sobol' point. Blocks are combined by
+//! padding: each block shuffles and scrambles the same sequence anew. Within each block, every 2^k samples of a pixel
+//! are stratified. The four numbers of a block drive decisions that act together, such as a direction and the light
+//! sample at the next vertex.
 
 use crate::rng;
 
@@ -53,14 +54,15 @@ impl Sampler {
         Block(std::array::from_fn(|d| scramble(point[d], seed(d as u32)).reverse_bits()))
     }
 
-    /// The first four dimensions of the Sobol' sequence, with eight bits of the index at a time; indices and results
-    /// have reversed bits.
+    /// A point of the Sobol' sequence in its first four dimensions. Each look-up handles eight bits of the index.
+    /// Indices and results have reversed bits.
     #[inline]
     fn point(&self, index: u32) -> [u32; 4] {
         let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
         let low = row(3);
-        // Indices below 256 differ only in their low eight bits. Shuffling flips their higher bits alike, which XORs
-        // all points with one constant, and so does the scrambling of the points.
+        // Indices below 256 differ only in their low eight bits. Shuffling flips their higher bits alike, which would
+        // XOR all points with one constant. This XOR is omitted, because the scrambling of the points has the same
+        // effect.
         if self.index & 0x00ff_ffff == 0 {
             return *low;
         }

@@ -1,10 +1,10 @@
 //! Path reuse among neighbouring pixels: the paths of a block share their secondary vertices.
 //!
 //! A secondary vertex also lights the primary vertices of the neighbours, and one more ray per neighbour tests its
-//! visibility. It is weighed as a sample of the mean of the pdfs of all primary vertices that see it (the balance
-//! heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by re-using paths").
-//! Estimates remain unbiased, and a pixel gets the indirect light of as many vertices as the block has pixels, for
-//! little more than one ray each. In return, the errors of these pixels are correlated.
+//! visibility. The secondary vertex is weighed as if it were sampled from the mean of the pdfs of all primary vertices
+//! that see it (the balance heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path
+//! tracing by re-using paths"). Estimates remain unbiased, and a pixel gets the indirect light of as many vertices as
+//! the block has pixels, for little more than one ray each. In return, the errors of these pixels are correlated.
 //!
 //! Primary and secondary vertices must be non-specular: a mirror reflects something else to each pixel. Paths with
 //! other vertices are traced alone.
@@ -48,7 +48,7 @@ pub trait Tape: Observer {
     /// Starts a new recording at a secondary vertex.
     fn begin(&mut self);
 
-    /// Starts a new recording behind a secondary vertex of a mesh.
+    /// Starts a new recording that begins after the path has scattered at a secondary vertex of a mesh.
     fn begin_behind(&mut self, _mesh: u32) {
         self.begin();
     }
@@ -60,7 +60,8 @@ pub trait Tape: Observer {
 /// Scratch memory for the recording of a secondary vertex.
 #[derive(Default)]
 pub struct Scratch<T> {
-    /// The subpath from the vertex on; behind the vertex, if its light depends on the viewer.
+    /// The subpath that begins at the vertex. If the light of the vertex depends on the viewer, the subpath begins
+    /// after the path has scattered there.
     tape: T,
     /// The panes between the vertex and its light sample.
     panes: Vec<Pane>,
@@ -113,7 +114,7 @@ enum SecondaryLight<'w> {
         surface: Surface<'w>,
         /// A light sample and its weight without the BSDF ([`path::connection_weight`]).
         light_sample: Option<(LightSample, Vec3)>,
-        /// Direction and solid-angle pdf of the BSDF sample behind the vertex.
+        /// Direction and solid-angle pdf of the BSDF sample at the vertex.
         continuation: Option<(Vec3, f32)>,
     },
 }
@@ -125,9 +126,9 @@ struct Viewer {
     /// Towards the secondary vertex.
     direction: Vec3,
     lobes: Lobes,
-    /// Solid-angle pdf with which its BSDF samples that direction.
+    /// Solid-angle pdf with which the BSDF of the primary vertex samples `direction`.
     pdf: f32,
-    /// Factor from solid angle to area at the secondary vertex: cosine / squared distance.
+    /// Factor from a solid-angle pdf to an area pdf at the secondary vertex: cosine / squared distance.
     solid_angle_per_area: f32,
 }
 
@@ -299,16 +300,16 @@ fn record_view_dependent<'w, T: Tape>(
     has_light.then_some(SecondaryLight::ViewDependent { surface, light_sample, continuation })
 }
 
-/// Whether the segment between two vertices is free of surfaces, transparent ones included: a path that passed one did
-/// so by chance, or scattered there.
+/// Whether no surface lies between two vertices, not even a transparent one: a path passes a partly transparent surface
+/// only by chance, and scatters at a clear pane.
 fn is_visible(world: &World, from: &Vertex, to: &Vertex, direction: Vec3) -> bool {
     let origin = from.off_surface(direction);
     let target = to.off_surface(-direction);
     world.is_clear(&Ray { origin, direction: target - origin, t_max: 1.0 }, [from.id, to.id])
 }
 
-/// Whether a secondary vertex is deterministically visible from its own primary vertex; always in scenes of opaque
-/// surfaces.
+/// Whether a secondary vertex is visible from its own primary vertex with certainty, not by chance. This is always true
+/// if all surfaces of the scene are opaque.
 fn is_surely_visible(world: &World, primary: &PrimaryVertex, secondary: &Vertex) -> bool {
     let direction = secondary.position - primary.vertex.position;
     !world.is_see_through() || is_visible(world, &primary.vertex, secondary, direction)

@@ -46,13 +46,14 @@ impl ReplayObserver for Sum {
     }
 }
 
-/// Sums contributions and tracks a subpath from every automaton state in which the observers that replay it may be.
+/// Sums contributions, and tracks a subpath from every automaton state in which an observer may start to replay the
+/// subpath.
 pub struct LpeTape<'a> {
     world: &'a World,
     automaton: &'a Automaton,
     sum: Vec3,
     trail: Trail<'a>,
-    /// The states behind the primary vertices, and the states in which the subpath begins.
+    /// The states after scattering at the primary vertices, and the states in which the subpath begins.
     viewers: Vec<u16>,
     origins: Vec<u16>,
     outcome: Vec<PathOutcome>,

@@ -43,8 +43,8 @@ impl Vertex {
         }
     }
 
-    /// A free point in world coordinates that faces along a unit normal. Its offset also clears surfaces that it may
-    /// happen to lie in.
+    /// A free point in world coordinates that faces along a unit normal. The point may happen to lie in a surface, so
+    /// its offset is large enough to clear that surface.
     pub fn free(world: &World, position: Vec3, normal: Vec3) -> Self {
         let (low, high) = world.accel().bounds();
         let extent = low.abs().max(high.abs()).max_element().min(facet::MAX_FREE_COORDINATE);
@@ -53,8 +53,9 @@ impl Vertex {
         Self { mesh, triangle, id: NONE, barycentric, position, normal, offset: largest * facet::OFFSET }
     }
 
-    /// The point offset from its surface to the side of `direction` (Wächter and Binder 2019, but scaled by the
-    /// triangle instead of the point: coordinates near 0 carry the rounding errors of larger ones).
+    /// The point offset from its surface to the side of `direction` (after Wächter and Binder 2019). The offset scales
+    /// with the coordinates of the triangle instead of those of the point, because a coordinate near 0 carries the
+    /// rounding errors of the larger coordinates.
     #[inline]
     pub fn off_surface(&self, direction: Vec3) -> Vec3 {
         self.position + self.normal * self.offset.copysign(self.normal.dot(direction))

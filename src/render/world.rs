@@ -58,7 +58,7 @@ impl World {
         if count >= 1 << 31 {
             return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));
         }
-        // Number the triangles of all meshes and move them to the centre.
+        // Number the triangles of all meshes and make their coordinates relative to the centre.
         let centre = facet::centre(&scene.meshes);
         let mut first = Vec::with_capacity(scene.meshes.len() + 1);
         let mut facets = try_vec(count, Facet::EMPTY)?;
@@ -109,7 +109,7 @@ impl World {
     }
 
     /// Discards the analysis of the scene, so that every hit evaluates every shading feature. Estimates change by
-    /// rounding only; for benches of the gain of the analysis.
+    /// rounding only. Benchmarks use this function to measure what the analysis gains.
     pub fn generalise(&mut self) {
         self.compiled_materials.iter_mut().for_each(|f| *f = f.without_analysis());
         self.facets.iter_mut().for_each(|f| *f = f.without_analysis());
@@ -217,8 +217,8 @@ impl World {
         }
     }
 
-    /// Transmittance per channel between the ends of a ray, whose two triangles do not count. Partly transparent
-    /// surfaces and clear panes attenuate it. `panes` receives these surfaces in no particular order.
+    /// Transmittance per channel between the ends of a ray. The triangles at the two ends do not count. Partly
+    /// transparent surfaces and clear panes attenuate light. `panes` receives these surfaces in no particular order.
     pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], mut panes: Option<&mut Vec<Pane>>) -> Vec3 {
         if let Some(panes) = &mut panes {
             panes.clear();

@@ -34,8 +34,8 @@ use std::sync::Arc;
 /// A scene description. [`Scene::validate`] checks the indices between the lists.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// The origin of all positions in the coordinates of the scene's file, in metres: f32 positions of a building on a
-    /// national grid would be rounded to centimetres.
+    /// The origin of all positions, in the coordinates of the scene's file and in metres. Without it, f32 positions of
+    /// a building on a national grid would be rounded to centimetres.
     pub origin: DVec3,
     pub meshes: Vec<Mesh>,
     pub materials: Vec<Material>,

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// Share of the points that must lie near the median: a few objects left behind at the origin of a national grid do
-/// not count. [convention]
+/// Share of the points that must lie near the median. The other points do not count, such as a few objects left behind
+/// at the origin of a national grid. [convention]
 const NEAR_SHARE: f64 = 0.75;
 
 /// The median of points per axis, and the distance from it, along an axis, within which [`NEAR_SHARE`] of them lie.

@@ -2,19 +2,19 @@
 
 use std::fmt;
 
-/// Number of places that are named; further ones are counted.
+/// Maximum number of objects that are named; further objects are only counted.
 const MAX_NAMED: usize = 3;
 
 /// A feature of a file that is not rendered.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unrendered {
-    /// Its name: of an extension, or of a part of glTF itself.
+    /// Name of the extension, or of the part of glTF itself.
     pub feature: String,
     /// The part of the picture that is missing.
     pub effect: &'static str,
-    /// The first objects that have it.
+    /// Names of the first objects that have the feature.
     pub named: Vec<String>,
-    /// Number of objects that have it.
+    /// Number of objects that have the feature.
     pub count: usize,
 }
 

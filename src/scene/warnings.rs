@@ -19,7 +19,7 @@ pub const MIN_EXTENT: f64 = 0.2;
 const USUAL_HEIGHT: f64 = 3.0;
 const USUAL_WIDTH: f64 = 6.0;
 
-/// Number of lights that a warning describes; further ones are counted.
+/// Maximum number of lights that a warning describes; further lights are only counted.
 const MAX_LISTED: usize = 3;
 
 /// Units of modelling programs, in metres. [convention]
@@ -28,8 +28,8 @@ const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimet
 /// Units of scenes that were scaled down once too often, in metres. [convention]
 const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
-/// Spacing in metres of the coordinates of vertices above which walls, lamps and panes that lie close together merge.
-/// [convention]: half a millimetre, which f32 reaches 4 km from the origin.
+/// Maximum spacing in metres of the f32 coordinates of vertices. Beyond it, walls, lamps and panes that lie close
+/// together merge. [convention]: half a millimetre, which f32 reaches 4 km from the origin.
 pub const MAX_SPACING: f64 = 0.0005;
 
 impl Scene {
@@ -61,7 +61,7 @@ impl Scene {
             return Some(Warning::new(Code::FarFromOrigin, self.origin.length(), 0.0, message, advice));
         }
         let (low, high) = self.bounds()?;
-        // The coordinate along whose axis the triangles are rounded most.
+        // The largest coordinate, which is rounded most.
         let largest = low.abs().max(high.abs()).max_element();
         let spacing = f64::from(largest.next_up() - largest);
         Warning::above(
@@ -88,7 +88,8 @@ impl Scene {
         self.lights.iter().filter(is_unseen).count()
     }
 
-    /// A warning if luminaires shine from points: of point and spot lights nobody expects to see a body.
+    /// A warning if the scene has luminaires, which shine from points. Point and spot lights raise no warning: nobody
+    /// expects to see them in a picture.
     fn not_in_picture(&self) -> Option<Warning> {
         let luminaire = |(index, light): (usize, &PunctualLight)| match *light {
             PunctualLight::Luminaire { position, colour, .. } if colour.max_element() > 0.0 => Some((index, position)),
@@ -104,7 +105,8 @@ impl Scene {
         (count > 0).then(|| Warning::new(Code::NotInPicture, count as f64, 0.0, message, advice))
     }
 
-    /// A warning if the extent suggests a unit other than the metre: the first of height, width and smallness.
+    /// A warning if the extent suggests a unit other than the metre. Only the first defect is reported: too high, too
+    /// wide, too small.
     pub fn implausible_size(&self) -> Option<Warning> {
         let (low, high) = self.bounds()?;
         let extent = (high - low).as_dvec3();

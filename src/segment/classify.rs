@@ -1,4 +1,5 @@
-//! The classifier over the whole image: tiles of a row, one plane per feature, one quadratic form for each answer.
+//! Applies the classifier to the whole image, in tiles along the rows. Each feature of a tile is a plane, and each
+//! result is a quadratic form of the features.
 
 use super::ellipsoid::Ellipsoid;
 use super::exponential::exp_f32;
@@ -15,17 +16,17 @@ use crate::job::Job;
 use crate::simd::widest;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// Pixels worked on together: their planes stay in the first-level cache.
+/// Pixels processed together: their planes stay in the first-level cache.
 const TILE: usize = 64;
 
-/// A feature of the pixels of a tile.
+/// One feature of all pixels of a tile.
 type Plane = [f32; TILE];
 
 pub struct Classified {
     pub mask: Image,
     pub confidence: Image,
     pub unseen: Image,
-    /// Mean of `unseen` over the pixels looked at.
+    /// Mean of `unseen` over the pixels of the region.
     pub mean_unseen: f64,
     /// Feature values that are NaN or infinite.
     pub bad: usize,
@@ -48,7 +49,7 @@ impl Classified {
     }
 }
 
-/// The answers, still black: making room for them takes a while, which training can share.
+/// The output images, still black. Allocating them takes a while, so it is done while the model is trained.
 pub struct Blank {
     mask: Image,
     confidence: Image,
@@ -62,20 +63,21 @@ impl Blank {
     }
 }
 
-/// Everything that answers for a tile.
+/// All that is needed to classify a tile.
 struct Judge<'a> {
-    /// The samples' columns.
+    /// The channels of the samples' columns.
     channels: &'a [usize],
-    /// Whether they are all channels of an image of [`CHANNELS`].
+    /// Whether `channels` are all channels of an image with [`CHANNELS`] channels.
     is_usual: bool,
     mean: Vec<f32>,
     scale: Vec<f32>,
     logit: Form,
-    /// Those of them that the logit is of, in order.
+    /// Indices in `channels` of the features that the logit uses, in its order.
     deciding: Vec<usize>,
-    /// Of all the samples' columns.
+    /// For each class, the squared distance from the centre of the region that its samples cover, over all of
+    /// `channels`.
     seen: [Form; 2],
-    /// Factors on logits where features are like those painted, and where not.
+    /// Factors on logits where features are like the painted ones, and where they are not.
     calibration: [f32; 2],
 }
 
@@ -84,7 +86,7 @@ impl Judge<'_> {
     #[inline(always)]
     fn standardise(&self, pixels: &[f32], count: usize, tile: &mut Tile) {
         if self.is_usual {
-            // All of the usual channels: standardised on their way.
+            // With all of the usual channels, standardise them while they are deinterleaved.
             let mean: [f32; CHANNELS] = std::array::from_fn(|c| self.mean[c]);
             let scale: [f32; CHANNELS] = std::array::from_fn(|c| self.scale[c]);
             if let Some(planes) = tile.all.first_chunk_mut::<CHANNELS>() {
@@ -131,7 +133,7 @@ impl Form {
         Self { a, b: pull.iter().map(|p| -2.0 * *p as f32).collect(), c: c as f32 }
     }
 
-    /// Of planes in the order of the form's features.
+    /// Evaluates the form; `planes` are in the order of its features.
     #[inline(always)]
     fn evaluate(&self, planes: &[Plane]) -> Plane {
         let mut sum = [self.c; TILE];
@@ -156,33 +158,33 @@ impl Form {
     }
 }
 
-/// What is said of a tile.
+/// The results for a tile.
 struct Answer {
     mask: [f32; TILE],
     probability: [f32; TILE],
-    /// How far beyond what was seen.
+    /// How far the features lie beyond the regions of both classes, in `[0, 1]`.
     beyond: [f32; TILE],
-    /// Whether all of the samples' columns are known to be finite: then so are the distances.
+    /// Whether all distances are finite, and with them all of the samples' columns.
     all_finite: bool,
 }
 
 /// The features of a tile.
 struct Tile {
-    /// As they are in the image.
+    /// The channels as they are in the image.
     raw: [Plane; MAX_CHANNELS],
-    /// The samples' columns, standardised, and those of them that the logit is of.
+    /// The samples' columns, standardised (`all`), and those of them that the logit uses (`deciding`).
     all: [Plane; MAX_CHANNELS],
     deciding: [Plane; MAX_CHANNELS],
 }
 
 widest! {
-    /// Judges at most a tile of pixels; the answers beyond the last mean nothing. `likely` is the region that held a tile
-    /// before, and is tried first: which one is does not change the answer.
+    /// Classifies at most a tile of pixels; results beyond the last pixel mean nothing. `likely` is the region that
+    /// contained an earlier tile. It is tried first to save time; the order does not change the result.
     fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
         judge.standardise(pixels, count, tile);
         let planes = &tile.all[..judge.channels.len()];
 
-        // Nothing is nearer than within: one region that holds all is enough.
+        // If one region contains all pixels, none lies beyond it: the other region need not be evaluated.
         let mut nearest = [f32::INFINITY; TILE];
         let mut all_within = false;
         for turn in 0..judge.seen.len() {
@@ -225,8 +227,8 @@ widest! {
     }
 }
 
-/// Classifies every pixel by its features, of which `channels` are the samples' columns; outside the region (above one half) all answers
-/// are 0.
+/// Classifies every pixel by its features; `channels` are the channels of the samples' columns. Outside the region,
+/// where `region` is at most one half, all results are 0.
 pub fn run(
     features: &Image,
     region: Option<&Image>,
@@ -250,7 +252,7 @@ pub fn run(
     let Blank { mut mask, mut confidence, mut unseen } = blank;
     let bad = AtomicUsize::new(0);
     let looks_at_all = channels.len() == features.channels;
-    // The bits of each row's sum: added up in order, they make the same mean for any number of threads.
+    // The sum of each row, as bits. Adding them in order gives the same mean for any number of threads.
     let sums: Vec<AtomicU64> = (0..height).map(|_| AtomicU64::new(0)).collect();
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
     exec::for_rows_of_three(images, width, job, |y, [mask, confidence, unseen]| {
@@ -292,7 +294,7 @@ widest! {
     }
 }
 
-/// By eight sums side by side.
+/// The sum of all values, by eight partial sums.
 fn sum_of(values: &[f32]) -> f32 {
     let (chunks, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -1,12 +1,13 @@
-//! Growing masks by a radius, by the exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012). A light's
-//! mask grown by the radius of its bloom leaves the part of a ceiling whose colour can be trusted.
+//! Grows masks by a radius, by the exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012). The ceiling
+//! outside a light's mask, grown by the radius of its bloom, has a colour that can be trusted.
 
 use crate::error::{Result, check_range};
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// The mask grown by a disc: 1 where any pixel above one half is within `radius` pixels (centre to centre, in `[0, 65536]`), else 0.
+/// The mask grown by a disc: 1 where any pixel above one half is within `radius` pixels, else 0. The distance is from
+/// centre to centre; `radius` lies in `[0, 65536]`.
 pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
     check_range("radius", radius, 0.0, 65_536.0)?;
     check_range("the number of channels of the mask", mask.channels, 1, 1)?;

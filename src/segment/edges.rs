@@ -1,4 +1,4 @@
-//! The edges of lamps for resampling: confidence whose half level is a smooth line.
+//! Smooths the contours of lamps before resampling: the half level of the confidence becomes a smooth line.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid};
@@ -13,8 +13,8 @@ const GAP: usize = 2;
 /// Steps across a gap: along a row, a column and the diagonals.
 const ACROSS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
-/// The confidence of lamps with straight edges, for resampling. Gaps between lamps stay open, as the bars between
-/// panes.
+/// The confidence of lamps with smooth edges, for resampling. Narrow gaps between lamps stay open, such as the bars
+/// between panes.
 pub fn smooth_edges(confidence: &Image, job: Job) -> Result<Image> {
     let mut smooth = pyramid::blur(confidence, EDGE_BLUR, job)?;
     for y in 0..smooth.height {
@@ -28,7 +28,7 @@ pub fn smooth_edges(confidence: &Image, job: Job) -> Result<Image> {
     Ok(smooth)
 }
 
-/// Whether a dark pixel has light near it on two opposite sides.
+/// Whether a dark pixel has lit pixels near it on two opposite sides.
 fn is_gap(confidence: &Image, x: usize, y: usize) -> bool {
     let is_lit = |[dx, dy]: [isize; 2], steps: isize| {
         let (u, v) = (x as isize + dx * steps, y as isize + dy * steps);

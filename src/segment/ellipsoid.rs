@@ -5,8 +5,8 @@ use super::logistic::cholesky_solve;
 use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
 use crate::simd::widest;
 
-/// The least variance that counts, beside the unit variance that standardised features have over both classes: a tenth of
-/// their spread is what is beyond at least.
+/// Variance that is added to each feature of a class. The class then spreads by at least a tenth of the unit deviation
+/// that standardised features have over both classes.
 const LEAST_VARIANCE: f64 = 0.01;
 /// Share of a class's samples that lie within distance 1.
 const WITHIN: usize = 99;
@@ -29,7 +29,7 @@ pub struct Ellipsoid {
 }
 
 impl<'a> Spread<'a> {
-    /// Of the rows that are `members`.
+    /// The spread of the rows for which `is_member` holds.
     pub fn of(features: &'a Table, is_member: impl Fn(usize) -> bool) -> Self {
         let d = features.columns;
         let members: Vec<usize> = (0..features.rows).filter(|&i| is_member(i)).collect();
@@ -50,7 +50,7 @@ impl<'a> Spread<'a> {
         Self { features, members, centre, covariance }
     }
 
-    /// The region in the features of some columns.
+    /// The ellipsoid in the space of some columns.
     pub fn ellipsoid(&self, columns: &[usize]) -> Ellipsoid {
         let (d, all) = (columns.len(), self.features.columns);
         let mut inverse = vec![0.0; d * d];
@@ -81,7 +81,7 @@ impl Ellipsoid {
     }
 }
 
-/// The mean over pixels of how far they are from all regions: 0 within one of them, and then `1 - e^(1 - distance)`.
+/// The mean over pixels of how far they lie beyond the nearest region: 0 inside it, `1 - e^(1 - distance)` outside.
 pub fn mean_beyond(pixels: &Table, columns: &[usize], regions: &[Ellipsoid]) -> f64 {
     let mut sum = 0.0;
     for (rows, block) in pixels.blocks() {
@@ -104,7 +104,7 @@ widest! {
 }
 
 widest! {
-    /// Adds the lower triangle of the weighted products of what is off the centre.
+    /// Adds the weighted products of the deviations from the centre; only the lower triangle.
     fn add_products(block: &[Lanes], weights: &Lanes, centre: &[f64], products: &mut [f64]) {
         let d = centre.len();
         let mut off = [[0.0; BLOCK]; MAX_CHANNELS];

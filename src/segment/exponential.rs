@@ -1,6 +1,7 @@
-//! Exponentials by operations that processors do on many values at once, the same to the bit on all of them.
+//! Exponentials and a logarithm from operations that processors apply to many values at once, with the same bits on all
+//! processors.
 
-/// `eˣ` for x in `[-87, 88]`, beyond that its value at the end: within 3e-7 of it.
+/// `eˣ`, with x clamped to `[-87, 88]`, to a relative error below 3e-7.
 #[inline(always)]
 pub fn exp_f32(x: f32) -> f32 {
     const LN_2: [f32; 2] = [0.693_359_4, -2.121_944_4e-4];
@@ -14,7 +15,7 @@ pub fn exp_f32(x: f32) -> f32 {
     p * f32::from_bits(shifted.to_bits().wrapping_add(127) << 23)
 }
 
-/// The same for x in `[-708, 709]`, within 1e-12.
+/// `eˣ`, with x clamped to `[-708, 709]`, to a relative error below 1e-12.
 #[inline(always)]
 pub fn exp_f64(x: f64) -> f64 {
     const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
@@ -41,7 +42,8 @@ pub fn exp_f64(x: f64) -> f64 {
     p * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
 }
 
-/// `ln y` for y in `[1, 2]`, within 1e-12: `ln √2` and twice the area tangent of `(y - √2) / (y + √2)`.
+/// `ln y` for y in `[1, 2]`, to an error below 1e-12: `ln √2` plus twice the inverse hyperbolic tangent of
+/// `(y - √2) / (y + √2)`.
 #[inline(always)]
 pub fn ln(y: f64) -> f64 {
     const SERIES: [f64; 7] = [1.0 / 13.0, 1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0];

@@ -1,5 +1,5 @@
-//! A surface that strokes lie on is one face of the room, and hangs together: a classifier of single pixels carries on to walls
-//! and floors of its colour, which no stroke has touched.
+//! Restricts the mask of a surface to one face of the room, or to the parts that strokes touch. A classifier of single
+//! pixels would also mark walls and floors of the same colour that no stroke has touched.
 
 use super::classify::Classified;
 use super::input::Input;
@@ -10,16 +10,17 @@ use crate::features::{CHANNELS, NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
-/// Cosine of the angle between normals of one face at most: half of a right angle. [convention]
+/// Minimum cosine of the angle between the normals of one face: the angle is at most half a right angle. [convention]
 const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Share of the pixels that must lie on one face before the room is believed. [judged on 28 photos]
+/// Minimum share of the pixels whose normals must agree before they count as one face. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
-/// Cosine between normals that are equal but for rounding: those of a room laid out as a box, and not of a depth map. [rounding]
+/// Minimum cosine between normals that are equal up to rounding, as in a room laid out as a box but not in a depth map.
+/// [rounding]
 const EQUAL: f32 = 1.0 - 1e-4;
 
-/// The normal of the face that the positive strokes lie on, in a room laid out as a box. Position then says no more
-/// than the face does, and a classifier that looks at it cuts off parts of the face that no stroke has touched.
+/// The normal of the face that the positive strokes lie on, in a room laid out as a box. Position then tells no more
+/// than the face does, and a classifier that uses position would cut off parts of the face that no stroke has touched.
 pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
 }
@@ -33,19 +34,19 @@ pub fn laid_out_under(features: &Image, mask: &Image) -> Option<Vec3> {
 const CEILING: Vec3 = Vec3::Y;
 /// Share of the photo that a ceiling must cover to be proposed. [convention]
 const MIN_CEILING: f64 = 0.02;
-/// Share of a proposed plane that is wrong: one less the mean intersection over union with the true one, over generated
+/// Expected error of a proposed plane: 1 minus the mean intersection over union with the true plane, over generated
 /// rooms. [bench photos:nostrokes:tune:48]
 const PROPOSED_ERROR: f64 = 0.18;
 
-/// Pixels of the ceiling that stand for a stroke on it. [convention]
+/// Approximate number of ceiling pixels that stand for a stroke on the ceiling. [convention]
 const EXAMPLES: usize = 1000;
 
-/// The face that the positive strokes lie on, in a room laid out as a box. `None` if they agree on no face.
+/// The mask of the face that the positive strokes lie on, in a room laid out as a box. `None` if they agree on no face.
 pub fn of_strokes(input: &Input) -> Result<Option<Segmentation>> {
     laid_out(input).map(|normal| proposed(input, &face(input.features, normal)?)).transpose()
 }
 
-/// The ceiling of a room laid out as a box. Errors: there is none (`Degenerate`).
+/// The mask of the ceiling of a room laid out as a box. Errors: there is no ceiling (`Degenerate`).
 pub fn of_ceiling(input: &Input) -> Result<Segmentation> {
     proposed(input, &ceiling(input.features)?)
 }
@@ -57,14 +58,14 @@ fn proposed(input: &Input, mask: &Image) -> Result<Segmentation> {
     Ok(Segmentation { error: PROPOSED_ERROR, is_proposed: true, off_image, ..own })
 }
 
-/// A stroke of pixels all over the ceiling. Errors: there is none (`Degenerate`).
+/// A positive stroke of pixels spread over the ceiling. Errors: there is no ceiling (`Degenerate`).
 pub fn ceiling_example(features: &Image) -> Result<Stroke> {
     let ceiling = ceiling(features)?;
     let step = (marked(&ceiling).count() / EXAMPLES).max(1);
     Ok(Stroke { pixels: try_collect(marked(&ceiling).step_by(step).map(|p| p as u32))?, positive: true })
 }
 
-/// The mask of the pixels with a normal.
+/// The mask of the pixels on faces with the given normal.
 fn face(features: &Image, normal: Vec3) -> Result<Image> {
     let mut mask = Image::new(features.width, features.height, 1)?;
     let is_on = |i: usize| normal_at(features, i).dot(normal) >= SAME_FACE;
@@ -72,8 +73,9 @@ fn face(features: &Image, normal: Vec3) -> Result<Image> {
     Ok(mask)
 }
 
-/// The mask of the ceiling of a room laid out as a box, whose normals are equal: those of a depth map, or of the prior
-/// for photos without lines, are not. Errors: there is no such room, or its ceiling is hardly in view (`Degenerate`).
+/// The mask of the ceiling of a room laid out as a box. The normals of such a ceiling are equal, unlike those of a
+/// depth map or of the prior for photos without lines. Errors: there is no such room, or its ceiling is hardly in view
+/// (`Degenerate`).
 fn ceiling(features: &Image) -> Result<Image> {
     let mask = face(features, CEILING)?;
     let is_in_view = marked(&mask).count() as f64 >= MIN_CEILING * mask.data.len() as f64;
@@ -91,8 +93,8 @@ fn marked(mask: &Image) -> impl Iterator<Item = usize> {
     (0..mask.data.len()).filter(|&i| mask.data[i] > 0.5)
 }
 
-/// Takes pixels out of the mask that lie on another face of the room than the positive strokes; where the strokes agree on no
-/// face, connected parts that no positive stroke touches.
+/// Removes pixels from the mask that lie on another face of the room than the positive strokes. If the strokes agree on
+/// no face, removes connected parts of the mask that no positive stroke touches.
 pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
     let is_kept: Box<dyn Fn(usize) -> bool> = match stroked_normal(input, SAME_FACE) {
         Some(normal) => Box::new(move |i| normal_at(input.features, i).dot(normal) >= SAME_FACE),
@@ -119,7 +121,7 @@ pub fn offset(features: &Image, normal: Vec3) -> f32 {
     (sum / count.max(1) as f64) as f32
 }
 
-/// The pixels beside one along its row and column.
+/// The neighbours of a pixel in its row and its column.
 fn beside(i: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
     let x = i % width;
     let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
@@ -145,7 +147,7 @@ fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() 
     }
     let normals = || pixels().map(|p| normal_at(features, p));
     let middle = normals().fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
-    // Without pixels on other faces, which draw the mean aside.
+    // Average again without pixels on other faces, which would bias the mean.
     let mean = normals().filter(|n| n.dot(middle) >= SAME_FACE).fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
     let (mut agree, mut total) = (0usize, 0usize);
     for normal in normals() {
@@ -155,7 +157,7 @@ fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() 
     (agree as f64 >= AGREEMENT * total as f64).then_some(mean)
 }
 
-/// The pixels of the mask that a walk within it reaches from a positive stroke.
+/// The pixels of the mask that are connected to a positive stroke within the mask.
 fn touched(input: &Input, mask: &Image) -> Result<Vec<bool>> {
     let (width, count) = (mask.width, mask.data.len());
     let mut touched = try_vec(count, false)?;

@@ -1,4 +1,4 @@
-//! What a segmentation works on.
+//! The input of a segmentation.
 
 use super::strokes::Stroke;
 use crate::error::{Result, check_range};
@@ -12,8 +12,8 @@ pub struct Input<'a> {
     /// 1 to 16 channels of the photo's size; finite everywhere.
     pub features: &'a Image,
     pub strokes: &'a [Stroke],
-    /// Where to look (1) and where not (0): the plane's mask in the second phase. Outside it the confidence is 0,
-    /// but for lamps with a stroke. Strokes outside it still count as examples.
+    /// Where to look: 1 inside, 0 outside. In the second phase it is the plane's mask. Outside it the confidence is 0,
+    /// except in the regions of lamps. Strokes outside it still count as examples.
     pub region: Option<&'a Image>,
 }
 

@@ -6,16 +6,16 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::simd::widest;
 
-/// Weighted examples, a row of terms each, of which the last is the constant.
+/// Weighted examples, each a row of terms; the last term is the constant.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
     pub terms: &'a Table,
     pub positive: &'a [bool],
-    /// 0 leaves an example out.
+    /// A weight of 0 leaves an example out.
     pub weights: &'a [f64],
 }
 
-/// What is minimised, at some weights.
+/// The objective that a fit minimises, with its derivatives, at some weights.
 pub struct Objective {
     pub value: f64,
     pub gradient: Vec<f64>,
@@ -23,16 +23,17 @@ pub struct Objective {
     pub hessian: Vec<f64>,
 }
 
-/// The weights that minimise the mean log loss plus `ridge / 2 |w|²`, the constant term being free. The ridge makes
-/// the solution finite and unique even for separable, duplicated or constant terms. Starts at `start`, and ends with the step
-/// that has less than `precision` to gain.
+/// The weights that minimise the mean log loss plus `ridge / 2 |w|²`, without the weight of the constant. The ridge
+/// makes the solution finite and unique even for separable, duplicated or constant terms. The fit starts at `start` and
+/// ends with the first step whose expected gain is below `precision`.
 pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
     let mut w = start.to_vec();
     let mut here = Objective::at(problem, ridge, &w);
     for _ in 0..30 {
         job.check()?;
         let Some(step) = cholesky_solve(&mut here.hessian, &here.gradient) else { break };
-        // Half the slope along the step is what it gains if the objective is a parabola, which near the end it is.
+        // The expected gain of a step is half the slope along it: exact for a parabola, which the objective resembles
+        // near its minimum.
         let expected = 0.5 * dot(&here.gradient, &step);
         let moved = |length: f64| -> Vec<f64> { w.iter().zip(&step).map(|(w, s)| w - length * s).collect() };
         if expected < precision {
@@ -64,7 +65,7 @@ impl Objective {
         let mut at = Self { value: 0.0, gradient: vec![0.0; d], hessian: vec![0.0; d * d] };
         add_log_loss(problem, w, &mut at);
         for i in 0..d {
-            // The constant has a trace of a ridge too: one class could be all the weight there is.
+            // The constant has a tiny ridge too, because all the weight may lie on one class.
             let r = if i + 1 == d { 1e-6 * ridge } else { ridge };
             at.value += 0.5 * r * w[i] * w[i];
             at.gradient[i] += r * w[i];
@@ -110,7 +111,7 @@ widest! {
     }
 }
 
-/// The logits of the rows that are `wanted`, with their numbers.
+/// The logits of the rows that are `wanted`, with the indices of these rows.
 pub fn logits(terms: &Table, w: &[f64], wanted: impl Fn(usize) -> bool) -> Vec<(usize, f64)> {
     let mut out = Vec::new();
     for (rows, block) in terms.blocks().filter(|(rows, _)| rows.clone().any(&wanted)) {

@@ -1,4 +1,5 @@
-//! Guided segmentation: strokes on the photo to a mask with per-pixel confidence ("Lighting Style Transfer", §4.2).
+//! Guided segmentation: turns strokes on the photo into a mask with a confidence per pixel ("Lighting Style Transfer",
+//! §4.2).
 //!
 //! ```text
 //! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation over strokes ─▶ the best one, calibrated
@@ -7,27 +8,29 @@
 //! ```
 //!
 //! The paper does not name its classifier. Here it is logistic regression, with linear or with quadratic terms of the
-//! features: models without memory of single samples carry on to surfaces no stroke touched, where trees and kernels
-//! do not. Which of the two, on which channels, and how far to trust its probabilities, is decided on strokes and parts of
-//! strokes held out of the training: neighbouring pixels are too alike to test each other.
+//! features. Such models do not memorise single samples, so they extrapolate to surfaces that no stroke touched; trees
+//! and kernel methods do not. Cross-validation decides which of the two models is used, on which channels, and how far
+//! its probabilities are trusted. It holds out strokes and parts of strokes, not single pixels, because neighbouring
+//! pixels are too alike to test each other.
 //!
-//! The paper's two phases are two runs: the plane first ([`StrokeSet::plane_examples`]), then the lights in the region of its
-//! mask, by colour alone ([`Params::for_lights`]), because lights lie on the plane and share its geometry.
+//! The paper's two phases are two runs. The first finds the plane ([`StrokeSet::plane_examples`]). The second finds the
+//! lights within the plane's mask, by colour alone ([`Params::for_lights`]), because lights lie on the plane and share
+//! its geometry.
 //!
-//! Known weakness: with strokes on few surfaces nothing held out tells channels apart, and the simplest that separate what
-//! was painted are taken; probabilities there are too sure.
+//! Known weakness: if the strokes lie on few surfaces, held-out strokes do not tell the subsets of channels apart. The
+//! simplest subset that separates the painted pixels is then chosen, and its probabilities are too confident.
 //!
-//! Nothing is kept from one run to the next: with one stroke more everything is learnt and judged anew, so that an answer
-//! depends on the strokes alone and not on the order in which they came to be seen.
+//! No state is kept between runs: with each additional stroke, everything is learnt and validated anew. The result
+//! therefore depends on the strokes alone and not on earlier runs.
 //!
-//! Every pixel is judged alone. As an option ([`Params::refine_radius`]) its neighbours then have a say, those of its
-//! own colour most: masks follow the edges of the photo, and noise and small mistakes go, small lamps with them if the
-//! radius is larger than they are.
+//! Each pixel is classified on its own. Optionally ([`Params::refine_radius`]), its neighbours then influence it, most
+//! of all neighbours of its own colour. Masks then follow the edges of the photo, and noise and small mistakes
+//! disappear; so do lamps that are smaller than the radius.
 //!
-//! Lamps are found as things rather than pixel by pixel ([`instances`]), unless the caller wants a surface ([`Subject`]). A plane
-//! stays on the face of the room that its strokes lie on ([`face`]).
+//! Lamps are found as whole regions rather than pixel by pixel ([`instances`]), unless the caller asks for a surface
+//! ([`Subject`]). The mask of a plane is restricted to the face of the room that its strokes lie on ([`face`]).
 //!
-//! Not modelled: neighbourhood in the learning itself.
+//! Not modelled: the influence of neighbouring pixels on each other during learning.
 
 mod classify;
 mod distance;
@@ -89,11 +92,13 @@ fn not_finite(bad: usize) -> Error {
 
 /// Segments an image by examples.
 ///
-/// With the [`CHANNELS`] of the features, a mask whose examples are missing is proposed: without negative strokes the
-/// face of the room that the positive ones lie on; without positive ones the ceiling, less the parts that resemble the
-/// negative ones; lamps without positive strokes, among the brightest things within the given mask. Errors: with other
-/// features, either class has no pixel in the image; strokes are missing, and no ceiling or no lamp was found
-/// (`Degenerate`).
+/// With the [`CHANNELS`] of the features, a mask is proposed if strokes are missing:
+/// - without negative strokes, the face of the room that the positive strokes lie on;
+/// - without positive strokes, the ceiling, minus the parts that resemble the negative strokes;
+/// - for lamps without positive strokes, the regions most like lamps among the brightest parts of the given mask.
+///
+/// Errors (`Degenerate`): a class that is needed covers no pixel of the image, and no mask can be proposed, because the
+/// features are others or because no face, ceiling or lamp was found.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
@@ -120,12 +125,12 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         subsets.retain(|subset| subset & POSITION == 0);
     }
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
-    // Making room for the answers takes a while, which learning can share.
+    // Allocating the output takes a while: do it while the model is learnt.
     let blank = || classify::Blank::new(features.width, features.height);
     let (learnt, blank) = exec::both(|| learn(input, params, &subsets, &channels, job.part(0.0, 0.4)), blank);
     let ((samples, chosen), blank) = (learnt?, blank?);
 
-    // Every pixel.
+    // Classify every pixel.
     let done = if params.refine_radius > 0 { 0.5 } else { 1.0 };
     let mut classified = classify::run(features, input.region, &channels, &chosen, blank, job.part(0.4, done))?;
     if classified.bad > 0 {
@@ -140,7 +145,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     Ok(result(classified, &samples, &chosen, &channels))
 }
 
-/// The result of a classification with the chosen of the given channels.
+/// The result of a classification. `chosen` refers to channels by their index in `channels`.
 fn result(classified: Classified, samples: &Samples, chosen: &Chosen, channels: &[usize]) -> Segmentation {
     let unseen = classified.mean_unseen;
     Segmentation {
@@ -158,8 +163,8 @@ fn result(classified: Classified, samples: &Samples, chosen: &Chosen, channels: 
     }
 }
 
-/// The mask of a plane whose examples are missing in part; `None` where both classes have some, or the strokes agree on
-/// no face.
+/// Proposes the mask of a plane if strokes of a class are missing. `None` if both classes have strokes in the image, or
+/// if the positive strokes agree on no face.
 fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentation>> {
     let count = input.features.width * input.features.height;
     let is_seen = |s: &Stroke| s.pixels.iter().any(|&p| (p as usize) < count);
@@ -168,7 +173,8 @@ fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentati
         (true, true) => Ok(None),
         (true, false) => face::of_strokes(input),
         (false, false) => face::of_ceiling(input).map(Some),
-        // Pixels of the ceiling stand for the positive strokes. The negative ones come later, and count where both are.
+        // Pixels of the ceiling stand for the positive strokes. The negative strokes follow, so that they win where
+        // both cover a pixel.
         (false, true) => {
             let mut strokes = vec![face::ceiling_example(input.features)?];
             strokes.extend(input.strokes.iter().cloned());
@@ -178,8 +184,8 @@ fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentati
     }
 }
 
-/// Draws examples of the given channels, and finds the model and the subset of channels that do best on strokes they have
-/// not seen.
+/// Draws samples of the given channels, then chooses the model and the subset of channels that do best on held-out
+/// strokes.
 fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], job: Job) -> Result<(Samples, Chosen)> {
     let features = input.features;
     let (samples, probe) = exec::both(|| samples::draw(input, channels, params), || samples::probe(input, channels));

@@ -1,10 +1,11 @@
-//! Edge-aware refinement: probabilities are made to follow the edges of the photo, by the guided filter (He, Sun and Tang
-//! 2013, "Guided Image Filtering") with the first three features, the colour, as its guide.
+//! Edge-aware refinement: the guided filter makes probabilities follow the edges of the photo (He, Sun and Tang 2013,
+//! "Guided Image Filtering"). Its guide is the first three features, the colour.
 //!
-//! In every window the probability is fitted by an affine function of colour, `p ≈ a · I + b`, held back from slopes that
-//! colour differences below the tolerance do not bear out; each pixel takes the mean of the fits of all windows it is in.
-//! Windows are summed by running sums: the time does not depend on the radius. Rows are worked on in bands of a fixed height,
-//! each with its margins: memory is that of a band, and the bits do not depend on the number of threads.
+//! In every window, the probability is fitted by an affine function of colour, `p ≈ a · I + b`. A penalty suppresses
+//! slopes that would rest on colour differences below the tolerance. Each pixel takes the mean of the fits of all
+//! windows that contain it. The sums over windows are running sums, so the time does not depend on the radius. Rows are
+//! processed in bands of a fixed height, each with its margins, so that a task needs the memory of one band only, and
+//! the bits of the result do not depend on the number of threads.
 
 use crate::error::Result;
 use crate::exec;
@@ -21,17 +22,17 @@ type Moments = [f64; 16];
 /// Weighted sums of 1, a (3) and b; three are not used.
 type Fits = [f64; 8];
 
-/// What is filtered.
+/// The input and the settings of the filter.
 #[derive(Clone, Copy)]
 pub struct Refinement<'a> {
-    /// The first three channels are the guide; fewer do too.
+    /// The first three channels are the guide; fewer channels are allowed.
     pub features: &'a Image,
     pub confidence: &'a Image,
     /// Pixels not above one half take no part and stay as they are.
     pub region: Option<&'a Image>,
     /// Half-width of the windows, in pixels, at least 1.
     pub radius: usize,
-    /// In units of the guide, > 0.
+    /// Colour differences below this count as noise, in units of the guide, > 0.
     pub tolerance: f64,
 }
 
@@ -49,12 +50,12 @@ pub fn run(refinement: &Refinement, job: Job) -> Result<Image> {
 }
 
 impl Refinement<'_> {
-    /// Some rows of the answer.
+    /// The refined probabilities of some rows.
     fn band(&self, rows: Range<usize>, job: Job) -> Result<Vec<f32>> {
         let (width, height, radius) = (self.confidence.width, self.confidence.height, self.radius);
         let around = |y: usize| y.saturating_sub(radius)..(y + radius + 1).min(height);
 
-        // The fits of all windows that reach into the band.
+        // Fit all windows that reach into the band.
         let windows = around(rows.start).start..around(rows.end - 1).end;
         let mut fits = try_vec(windows.len() * width, [0.0f32; 5])?;
         let mut columns = try_vec(width, [0.0; 16])?;
@@ -65,7 +66,7 @@ impl Refinement<'_> {
             fit_row(self, &Line { y, columns: &columns }, fits);
         }
 
-        // Their means.
+        // Compute the means of these fits.
         let mut out = try_vec(rows.len() * width, 0.0)?;
         let mut columns = try_vec(width, [0.0; 8])?;
         let mut held = 0..0;
@@ -83,7 +84,7 @@ impl Refinement<'_> {
         self.region.map_or(1.0, |region| f64::from(region.data[y * region.width + x] > 0.5))
     }
 
-    /// Adds the moments of a row to the columns', or takes them away.
+    /// Adds (`sign` 1) or removes (-1) the moments of a row in the sums of the columns.
     fn add_moments(&self, y: usize, sign: f64, columns: &mut [Moments]) {
         let row = MomentRow { features: self.features.row(y), probability: self.confidence.row(y), sign };
         match self.region {
@@ -99,13 +100,13 @@ struct MomentRow<'a> {
     sign: f64,
 }
 
-/// Sums of columns around a row.
+/// The sums of all columns over the rows around row `y`.
 struct Line<'a> {
     y: usize,
     columns: &'a [Moments],
 }
 
-/// Moves the rows that are held: those that leave are taken away, those that come are added.
+/// Moves the range of rows that the sums hold: removes the rows that leave it, and adds the rows that enter it.
 fn slide(held: &mut Range<usize>, wanted: Range<usize>, mut add: impl FnMut(usize, f64)) {
     (held.end.max(wanted.start)..wanted.end).for_each(|y| add(y, 1.0));
     (held.start..held.end.min(wanted.start)).for_each(|y| add(y, -1.0));
@@ -161,7 +162,7 @@ widest! {
             if of.weight(x, line.y) > 0.0 {
                 let [a, b, c, d] = affine(&sum, epsilon).map(|v| v as f32);
                 let is_finite = a.is_finite() && b.is_finite() && c.is_finite() && d.is_finite();
-                // Where numbers are too large for slopes, the mean is left.
+                // If the numbers are too large for slopes, use the mean of the window.
                 *fit = if is_finite { [1.0, a, b, c, d] } else { [1.0, 0.0, 0.0, 0.0, (sum[4] / sum[0]) as f32] };
             }
         }
@@ -172,7 +173,7 @@ widest! {
 #[inline(always)]
 fn affine(sum: &Moments, epsilon: f64) -> [f64; 4] {
     let per_n = 1.0 / sum[0];
-    // What running sums have lost by rounding is no slope either.
+    // Suppress slopes that come from the rounding of the running sums, too.
     let epsilon = epsilon + 1e-12 * per_n * (sum[8] + sum[11] + sum[13]);
     let [r, g, b, p] = [1, 2, 3, 4].map(|k| sum[k] * per_n);
     let covariance = |k: usize, u: f64, v: f64| sum[k] * per_n - u * v;
@@ -180,7 +181,7 @@ fn affine(sum: &Moments, epsilon: f64) -> [f64; 4] {
     let (rp, gp, bp) = (covariance(5, r, p), covariance(6, g, p), covariance(7, b, p));
     let (rg, rb, gb) = (covariance(9, r, g), covariance(10, r, b), covariance(12, g, b));
 
-    // L D Lᵀ; rounding must not make a pivot less than what the tolerance alone would.
+    // Decompose into L D Lᵀ. Despite rounding, no pivot may be smaller than the tolerance alone would make it.
     let d0 = variance(8, r);
     let (l10, l20) = (rg / d0, rb / d0);
     let d1 = (variance(11, g) - l10 * rg).max(epsilon);

@@ -1,4 +1,4 @@
-//! From strokes to training samples: at most so many per class, evenly over the strokes, drawn by hashing.
+//! Draws training samples from strokes: a limited number per class, spread evenly over the strokes, selected by hashes.
 
 use super::input::Input;
 use super::params::Params;
@@ -7,26 +7,26 @@ use crate::error::{Error, Result};
 use crate::image::{make_room, try_collect, try_vec};
 use crate::rng;
 
-/// Where a sample is from: what cross-validation holds out together.
+/// Where a sample comes from. Cross-validation holds out whole strokes or parts of strokes.
 #[derive(Clone, Copy)]
 pub struct Origin {
     pub positive: bool,
-    /// Number of its stroke among those of both classes.
+    /// Index of its stroke among the strokes of both classes.
     pub stroke: usize,
-    /// Which quarter of its stroke, along the stroke's longer extent.
+    /// Quarter of its stroke, along the stroke's longer extent.
     pub part: usize,
 }
 
 pub struct Samples {
-    /// One after the other, `dimension` values each.
+    /// The values of one sample after the other, `dimension` values each.
     pub values: Vec<f64>,
     pub dimension: usize,
-    /// The feature channel each value is of.
+    /// The feature channel of each of the `dimension` values.
     pub channels: Vec<usize>,
     pub origins: Vec<Origin>,
     /// Number of strokes of the negative and the positive class.
     pub strokes: [usize; 2],
-    /// Of the negative and the positive class.
+    /// Number of samples of the negative and the positive class.
     pub counts: [usize; 2],
     pub contradictory: usize,
     pub off_image: usize,
@@ -34,10 +34,10 @@ pub struct Samples {
 
 /// Parts a stroke is split into for cross-validation.
 pub const PARTS: usize = 4;
-/// Most pixels of a probe.
+/// Maximum number of pixels of a probe.
 const PROBES: usize = 2048;
 
-/// Draws the samples. Later strokes win where strokes disagree.
+/// Draws the samples. Where strokes overlap, the later stroke wins.
 pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Samples> {
     let features = input.features;
     let Owned { mut pixels_of, contradictory, off_image } = owned(input, params.seed)?;
@@ -89,9 +89,9 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
     Ok(samples)
 }
 
-/// The pixels that each stroke owns: later strokes win where strokes disagree.
+/// The pixels that each stroke owns. Where strokes overlap, the later stroke wins.
 struct Owned {
-    /// Of each stroke, each pixel once, with the hash by which it is drawn.
+    /// The pixels of each stroke, each pixel once, with the hash by which samples are selected.
     pixels_of: Vec<Vec<(u64, u32)>>,
     contradictory: usize,
     off_image: usize,
@@ -99,7 +99,7 @@ struct Owned {
 
 fn owned(input: &Input, seed: u64) -> Result<Owned> {
     let pixels = input.features.width * input.features.height;
-    // The last stroke to cover each pixel, and whether one of the other class did before.
+    // For each pixel the last stroke that covers it, and a flag that strokes of both classes cover it.
     const NONE: u32 = u32::MAX >> 1;
     const CONTRADICTED: u32 = !NONE;
     let mut owner = try_vec(pixels, NONE)?;
@@ -118,7 +118,7 @@ fn owned(input: &Input, seed: u64) -> Result<Owned> {
             *slot = s as u32 | flag;
         }
     }
-    // Each stroke's own, each pixel once, with the hash that it is drawn by.
+    // Collect the pixels that each stroke owns, each pixel once, with its hash.
     let mut own = |(s, stroke): (usize, &Stroke)| {
         try_collect(stroke.pixels.iter().filter_map(|&p| {
             let slot = owner.get_mut(p as usize).filter(|slot| **slot & NONE == s as u32)?;
@@ -132,15 +132,15 @@ fn owned(input: &Input, seed: u64) -> Result<Owned> {
 
 /// The pixels of the strokes by class.
 pub struct Ownership {
-    /// Of each positive stroke.
+    /// Pixels of each positive stroke.
     pub positive: Vec<Vec<u32>>,
-    /// Of all negative strokes.
+    /// Pixels of all negative strokes together.
     pub negative: Vec<u32>,
     pub contradictory: usize,
     pub off_image: usize,
 }
 
-/// Deals the pixels to the strokes: the later stroke counts.
+/// Assigns each pixel to the last stroke that covers it.
 pub fn ownership(input: &Input) -> Result<Ownership> {
     let Owned { pixels_of, contradictory, off_image } = owned(input, 0)?;
     let (mut positive, mut negative) = (Vec::new(), Vec::new());
@@ -155,10 +155,10 @@ pub fn ownership(input: &Input) -> Result<Ownership> {
     Ok(Ownership { positive, negative, contradictory, off_image })
 }
 
-/// Features of some pixels all over the place to be segmented, `channels.len()` values each.
+/// Features of pixels spread over the region to be segmented, `channels.len()` values per pixel.
 pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
     let features = input.features;
-    // A lattice whose step is no divisor of the width, or it would sample a few columns only.
+    // The step must not divide the width: otherwise only a few columns would be sampled.
     let step = (features.width * features.height).div_ceil(PROBES) | 1;
     let step = if features.width % step == 0 && step > 1 { step + 2 } else { step };
     let looked_at = |p: &usize| input.region.is_none_or(|w| w.data[*p] > 0.5);
@@ -169,7 +169,8 @@ pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
         .collect()
 }
 
-/// How many of `total` samples each stroke gives: equal shares, what small strokes lack going to the larger ones.
+/// Number of samples that each stroke contributes to `total`: equal shares. Where a small stroke has fewer pixels than
+/// its share, larger strokes contribute more.
 fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&i| (sizes[i], i));
@@ -182,7 +183,7 @@ fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     shares
 }
 
-/// The pixels of a stroke in order along its longer extent, with the quarter each is in.
+/// The pixels of a stroke, sorted along its longer extent, each with the quarter of the stroke that it lies in.
 fn parts(pixels: &[u32], width: usize) -> impl Iterator<Item = (u32, usize)> {
     let position = |p: u32| (p as usize % width, p as usize / width);
     let extent = |f: fn((usize, usize)) -> usize| {

@@ -19,31 +19,32 @@ pub struct Segmentation {
     pub mask: Image,
     /// Probability that a pixel belongs to the positive class, in `[0, 1]`, calibrated on held-out strokes.
     pub confidence: Image,
-    /// How far a pixel's features lie beyond those of all strokes, in `[0, 1]`: where it is high, one more stroke helps.
+    /// How far a pixel's features lie beyond those of all strokes, in `[0, 1]`. Where it is high, one more stroke
+    /// helps.
     pub unseen: Image,
-    /// Expected share of wrong pixels, in `[0, 1]`, by cross-validation: the error on held-out parts of strokes where
-    /// pixels are like those painted, the error on wholly held-out strokes where they are `unseen`.
+    /// Expected share of wrong pixels, in `[0, 1]`. Cross-validation gives the error on held-out parts of strokes, for
+    /// pixels like the painted ones, and the error on held-out whole strokes, for pixels that are `unseen`.
     pub error: f64,
-    /// The classifier; of lamps and of a caller's own mask there is none.
+    /// The classifier; `None` for lamps and for a mask that the caller supplied.
     pub model: Option<Model>,
-    /// The channels it looks at; bit `i` is channel `i`.
+    /// The channels that were used; bit `i` is channel `i`.
     pub channels: u32,
-    /// Samples used of the negative and the positive class.
+    /// Number of samples of the negative and the positive class.
     pub samples: [usize; 2],
     /// Pixels that strokes of both classes cover; the later stroke won.
     pub contradictory: usize,
     /// Stroke pixels outside the image; they were ignored.
     pub off_image: usize,
-    /// Whether the mask was proposed because strokes were missing: of the plane strokes of one class, of lamps positive
-    /// strokes.
+    /// Whether the mask was proposed because strokes were missing: for the plane, the strokes of at least one class;
+    /// for lamps, the positive strokes.
     pub is_proposed: bool,
-    /// Regions outside the given mask that have the size and the shape of a lamp if the plane goes on there: then the
-    /// room is larger than it was laid out. Of lamps only.
+    /// For lamps only: regions outside the given mask that have the size and the shape of a lamp if the plane continues
+    /// there. They suggest that the room is larger than it was laid out.
     pub beyond: Vec<Stroke>,
 }
 
 impl Segmentation {
-    /// A caller's own: one channel of probabilities in `[0, 1]`, or a mask.
+    /// A segmentation that the caller supplies: one channel of probabilities in `[0, 1]`, or a mask.
     pub fn from_confidence(confidence: &Image) -> Result<Self> {
         check_range("the number of channels of the mask", confidence.channels, 1, 1)?;
         let bad = confidence.data.iter().find(|v| !(0.0..=1.0).contains(*v));

@@ -1,8 +1,9 @@
-//! Which model, on which features, and how far to trust it: cross-validation, and calibration on what was held out.
+//! Chooses the model and its features by cross-validation, and calibrates its probabilities on the held-out samples.
 //!
-//! Two questions, two ways to hold out. Parts of strokes: how well does the model do on what the user has painted? Whole
-//! strokes: how well does it carry on to what the user has not? Each has its own error and its own calibration, and
-//! every pixel is given the mix of both that its distance from the strokes asks for.
+//! Two kinds of cross-validation answer two questions. Holding out parts of strokes: how well does the model do on
+//! surfaces that the user has painted? Holding out whole strokes: how well does it extrapolate to surfaces that the
+//! user has not painted? Each kind has its own error and its own calibration. Each pixel gets a mix of the two, which
+//! depends on how far its features are from those of the strokes.
 
 use super::ellipsoid::{self, Ellipsoid, Spread};
 use super::logistic::{self, Objective, Problem};
@@ -14,37 +15,40 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::job::Job;
 
-/// Most folds; with more strokes than that some are held out together.
+/// Maximum number of folds; if there are more strokes, several are held out together.
 const FOLDS: usize = 8;
 /// Samples of each class that cross-validation uses: enough to compare two models.
 const CV_SAMPLES: usize = 250;
-/// Calibration never multiplies logits by more or less than this: a handful of strokes cannot tell.
+/// Range of the factor by which calibration multiplies logits: a handful of strokes does not justify a larger
+/// correction.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// Gain in mean log loss below which a step is the last of a fit: of those that are compared, and of the one that is used.
+/// A fit ends with the step that is expected to lower the mean log loss by less than this. `CV_PRECISION` applies to
+/// the fits that are only compared, `PRECISION` to the final fit.
 const CV_PRECISION: f64 = 1e-5;
 const PRECISION: f64 = 1e-9;
 
-/// The classifier, in standardised features, and what is expected of it.
+/// The chosen classifier in standardised features, with its expected errors.
 pub struct Chosen {
     pub model: Model,
-    /// The samples' columns it looks at.
+    /// The columns of the samples that the classifier uses.
     pub columns: Vec<usize>,
-    /// Of all columns.
+    /// Standardisation of all columns.
     pub standard: Standard,
-    /// Weights of the terms (see `standardise::terms`), not calibrated.
+    /// Weights of the terms (see `standardise::terms`), before calibration.
     pub weights: Vec<f64>,
-    /// Where the features are like those of the strokes.
+    /// Result of holding out parts of strokes: applies where the features are like those of the strokes.
     pub familiar: Trust,
-    /// Where they are not.
+    /// Result of holding out whole strokes: applies where the features are unlike those of the strokes.
     pub unfamiliar: Trust,
-    /// The regions of all standardised features that the two classes cover.
+    /// The regions that the samples of the two classes cover in the space of all standardised features.
     pub seen: [Ellipsoid; 2],
 }
 
-/// What a kind of cross-validation says.
+/// The result of one kind of cross-validation.
 #[derive(Clone, Copy)]
 pub struct Trust {
-    /// Share of held-out samples that were wrong, classes and strokes weighing the same.
+    /// Share of held-out samples that were classified wrongly. Both classes have the same weight, and so have the
+    /// strokes of a class.
     pub error: f64,
     /// The factor that calibrates logits.
     pub scale: f64,
@@ -52,12 +56,12 @@ pub struct Trust {
     loss: f64,
 }
 
-/// What is asked of the choice.
+/// The input of the choice.
 pub struct Question<'a> {
     pub samples: &'a Samples,
     /// Subsets of the samples' columns to choose from.
     pub subsets: &'a [Vec<usize>],
-    /// Features of pixels all over the place that is to be segmented, as `samples.values`.
+    /// Features of pixels spread over the region to be segmented, in the layout of `samples.values`.
     pub probe: &'a [f64],
     pub ridge: f64,
 }
@@ -66,15 +70,15 @@ pub struct Question<'a> {
 struct Candidate {
     model: Model,
     columns: Vec<usize>,
-    /// At all samples.
+    /// Values of the terms at all samples.
     terms: Table,
-    /// Fitted to the few.
+    /// Weights fitted to the samples that comparisons use (`Trial::few`).
     weights: Vec<f64>,
     familiar: Trust,
     unfamiliar: Trust,
 }
 
-/// Where classes and strokes are, and how samples are held out.
+/// The samples with their classes, and the folds by which they are held out.
 struct Trial<'a> {
     samples: &'a Samples,
     /// All features of all samples, standardised.
@@ -87,9 +91,10 @@ struct Trial<'a> {
     ridge: f64,
 }
 
-/// Chooses the model and the features whose loss over the whole image is expected to be least: the loss on held-out parts
-/// of strokes where pixels are like those painted, on whole held-out strokes where they are not, and Akaike's price of a
-/// term, one sample's worth, which decides between equals for the simpler one.
+/// Chooses the model and the features with the least expected loss over the whole image. The expected loss mixes the
+/// loss on held-out parts of strokes, for pixels like the painted ones, and the loss on held-out whole strokes, for all
+/// others. Each term of the model adds one over the number of samples (Akaike's criterion), so that the simpler of two
+/// equally good models wins.
 pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let Question { samples, subsets, .. } = *question;
     let standard = Standard::of(samples);
@@ -104,7 +109,7 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         ridge: question.ridge,
     };
 
-    // How much of the image is unlike what was painted, by each subset of the features.
+    // For each subset of the features, compute how far the pixels of the image lie beyond the painted regions.
     let probe = standard.apply(question.probe)?;
     let spread = |class: bool| Spread::of(&trial.x, |i| trial.positive[i] == class);
     let (negative, positive) = exec::both(|| spread(false), || spread(true));
@@ -119,13 +124,13 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let all = balanced(&trial.positive, |_| true);
     let problem = Problem { terms: &terms, positive: &trial.positive, weights: &all };
     let weights = logistic::fit(&problem, trial.ridge, &weights, PRECISION, job.part(0.9, 1.0))?;
-    // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
+    // A pixel may be unlike all strokes in any feature, even in one that the chosen model does not use.
     let seen = spreads.map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
     Ok(Chosen { model, columns, standard, weights, familiar, unfamiliar, seen })
 }
 
-/// The candidate with the least expected loss on pixels of the image, of which by each subset a share is unseen, and with a
-/// price for its terms.
+/// The candidate with the least expected loss over the image, including the price of its terms. `unseen` is the share
+/// of the image that is unlike the painted pixels, for each subset.
 fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> Result<Candidate> {
     let mut order: Vec<(usize, Model, usize)> = (0..subsets.len())
         .flat_map(|k| [Model::Linear, Model::Quadratic].map(|model| (term_count(model, subsets[k].len()), model, k)))
@@ -134,11 +139,12 @@ fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> 
     let price = |terms: usize| terms as f64 / trial.positive.len() as f64;
     let mut best: Option<(f64, Candidate)> = None;
     let mut rest = order.as_slice();
-    // No loss is less than nothing: the price alone may rule a candidate out, and all after it.
+    // Losses are not negative: once the price alone reaches the least expected loss, this candidate and all larger ones
+    // are out.
     while let Some((terms, ..)) =
         rest.first().filter(|(t, ..)| best.as_ref().is_none_or(|(least, _)| price(*t) < *least))
     {
-        // Those of up to twice the size are weighed at the same time.
+        // Evaluate candidates of up to twice the size in parallel.
         let (batch, larger) = rest.split_at(rest.partition_point(|candidate| candidate.0 <= 2 * terms));
         let done = |left: &[_]| 1.0 - left.len() as f64 / order.len() as f64;
         let candidates = exec::map(batch.len(), job.part(done(rest), done(larger)), |i| {
@@ -170,7 +176,8 @@ impl Candidate {
 }
 
 impl Trial<'_> {
-    /// A fit for comparison, by the terms of the few samples, to those of them that are `used`.
+    /// Fits a model for comparison to those of the few samples that are `used`; `terms` are the terms of the few
+    /// samples.
     fn fit_few(&self, terms: &Table, used: impl Fn(usize) -> bool, start: &[f64], job: Job) -> Result<Vec<f64>> {
         let positive: Vec<bool> = self.few.iter().map(|&i| self.positive[i]).collect();
         let weights = balanced(&positive, |k| used(self.few[k]));
@@ -179,12 +186,12 @@ impl Trial<'_> {
     }
 }
 
-/// One in so many samples of a class is used to compare models.
+/// Every `stride`-th sample of a class is used to compare models.
 fn stride(samples: &Samples, positive: bool) -> usize {
     samples.counts[usize::from(positive)].div_ceil(CV_SAMPLES)
 }
 
-/// Weights under which the classes weigh the same, whatever the number of samples that are `used` of each.
+/// Weights that give both classes the same total, however many of their samples are `used`; all others get 0.
 fn balanced(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut counts = [0usize; 2];
     (0..positive.len()).filter(|&i| used(i)).for_each(|i| counts[usize::from(positive[i])] += 1);
@@ -196,20 +203,22 @@ fn folds_of_parts(samples: &Samples) -> Vec<usize> {
     samples.origins.iter().map(|o| o.part).collect()
 }
 
-/// Strokes are dealt to folds in order, so that no fold holds all of a class; a lone stroke of its class is dealt by parts.
+/// Assigns strokes to folds in turn, so that no fold holds a whole class. If a class has a single stroke, its parts are
+/// assigned to folds instead.
 fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
     let folds = (samples.strokes[0] + samples.strokes[1]).clamp(PARTS, FOLDS);
     let is_lone = |positive: bool| samples.strokes[usize::from(positive)] == 1;
     samples.origins.iter().map(|o| (o.stroke + if is_lone(o.positive) { o.part } else { 0 }) % folds).collect()
 }
 
-/// Judges a model, by its terms at all samples and at the few, with fits that each leave out one fold and begin with the
-/// `start` of all folds.
+/// Cross-validates a model. For each fold, fits the model to the few samples outside the fold, starting at `start`, the
+/// weights fitted to all folds, and applies it to all samples in the fold. `all` and `few` are the terms of these
+/// samples.
 fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
     let Trial { samples, positive, .. } = trial;
     let count = fold_of.iter().max().map_or(0, |last| last + 1);
     let held_out = exec::map(count, job, |fold| -> Result<Vec<(usize, f64)>> {
-        // A class that would be left without any sample keeps its own.
+        // If a fold holds all samples of a class, they stay in the training.
         let keeps = |class: bool| (0..positive.len()).all(|i| positive[i] != class || fold_of[i] == fold);
         let keeps = [keeps(false), keeps(true)];
         let used = |i: usize| fold_of[i] != fold || keeps[usize::from(positive[i])];
@@ -221,7 +230,7 @@ fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[u
         fold?.into_iter().for_each(|(i, z)| logits[i] = z);
     }
 
-    // Every stroke has the same say within its class, and the classes have the same.
+    // Both classes have the same weight, and so have the strokes of a class.
     let mut size_of_stroke = vec![0usize; samples.strokes[0] + samples.strokes[1]];
     samples.origins.iter().for_each(|o| size_of_stroke[o.stroke] += 1);
     let share = |o: &Origin| 0.5 / (samples.strokes[usize::from(o.positive)] * size_of_stroke[o.stroke]) as f64;
@@ -234,9 +243,9 @@ fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[u
 }
 
 /// The factor on logits that gives held-out samples the least log loss (temperature scaling, Guo et al. 2017), and that
-/// loss. One factor cannot move the mask, only how sure it is.
+/// loss. The factor changes the confidence but not the mask, because it keeps the signs of the logits.
 fn calibrate(held_out: &Problem) -> (f64, f64) {
-    // The loss is convex in the factor: where its slope changes sign, by Newton's method inside a shrinking bracket.
+    // The loss is convex in the factor: find the zero of its slope by Newton's method inside a shrinking bracket.
     let [mut low, mut high] = CALIBRATION;
     let loss_at = |scale: f64| Objective::at(held_out, 0.0, &[scale]);
     let mut scale = 1.0;

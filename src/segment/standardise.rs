@@ -1,13 +1,13 @@
-//! Features to zero mean and unit spread, and the terms of the models.
+//! Standardises features to zero mean and unit spread, and forms the terms of the models.
 
 use super::samples::Samples;
 use super::segmentation::Model;
 use super::table::Table;
 use crate::error::Result;
 
-/// Channels that are one vector: CIELAB colour, position and normal. Their components have the same unit and share one
-/// scale. Scaled each by itself, a channel that hardly varies, such as the tint of a white ceiling, would be blown up into
-/// evidence, and dark purple frames would pass for lamps.
+/// Channels that form a vector: CIELAB colour, position and normal. The components of a vector have the same unit and
+/// share one scale. With a scale of its own, a channel that hardly varies, such as the tint of a white ceiling, would
+/// be blown up into evidence, and dark purple frames would pass for lamps.
 const VECTORS: [std::ops::Range<usize>; 3] = [0..3, 4..7, 7..10];
 
 /// The affine map that makes the samples' features comparable; features without spread become 0.
@@ -32,7 +32,7 @@ impl Standard {
         let vector_of = |i: usize| VECTORS.iter().position(|v| v.contains(&samples.channels[i]));
         let scale = (0..d)
             .map(|i| {
-                // Below rounding of the features themselves there is nothing to learn.
+                // A spread below the rounding of the features carries no information.
                 if spread[i] <= 1e-6 * mean[i].abs().max(1e-30) {
                     return 0.0;
                 }
@@ -43,7 +43,7 @@ impl Standard {
         Self { mean, scale }
     }
 
-    /// Features, one sample after the other, made comparable.
+    /// Standardises features that are stored one sample after the other.
     pub fn apply(&self, values: &[f64]) -> Result<Table> {
         let mut table = Table::of(values, self.mean.len())?;
         for (rows, block) in table.blocks_mut() {

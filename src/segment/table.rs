@@ -1,4 +1,4 @@
-//! Rows of numbers, kept so that processors work on many rows at once.
+//! Rows of numbers, stored so that processors work on many rows at once.
 
 use crate::error::Result;
 use crate::image::try_vec;
@@ -22,7 +22,7 @@ impl Table {
         Ok(Self { lanes: try_vec(rows.div_ceil(BLOCK) * columns, [0.0; BLOCK])?, rows, columns })
     }
 
-    /// From rows that stand one after the other.
+    /// A table from rows that are stored one after the other.
     pub fn of(values: &[f64], columns: usize) -> Result<Self> {
         let mut table = Self::new(values.len() / columns, columns)?;
         for (r, row) in values.chunks_exact(columns).enumerate() {
@@ -32,7 +32,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Some of another one's rows.
+    /// A table of some rows of another table.
     pub fn of_rows(other: &Self, rows: &[usize]) -> Result<Self> {
         let columns = other.columns;
         let mut table = Self::new(rows.len(), columns)?;
@@ -44,7 +44,7 @@ impl Table {
         Ok(table)
     }
 
-    /// The columns of each block, with the numbers of its rows.
+    /// The columns of each block, with the indices of its rows.
     pub fn blocks(&self) -> impl Iterator<Item = (std::ops::Range<usize>, &[Lanes])> {
         let rows = |b: usize| b * BLOCK..((b + 1) * BLOCK).min(self.rows);
         self.lanes.chunks_exact(self.columns).enumerate().map(move |(b, block)| (rows(b), block))
@@ -60,7 +60,7 @@ impl Table {
     }
 }
 
-/// The sum of products, always in the same order, by eight sums side by side.
+/// The sum of products, by eight partial sums in a fixed order.
 #[inline(always)]
 pub fn dot_lanes(a: &Lanes, b: &Lanes) -> f64 {
     let mut sums = [0.0; 8];
@@ -73,7 +73,7 @@ pub fn dot_lanes(a: &Lanes, b: &Lanes) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// `Σ w_i x_i` of every row of a block.
+/// `Σ w_i x_i` for every row of a block.
 #[inline(always)]
 pub fn combine(weights: &[f64], block: &[Lanes]) -> Lanes {
     let mut sum = [0.0; BLOCK];

@@ -6,29 +6,30 @@ use crate::image::Image;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// Share of the mask that may be unlike every stroke. [judged on 38 photos]
+/// Maximum share of the mask that may be unlike every stroke. [judged on 38 photos]
 const MAX_UNSEEN: f64 = 0.2;
-/// Value of `unseen` from which on a pixel counts as unlike every stroke. [convention]
+/// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;
-/// Pixels that strokes of both classes cover, per sample. [judged on 38 photos]
+/// Maximum number of pixels that strokes of both classes cover, per sample. [judged on 38 photos]
 const MAX_CONTRADICTORY: f64 = 0.05;
-/// Pixels of strokes outside the photo, per sample. [judged on 38 photos]
+/// Maximum number of stroke pixels outside the photo, per sample. [judged on 38 photos]
 const MAX_OFF_IMAGE: f64 = 0.05;
-/// Stated error of the mask. [judged on 38 photos]
+/// Maximum expected error of the mask. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.1;
-/// Share of the painted pixels that the mask may contradict. [judged on 38 photos]
+/// Maximum share of the painted pixels that the mask may contradict. [judged on 38 photos]
 const MAX_MISSED: f64 = 0.1;
-/// Probability that a pixel painted as light is brighter than one of the plane: below 0.83 on the three of 44 photos
-/// whose lamps are off or shine away from the camera, above 0.85 on the others. [judged on 44 photos]
+/// Minimum probability that a pixel painted as light is brighter than a pixel of the plane. It is below 0.83 on the
+/// three of 44 photos whose lamps are off or shine away from the camera, and above 0.85 on the others.
+/// [judged on 44 photos]
 const MIN_BRIGHTER: f64 = 0.85;
-/// Share of the plane that lamps may cover. [judged on 38 photos]
+/// Maximum share of the plane that lamps may cover. [judged on 38 photos]
 const MAX_LIT: f64 = 0.4;
 
 /// Cells along the longer side of the photo among which the place of the next stroke is chosen.
 const CELLS: usize = 64;
 
 impl Segmentation {
-    /// Reasons to doubt the mask. A mask of the caller's own is believed, unless it is empty.
+    /// Reasons to doubt the mask. A mask that the caller supplied is trusted unless it is empty.
     pub fn warnings(&self) -> Vec<Warning> {
         let all = [
             self.is_empty(),
@@ -41,17 +42,17 @@ impl Segmentation {
         all.into_iter().flatten().collect()
     }
 
-    /// Whether strokes have made it.
+    /// Whether the mask was learnt from strokes.
     fn is_learnt(&self) -> bool {
         self.samples != [0, 0]
     }
 
-    /// Whether it consists of lamps, whose `unseen` regions lie outside the mask.
+    /// Whether the mask consists of lamps. The `unseen` regions of lamps lie outside the mask.
     fn is_of_lamps(&self) -> bool {
         self.is_learnt() && self.model.is_none()
     }
 
-    /// How unlike every stroke a pixel is that belongs to the mask, or may belong to it.
+    /// How unlike every stroke a pixel is, if it belongs to the mask or may belong to it; else 0.
     fn doubt(&self, pixel: usize) -> f32 {
         if self.is_of_lamps() || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
     }

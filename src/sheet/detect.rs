@@ -8,14 +8,16 @@ use glam::{DMat2, DVec2};
 
 /// Maximum length of the longer side of the image in which marks are searched for.
 const MAX_SIDE: usize = 1400;
-/// Scales of the search in pixels of that image: marks of four to about forty pixels across [origin not recorded].
+/// Standard deviations of the blur before the search, in pixels of the reduced image. These scales find marks of four
+/// to about forty pixels across [origin not recorded].
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
 /// Maximum number of candidates.
 const MAX_CANDIDATES: usize = 24;
-/// Minimum share of the second harmonic in the brightness around a mark; two periods of a square wave have 0.81
-/// [origin not recorded].
+/// Minimum share of the second harmonic in the variance of brightness along a circle around a mark. Two periods of a
+/// square wave have a share of 0.81 [origin not recorded].
 const MIN_HARMONIC: f64 = 0.55;
-/// Minimum amplitude of that harmonic, which measures the (encoded) contrast of black and white [origin not recorded].
+/// Minimum amplitude of the second harmonic, which measures the contrast of black and white in encoded brightness
+/// [origin not recorded].
 const MIN_CONTRAST: f64 = 0.06;
 
 /// A position that looks like a mark.
@@ -117,8 +119,9 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     if share > MIN_HARMONIC && amplitude > MIN_CONTRAST { amplitude * share } else { 0.0 }
 }
 
-/// Sub-pixel refinement of a saddle: the point to which all surrounding gradients are perpendicular (Förstner and
-/// Gülch 1987). `None` if it diverges.
+/// Sub-pixel refinement of a saddle: the point for which each surrounding gradient is perpendicular to the direction
+/// from its pixel to the point (Förstner and Gülch 1987). `None` if the gradients do not determine the point or the
+/// iteration diverges.
 pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
     let mut at = start;
     for _ in 0..12 {

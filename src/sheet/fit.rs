@@ -131,7 +131,8 @@ fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     Guess { map, pairs, misfit }
 }
 
-/// The map of minimum squared distances in the photo, by Gauss-Newton from a good start.
+/// The map that minimises the squared distances between the marks and their predicted positions in the photo, by
+/// Gauss-Newton from a good start.
 fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
     // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
     let half = DVec2::new(page.width as f64, page.height as f64) / 2.0;

@@ -7,7 +7,7 @@
 //! suffice.
 //!
 //! `page` lays out the page, [`print()`] draws it, `detect` finds marks in a photo, `fit` identifies them, and
-//! [`align`] resamples the photo and removes uneven illumination by the white of the marks.
+//! [`align`] resamples the photo and removes uneven illumination, which it measures on the white of the marks.
 //!
 //! Not modelled: curved paper and lens distortion; `Aligned::residual` reveals both.
 
@@ -104,7 +104,8 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
     Ok(Aligned { image, to_photo, marks: found.marks.len(), residual: found.residual, error })
 }
 
-/// Divides by the white of the paper in each mark; its logarithm is interpolated bilinearly over the sheet.
+/// Divides the image by the brightness of white paper. The logarithm of this brightness is a bilinear function of the
+/// position on the sheet, fitted to the white quadrants of the marks.
 fn even_light(
     image: &mut Image,
     photo: &Image,

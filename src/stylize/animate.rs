@@ -1,9 +1,9 @@
 //! Sequences (section 5, future work): the matches of the previous frame, advected by the motion, are kept where they
 //! still fit, so that paint sticks to objects. Places that moved into different light or into view are matched anew.
 //!
-//! `Params::coherence` controls the share that is kept: with 1 every match that fits, with 0 none, and in between a
-//! random set of blocks per frame, which flicker like hand-painted frames (after the temporal noise control of Fišer
-//! et al. 2014, "Color Me Noisy").
+//! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, the matches in a
+//! random set of blocks are kept in each frame, so that the frames flicker as if painted by hand (after the temporal
+//! noise control of Fišer et al. 2014, "Color Me Noisy").
 
 use super::budget::budget;
 use super::level::{Level, Problem};
@@ -18,8 +18,8 @@ use crate::rng::Rng;
 /// Side in pixels of the blocks that are kept or discarded as a whole.
 const BLOCK: usize = 24;
 
-/// The field of the previous frame advected into this one: each patch takes the match of the patch its centre comes
-/// from. `motion` has the size of the guides; the problem may have been halved.
+/// Advects the field of the previous frame into this frame: each patch takes the match of the patch from which its
+/// centre comes. `motion` has the size of the guides; it is halved if the problem was halved.
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
     if halved == 0 {
         return advect(before, motion, problem.patch);
@@ -35,7 +35,7 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
     for (i, at) in field.at.iter_mut().enumerate() {
         let (x, y) = (i % before.width, i / before.width);
         let step = motion.pixel(x + patch / 2, y + patch / 2);
-        // Adding half a pixel rounds to the nearest; NaN is outside.
+        // Adding half a pixel before truncation rounds to the nearest position; NaN counts as outside.
         let from = (inside(x as f32 + step[0] + 0.5, before.width), inside(y as f32 + step[1] + 0.5, before.height));
         if let (Some(px), Some(py)) = from {
             *at = before.at[py * before.width + px];
@@ -44,8 +44,8 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
     Ok(field)
 }
 
-/// Measures the advected field and selects the patches that keep its matches: those left of the knee of the errors,
-/// except in blocks that are matched anew.
+/// Computes the distances of the advected matches, and selects the patches that keep their match: those whose error
+/// lies left of the knee, except in blocks chosen for new matches.
 pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
     let mut picture = level.problem.blank_picture()?;
     paint(&mut picture, field, level.problem, params.vote, job, |_| true)?;

@@ -11,12 +11,12 @@
 
 /// Minimum number of errors to fit a curve.
 const MIN_ERRORS: usize = 8;
-/// Sample points of the sorted curve in the fit.
+/// Maximum number of points of the sorted curve to which a hyperbola is fitted.
 const SAMPLES: usize = 256;
 
 /// Minimum share of the variance that a hyperbola must explain [origin not recorded].
 const MIN_EXPLAINED: f64 = 0.8;
-/// Minimum distance below the diagonal of a curve with a knee [origin not recorded].
+/// A curve has a knee only if it runs farther than this below the diagonal [origin not recorded].
 const MIN_SAG: f64 = 0.01;
 
 /// The hyperbola `1 / (a - b x)`.
@@ -44,8 +44,9 @@ impl Hyperbola {
 
     /// Fits points `(x, y)` in the unit square, sorted by `x`.
     ///
-    /// `1/y = a - b x` is linear; weights `y⁴` make its least squares equal to those of `y` to first order. Three
-    /// Gauss-Newton steps on `y` follow. `None` if the points have no slope.
+    /// The equation `1/y = a - b x` is linear in `a` and `b`. With weights `y⁴`, its squared residuals equal those of
+    /// `y` to first order. Three Gauss-Newton steps on the residuals of `y` follow. Returns `None` if the points do not
+    /// determine both `a` and `b`.
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
         let points = || points.iter().filter(|p| p.1 > 0.0);
         let mut fit = solve(points().map(|&(x, y)| ([y * y, -x * y * y], y)))?;
@@ -90,11 +91,12 @@ pub struct Budget {
     pub total: f64,
 }
 
-/// The budget of `errors` in ascending order. Constant or few errors, and errors without a knee, are all feasible.
+/// The budget of `errors`, which are in ascending order. If they are few or nearly all equal, or if their curve has no
+/// knee, all are feasible.
 pub fn budget(errors: &[u32]) -> Budget {
     let sum = |errors: &[u32]| errors.iter().map(|&e| f64::from(e)).sum();
     let all = || Budget { knee: 1.0, total: f64::INFINITY };
-    // Exclude the last hundredth from the scale.
+    // Scale by the 99th percentile; the errors above it are outliers.
     let n = errors.len();
     let worst = if n > 0 { errors[(n - 1) * 99 / 100] } else { 0 };
     if n < MIN_ERRORS || worst == 0 || errors[0] == worst {
@@ -107,7 +109,8 @@ pub fn budget(errors: &[u32]) -> Budget {
             ((i as f64 + 0.5) / n as f64, f64::from(errors[i]) / f64::from(worst))
         })
         .collect();
-    // A hyperbola through (1, 1) with a knee runs below the diagonal there, by (1 - √(1/b))².
+    // At its knee, a hyperbola through (1, 1) lies (1 - √(1/b))² below the diagonal. So a curve that never runs below
+    // the diagonal has no knee.
     let knee = farthest_below_diagonal(&points).map(|farthest| {
         let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= MIN_EXPLAINED);
         hyperbola.and_then(Hyperbola::knee).unwrap_or(farthest)

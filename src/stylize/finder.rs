@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::patch::{Domain, Field, Means, Search, Sweep, Table};
 
-/// Patches of the table compared with each patch. Three times as many take twice the time and lower Eq. 3 by one
-/// percent [bench stylit].
+/// Number of patches in the table that are compared with each patch. Three times this number takes twice the time and
+/// lowers the energy (Eq. 3) by one per cent [bench stylit].
 const TRIES: usize = 8;
 
 /// Data shared by the searches of one iteration.
@@ -42,7 +42,8 @@ impl<'a> Nearest<'a> {
         Ok(Self { level, sweeps: params.sweeps, tables })
     }
 
-    /// Improves the matches of target patches among exemplar patches under `search`; `index` numbers the call.
+    /// Searches the exemplar for better matches of the target patches. `index` numbers the calls, so that each call has
+    /// other random numbers.
     pub fn forward(
         &self,
         search: &Search,
@@ -57,7 +58,7 @@ impl<'a> Nearest<'a> {
         }
     }
 
-    /// Improves the matches of exemplar patches among the `free` target patches.
+    /// Searches the `free` target patches for better matches of the exemplar patches.
     pub fn reverse(
         &self,
         field: &mut Field,

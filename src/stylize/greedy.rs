@@ -6,12 +6,13 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::patch::{Field, NONE, pack, unpack};
 
-/// Coherence parameter κ at the finest level (Hertzmann et al., §3.2): tolerance for coherent matches [origin not
-/// recorded].
+/// Coherence parameter κ (Hertzmann et al., §3.2). At the finest level, a coherent match is taken if its distance is
+/// less than 1 + κ times the distance of the nearest match [origin not recorded].
 const COHERENCE: f64 = 5.0;
 
-/// Sets every patch centre to the nearest match, or to a match that continues an already set neighbour if its distance
-/// is within the tolerance. Runs in scan order, hence on one thread.
+/// Paints the centre of every patch from its nearest match, or from a match that continues the match of a neighbour
+/// painted earlier, if its distance is within the tolerance. Each pixel depends on the pixels before it in scan order,
+/// so all run on one thread.
 pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, depth: usize, job: Job) -> Result<()> {
     let patch = level.problem.patch;
     let half = patch / 2;

@@ -10,11 +10,12 @@ use crate::patch::{halve, level_size};
 /// The meaning of a guide's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Linear light, ≥ 0: rendered buffers, compared as displayed. They are scaled so that the 99.9th percentile of
-    /// exemplar and target together is white if it exceeds white, then sRGB-encoded and clipped, so that a highlight
-    /// of a million counts as white and does not dominate.
+    /// Linear light, ≥ 0: rendered buffers, compared as they appear on a display. If the 99.9th percentile of exemplar
+    /// and target together exceeds white, all values are scaled so that this percentile becomes white. Then they are
+    /// clipped and sRGB-encoded, so that a highlight of a million counts as white and does not dominate.
     Light,
-    /// Linear data: normals, object codes, edge maps. The joint range of all channels is mapped to `[0, 1]`.
+    /// Linear data: normals, object codes, edge maps. The common range of all channels of both images is mapped to `[0,
+    /// 1]`.
     Data,
 }
 
@@ -30,7 +31,8 @@ pub struct Guide<'a> {
     pub range: Range,
 }
 
-/// Maximum number of channels of all guides together: with an artwork of four they fill the 64 channels of an image.
+/// Maximum number of channels of all guides together. With the four channels of an artwork, they fill the 64 channels
+/// of an image.
 pub const MAX_CHANNELS: usize = 60;
 
 /// All guides, interleaved.
@@ -97,7 +99,8 @@ pub(super) fn no_guides() -> Error {
     Error::argument("guides is empty; give at least one pair")
 }
 
-/// Shifts a channel's range, from the 5th to the 95th percentile, from that of the source towards that of the target.
+/// Moves the range of a source channel towards the range of the same target channel. A range extends from the 5th to
+/// the 95th percentile.
 fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f32) {
     let ends = |image: &Image| {
         let step = (image.width * image.height >> 18).max(1) * image.channels;
@@ -133,7 +136,8 @@ fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
     Ok(broken)
 }
 
-/// A scale and offset, optionally followed by the sRGB curve. NaN and infinity pass through, to be detected later.
+/// A scale and offset, optionally followed by the sRGB curve. NaN and infinity stay unchanged, so that [`clear_broken`]
+/// finds them later.
 struct Normalisation {
     offset: f32,
     scale: f32,
@@ -192,7 +196,7 @@ impl Guide<'_> {
             Range::Data => Normalisation { offset: 0.0, scale: 0.0, curve: false },
             Range::Light if high <= 1.0 => Normalisation { offset: 0.0, scale: 1.0, curve: true },
             Range::Light => {
-                // Compute the percentile from at most a million samples: white must not depend on single pixels.
+                // Compute the percentile from at most a million samples. A maximum would depend on single pixels.
                 let step = ((self.source.data.len() + self.target.data.len()) >> 20).max(1);
                 let mut values: Vec<f32> = finite().step_by(step).collect();
                 let rank = (values.len() - 1) * 999 / 1000;

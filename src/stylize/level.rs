@@ -10,7 +10,7 @@ use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use crate::patch::{Domain, Kernel, QuantisedImage, Quantiser, Search, halve, halve_mask};
 
-/// The problem at one resolution in floating point, from which the next coarser one is derived.
+/// The problem at one resolution, in floating-point numbers. The next coarser problem is derived from it.
 pub(super) struct Problem {
     pub patch: usize,
     /// Artwork, encoded for display.
@@ -86,7 +86,7 @@ impl Problem {
         s.width.min(s.height).min(t.width).min(t.height)
     }
 
-    /// Whether it has the artwork's full size, as opposed to a preview.
+    /// Whether the problem has the full size of the artwork; false for a preview at half the resolution.
     pub fn is_of(&self, artwork: &Image) -> bool {
         (self.style.width, self.style.height) == (artwork.width, artwork.height)
     }
@@ -136,15 +136,16 @@ fn check_motion(input: &Input, target: &Image) -> Result<()> {
     Ok(())
 }
 
-/// Halves the mask of usable pixels of an image of the size of `of`. All four pixels under a pixel must be usable,
-/// except where that would empty the mask: regions thinner than two pixels must not vanish.
+/// Halves the mask of usable exemplar pixels; `of` gives the size of the mask. A coarse pixel is usable if all fine
+/// pixels under it are usable. If no coarse pixel were usable then, a single usable fine pixel suffices, so that
+/// regions thinner than two pixels do not vanish.
 fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     let inside = halve_mask(mask, of.width, of.height, false)?;
     Ok(Some(if inside.contains(&true) { inside } else { halve_mask(mask, of.width, of.height, true)? }))
 }
 
-/// Thresholds a mask of the size of `of`.
+/// Thresholds a mask at 0.5; it must have the size of `of` and at least one pixel set.
 fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     mask.check_same_size(name, of, "the guides of its side")?;
@@ -158,7 +159,7 @@ fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>
     Ok(Some(set))
 }
 
-/// Encodes linear colours for display; non-finite values become black.
+/// Encodes linear colours for display, in place; non-finite values become black.
 pub(super) fn encode(image: &mut Image, job: Job) -> Result<()> {
     let row_len = image.row_len();
     exec::for_rows(&mut image.data, row_len, job, |_, row| row.iter_mut().for_each(|v| *v = encoded(*v)))
@@ -190,7 +191,7 @@ pub(super) struct Level<'a> {
     pub allowed: Domain,
     pub wanted: Domain,
     colours: Vec<Quantiser>,
-    /// Squared integer step that corresponds to a difference of 1 at weight 1.
+    /// Squared difference of quantised values that corresponds to a difference of 1 at weight 1.
     unit: f64,
     pub kernel: Kernel,
     pub seed: u64,
@@ -217,7 +218,7 @@ impl<'a> Level<'a> {
         source.fill(channels, &guide_quantisers, &guides.source, job.part(0.2, 0.6))?;
         target.fill(channels, &guide_quantisers, &guides.target, job.part(0.6, 1.0))?;
         let allowed = Domain::new(source.width, source.height, problem.patch, problem.source_mask.as_deref(), false)?;
-        // In a region thinner than a patch, allow patches that touch it.
+        // If no patch fits into the mask, allow all patches that touch it.
         let allowed = if allowed.is_empty() {
             Domain::new(source.width, source.height, problem.patch, problem.source_mask.as_deref(), true)?
         } else {
@@ -232,7 +233,8 @@ impl<'a> Level<'a> {
         self.target.fill(0, &self.colours, picture, job)
     }
 
-    /// The wanted patches whose pixels differ in another picture; the distances of all others remain valid.
+    /// Marks the wanted patches with a pixel that differs in `picture`; the distances of all other patches remain
+    /// valid.
     pub fn changed_by(&self, picture: &Image, job: Job) -> Result<Vec<bool>> {
         let (width, lanes) = (picture.width, self.target.lanes);
         let mut differs = try_vec(width * picture.height, false)?;
@@ -261,7 +263,7 @@ impl<'a> Level<'a> {
         (self.problem.patch * self.problem.patch) as f64 * self.unit
     }
 
-    /// The search from target patches for exemplar patches.
+    /// The search for the nearest exemplar patches of target patches.
     pub fn forward(&self) -> Search<'_> {
         Search {
             query: &self.target,
@@ -274,7 +276,7 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// The search from exemplar patches for target patches among `free`.
+    /// The search for the nearest target patches, among `free`, of exemplar patches.
     pub fn reverse<'b>(&'b self, free: &'b Domain) -> Search<'b> {
         Search { query: &self.source, base: &self.target, allowed: free, seed: !self.seed, ..self.forward() }
     }

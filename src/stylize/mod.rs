@@ -18,9 +18,10 @@
 //! The defaults depart from the paper where measurements favour it; `Params::paper` holds the paper's settings, and
 //! `docs/notes/stylize.md` the measurements.
 //!
-//! Limitations. Where the target has light that the exemplar shows only in another context, such as a corner as dark
-//! as a cast shadow, the guides select the paint of that context. A guide that distinguishes the two (materials) or a
-//! lower `coarse_guides` is the remedy. Paper around the painting counts as paint; exclude it by a `source_mask`.
+//! Limitations. The target may have light that the exemplar shows only in another context, such as a corner as dark as
+//! a cast shadow. There the guides select the paint of that other context. A guide that distinguishes the two
+//! (materials) or a lower `coarse_guides` helps. Paper around the painting counts as paint; exclude it by a
+//! `source_mask`.
 //!
 //! Memory: with four guides of three channels, about 125 MiB per megapixel of the target, and the same for the
 //! exemplar, in addition to the input [bench stylit:sizes].

@@ -19,13 +19,13 @@ use crate::rng::hash;
 /// Maximum number of patch pairs for which the initial field is found by exhaustive comparison.
 const EXHAUSTIVE: usize = 1 << 24;
 
-/// The constants of a run over the levels.
+/// Values that are the same on all levels of a run.
 struct Setup<'a> {
     input: &'a Input<'a>,
     params: &'a Params,
     /// Number of levels.
     levels: usize,
-    /// Number of halvings from the artwork's size to the finest level: 1 for a preview.
+    /// Number of halvings from the artwork's size to the finest level: 1 for a preview, else 0.
     halved: usize,
     /// The matches of the previous frame, advected into this one.
     moved: Option<Field>,
@@ -35,7 +35,7 @@ struct Setup<'a> {
 struct State {
     field: Field,
     picture: Image,
-    /// Patches that keep the match of the previous frame; empty without motion.
+    /// For each target patch, whether it keeps the match of the previous frame; empty without motion.
     kept: Vec<bool>,
 }
 
@@ -89,7 +89,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     Err(Error::new(crate::error::ErrorKind::Internal, "the pyramid has no levels"))
 }
 
-/// Quantises level `l` with its weight of the guides.
+/// Quantises level `l` with the guide weight of this level.
 fn quantise<'a>(problem: &'a Problem, params: &Params, l: usize, seed: u64, job: Job) -> Result<Level<'a>> {
     let guides = if l > 0 { params.coarse_guides } else { 1.0 };
     let weights = Params { guide_weight: params.guide_weight * guides, ..params.clone() };
@@ -160,7 +160,7 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
     Ok(report)
 }
 
-/// Iteration `k` of matching on level `l`. Returns the passes of a retrieval.
+/// Runs iteration `k` of the matching on level `l`. Returns the retrieval passes if the mode uses retrieval.
 fn rematch(
     level: &mut Level,
     state: &mut State,
@@ -170,8 +170,8 @@ fn rematch(
     job: Job,
 ) -> Result<Option<Vec<Pass>>> {
     let State { field, picture, kept } = state;
-    // Only patches over changed pixels can have changed distances; but the first polishing iteration rematches all
-    // patches assigned under the budget.
+    // Distances can have changed only for patches that contain a changed pixel. The first polishing iteration is an
+    // exception: it rematches all patches, because they were assigned under the budget.
     let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
     let rematches_all = k == 0 || polishes && k == params.finest_iterations;
     let mut changed = if rematches_all {
@@ -236,8 +236,8 @@ fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, 
     nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), |i| level.wanted.contains_index(i))
 }
 
-/// An initial field by the guides only. Ties prefer the same relative position, so that equal guides yield the
-/// identity.
+/// Finds an initial field by the guides alone. Among equally close matches, the one at the same relative position is
+/// preferred, so that equal guides yield the identity.
 fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> Result<Field> {
     let level = Level::new(problem, params, 0.0, seed, job.part(0.0, 0.01))?;
     let search = level.forward();

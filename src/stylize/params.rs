@@ -44,13 +44,14 @@ pub struct Input<'a> {
     /// One channel; only pixels above 0.5 are synthesised, the others are taken from `known`, or black. If absent, all
     /// pixels.
     pub target_mask: Option<&'a Image>,
-    /// The target outside its mask: matched against, never changed. Same channels as the artwork.
+    /// The picture of the target outside `target_mask`. Patches are compared with its pixels, which never change. Same
+    /// channels as the artwork.
     pub known: Option<&'a Image>,
     /// The field of an earlier result for a target of the same size, as initial matches.
     pub previous: Option<&'a Field>,
-    /// Position of each target pixel in the frame of `previous`, relative to its position in this one, in pixels: two
-    /// channels, NaN where it was not visible. Matches are advected along it, and the share `Params::coherence` of
-    /// them is kept.
+    /// Displacement in pixels from each target pixel to the position of the same surface point in the frame of
+    /// `previous`: two channels, NaN where the point was not visible. The matches of the previous frame are moved along
+    /// this displacement, and the share `Params::coherence` of them is kept.
     pub motion: Option<&'a Image>,
 }
 
@@ -69,8 +70,8 @@ pub struct Params {
     pub patch: usize,
     /// Weight μ of all guides together relative to all of the artwork's colours together, in `[0, 1e6]`.
     pub guide_weight: f32,
-    /// Factor on the weight of the guides on all levels except the finest, in `[0, 1000]`: guides determine the
-    /// placement, colours the continuity. The paper has 1.
+    /// Factor on the weight of the guides on all levels except the finest, in `[0, 1000]`. Guides determine where paint
+    /// is placed, colours how it continues. The paper uses 1.
     pub coarse_guides: f32,
     /// Maximum number of resolution levels, each half of the next, in `[1, 16]`; fewer if the coarsest would be
     /// smaller than 5 patches.
@@ -81,21 +82,21 @@ pub struct Params {
     pub coarse_iterations: usize,
     /// EM iterations on the finest level, in `[1, 100]`.
     pub finest_iterations: usize,
-    /// Further EM iterations on the finest level in which each patch takes its nearest match (Wexler et al. 2007),
-    /// starting from the result under the budget, in `[0, 100]`; the paper has 0. In other modes, further iterations
-    /// of the mode itself.
+    /// Further EM iterations on the finest level, in `[0, 100]`. In `Mode::Budget` they start from the result under the
+    /// budget, and each patch takes its nearest match (Wexler et al. 2007); the paper has 0. In other modes they are
+    /// further iterations of the mode itself.
     pub polish: usize,
     /// PatchMatch sweeps per retrieval, in `[1, 100]`.
     pub sweeps: usize,
-    /// Share of the target to cover under the budget before the rest is matched without it, in `[0, 1]`.
+    /// Share of the target to match under the budget, in `[0, 1]`; the rest is then matched without a budget.
     pub coverage: f32,
     /// Maximum number of retrieval passes per iteration, in `[1, 1000]`.
     pub passes: usize,
-    /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue its neighbour's match if that
-    /// is closer. With 0 the paper's assignment is unchanged.
+    /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if that
+    /// match is closer than its own. With 0 the paper's assignment is unchanged.
     pub settle: usize,
-    /// Cost of a seam between two neighbouring patches during these sweeps, as a share of the mean error, in `[0,
-    /// 100]`.
+    /// Cost of a seam between two neighbouring patches during the sweeps of `settle`, as a share of the mean error, in
+    /// `[0, 100]`.
     pub seam: f32,
     pub vote: Vote,
     /// The vote that forms the final picture from the final field.
@@ -103,12 +104,12 @@ pub struct Params {
     /// Share of the previous frame's matches that are kept where they fit, in `[0, 1]`; no effect without motion. Use
     /// a different `seed` for each frame, or the same blocks change every time.
     pub coherence: f32,
-    /// Degree to which the exemplar's light is adapted to the brightness and contrast of the target's, in `[0, 1]`:
-    /// for targets under different light than the exemplar (Fig. 16).
+    /// Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target,
+    /// in `[0, 1]`: for targets under different light than the exemplar (Fig. 16).
     pub match_appearance: f32,
-    /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: the penalty of a match to a patch of average usage, in the unit
-    /// of Eq. 1 (the sum over a patch of squared differences of channels in `[0, 1]`). With 0 the result equals
-    /// `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (Fig. 10n).
+    /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: the penalty of a match to a patch of average usage. The unit is
+    /// that of Eq. 1: the sum over a patch of squared differences of channels in `[0, 1]`. With 0 the result equals
+    /// that of `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (Fig. 10n).
     pub occurrence: f32,
     /// Half resolution, with guides compressed to their principal components: for interactive painting.
     pub preview: bool,

@@ -9,11 +9,11 @@ use crate::job::Job;
 
 /// Share of the variance to keep [origin not recorded].
 const KEPT_VARIANCE: f64 = 0.995;
-/// Maximum number of components: with three colours they fill eight lanes.
+/// Maximum number of components: together with three colour channels, they fill eight lanes.
 const MAX_COMPONENTS: usize = 5;
 
-/// Replaces the channels by principal components. Distances in the weighted space change only by the dropped variance:
-/// each component is stretched to `[0, 1]` and weighted by the square of its range.
+/// Replaces the channels by principal components. Each component is stretched to `[0, 1]` and weighted by the square of
+/// its former range, so that weighted distances change only by the dropped components.
 pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let n = guides.weights.len();
     if n <= MAX_COMPONENTS {

@@ -8,7 +8,7 @@ use crate::image::colour::srgb_to_linear;
 use crate::job::Job;
 use crate::patch::{Field, Vote, origin, vote};
 
-/// Votes for the pixels for which `wanted` holds, and restores known pixels.
+/// Paints the pixels for which `wanted` holds by a vote of their patches, and restores the known pixels.
 pub(super) fn paint(
     picture: &mut Image,
     field: &Field,
@@ -50,8 +50,9 @@ pub(super) struct Provenance<'a> {
     pub known: Option<&'a Image>,
 }
 
-/// Decodes the pixels of a picture for which `wanted` holds into `image`, in linear colour. Pixels on which all
-/// patches agree, and known pixels, are copied from the linear originals, so that they equal them to the bit.
+/// Decodes the pixels of a picture for which `wanted` holds into `image`, in linear colour. At full resolution, known
+/// pixels and pixels on which all patches agree are copied from the linear originals, so that they equal the originals
+/// to the bit.
 pub(super) fn decode_into(
     image: &mut Image,
     picture: &Image,

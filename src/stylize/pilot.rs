@@ -8,17 +8,18 @@ use crate::image::Image;
 use crate::job::Job;
 use std::time::Duration;
 
-/// Maximum number of pixels of the smaller of exemplar and target in a pilot run. The smaller one counts, because a
-/// small exemplar has few patches per pixel, so energies at low resolutions would predict those at higher ones poorly.
+/// Maximum number of pixels in a pilot run, counted in the exemplar or the target, whichever is smaller. The smaller
+/// image counts because a small exemplar has few patches per pixel: its energies at low resolutions would predict the
+/// energies at higher resolutions poorly.
 const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
 
-/// Predicted time of settings, and the energy of their result.
+/// Predicted time that settings take, and predicted energy of their result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prediction {
     pub seconds: f64,
-    /// Like the last of [`super::LevelReport::energy`] on the finest level.
+    /// Energy after the last iteration on the finest level: see [`super::LevelReport::energy`].
     pub energy: f64,
 }
 
@@ -35,17 +36,19 @@ pub struct PilotRuns<'a> {
     /// The problem, and its successive halves down to the lowest resolution used.
     problems: Vec<Problem>,
     preparing: f64,
-    /// At the highest pilot resolution: the reference settings, and others after [`Self::refine`].
+    /// Measurements at the highest pilot resolution: of the reference settings, and of other settings after
+    /// [`Self::refine`].
     near: Vec<Option<Prediction>>,
-    /// At the next lower resolution.
+    /// Measurements of all settings at the next lower resolution.
     middle: Vec<Prediction>,
     /// Predicted energy of the reference settings.
     energy: f64,
 }
 
 impl<'a> PilotRuns<'a> {
-    /// Runs each of `ladder`, all with the same [`Params::preview`]; ignores `input.previous`. The settings at `usual`
-    /// are run at three resolutions, the highest with 32 to 128 thousand pixels, the others at the middle one.
+    /// Runs all settings in `ladder`, which must have the same [`Params::preview`]; ignores `input.previous`. The
+    /// reference settings, at index `usual`, run at three resolutions, of which the highest has 32 to 128 thousand
+    /// pixels. All other settings run at the middle resolution.
     ///
     /// # Errors
     /// Those of [`super::run`].
@@ -118,15 +121,17 @@ impl<'a> PilotRuns<'a> {
 
     /// Predicted time and energy of settings at the full resolution.
     ///
-    /// Time grows linearly with the number of pixels, and with slowly converging settings by a slightly higher power,
-    /// which is estimated from the two resolutions. Energy falls with the size of pixels, because neighbouring pixels
-    /// of paint and guides differ less: from one resolution to the next by a factor whose logarithm itself decays, as
-    /// extrapolated from the pilot runs. The ratio of energies between settings hardly depends on the resolution.
+    /// Time grows linearly with the number of pixels. With slowly converging settings it grows by a slightly higher
+    /// power, which is estimated from the two higher pilot resolutions. Energy falls as pixels become smaller, because
+    /// neighbouring pixels of paint and guides differ less. From one resolution to the next it falls by a factor; the
+    /// logarithm of this factor decays, and is extrapolated from the pilot runs. The ratio of the energies of two
+    /// settings hardly depends on the resolution.
     pub fn predict(&self, settings: usize) -> Prediction {
         let [all, tried, middle] =
             [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
         let ratio = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
-        // Settings run at the middle resolution only: assume the ratio to the reference settings found there.
+        // If the settings ran at the middle resolution only, assume that their ratio to the reference settings is the
+        // same at the highest pilot resolution.
         let usual = self.near[self.usual].unwrap_or_default();
         let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
         let near = self.near[settings].unwrap_or(Prediction {
@@ -148,8 +153,8 @@ fn is_near(problem: &Problem) -> bool {
     pixels(&problem.style).min(pixels(&problem.guides.target)) <= MAX_PIXELS
 }
 
-/// Extrapolates the energy `steps` resolutions above the last of three: each step of its logarithm is a constant
-/// fraction of the previous step (Aitken 1926).
+/// Extrapolates the energies of three resolutions by `steps` further resolutions. From one resolution to the next, the
+/// logarithm of the energy changes by a constant fraction of its previous change (Aitken 1926).
 fn extrapolate([far, middle, near]: [f64; 3], steps: usize) -> f64 {
     let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { (to / from).ln() } else { 0.0 };
     let [before, mut last] = [step(far, middle), step(middle, near)];

@@ -13,8 +13,9 @@ use crate::patch::{Field, NONE, unpack};
 pub struct LevelReport {
     pub width: usize,
     pub height: usize,
-    /// Eq. 3 per target patch and per pixel of it, after each iteration: the mean weighted squared difference of
-    /// channels in `[0, 1]`, with total weight 1 of the artwork and μ of the guides.
+    /// Energy (Eq. 3) after each iteration, divided by the number of target patches and by the pixels of a patch: the
+    /// mean weighted squared difference of channels in `[0, 1]`. The artwork's channels have a total weight of 1. The
+    /// guides' channels have a total weight of μ, times `Params::coarse_guides` on all levels except the finest.
     pub energy: Vec<f64>,
     /// Retrieval passes of each iteration.
     pub passes: Vec<Vec<Pass>>,
@@ -36,18 +37,18 @@ pub struct Report {
     /// Coarsest level first.
     pub levels: Vec<LevelReport>,
     pub usage: Usage,
-    /// One channel per target pixel: root mean square difference of the weighted guides between the target and the
-    /// exemplar position painted there, in `[0, 1]`. High where the exemplar has nothing suitable (Fig. 17).
+    /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
+    /// of the exemplar pixel painted there, in `[0, 1]`. It is high where the exemplar has nothing suitable (Fig. 17).
     pub guide_error: Image,
-    /// For each target pixel the position in the artwork, x and y in pixels, from which its paint comes, by the patch
-    /// with the nearest centre; -1 without a patch. Two channels.
+    /// Two channels: for each target pixel, the position in the artwork from which its paint comes, x and y in pixels.
+    /// It is determined by the patch with the nearest centre; -1 if that patch has no match.
     pub sources: Image,
     /// Number of halvings from the target's size to the result's: 1 in preview, else 0.
     pub halvings: usize,
     /// The patch width used.
     pub patch: usize,
-    /// Number of exemplar pixels left out because they are NaN or infinite, and of target guide pixels set to 0 for
-    /// the same reason.
+    /// Number of exemplar pixels left out because they are NaN or infinite, and number of target guide pixels set to 0
+    /// for the same reason.
     pub broken_source: usize,
     pub broken_target: usize,
 }
@@ -104,7 +105,8 @@ pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<
     Ok(out)
 }
 
-/// The source position of each pixel in the artwork, which was halved `halvings` times for matching.
+/// For each target pixel, the position in the artwork from which its paint comes. The artwork was halved `halvings`
+/// times for matching.
 pub(super) fn sources(field: &Field, problem: &Problem, halvings: usize, job: Job) -> Result<Image> {
     let target = &problem.guides.target;
     let mut out = Image::new(target.width, target.height, 2)?;

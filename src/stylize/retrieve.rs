@@ -1,19 +1,21 @@
 //! Reversed retrieval under an error budget (§3.3).
 //!
-//! In each pass every exemplar patch searches for its nearest target patch among the free ones. The errors determine a
-//! budget; in order of rising error the patches take their targets until the budget is spent. If two want the same
-//! target, the closer one takes it (the first, if equal). In the next pass all exemplar patches are available again
-//! for the remaining targets. When enough is covered, or a pass gains next to nothing, the remaining target patches
-//! search for their nearest exemplar patch instead.
+//! In each pass, every exemplar patch searches for its nearest target patch among the free target patches. The errors
+//! of these matches determine a budget. In order of rising error, the exemplar patches take their targets until the
+//! budget is spent. If two exemplar patches want the same target, the closer one takes it (the first, if equal). In the
+//! next pass, all exemplar patches are available again for the remaining targets. The passes end when enough of the
+//! target is covered or when a pass gains next to nothing; then each remaining target patch searches for its nearest
+//! exemplar patch instead.
 //!
-//! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were never
-//! neighbours. Therefore a target patch may finally continue a neighbour's match if that match is closer than its own,
-//! or if the seam it saves outweighs the difference (`Params::settle`, `Params::seam`; not in the paper). This
-//! involves no new search, so the usage stays as varied, in larger pieces. On the pair in `tests/real_stylize.rs` it
-//! lowers Eq. 3 threefold and keeps more of the texture.
+//! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were not
+//! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match: if that match is
+//! closer than the patch's own, or if avoiding the seam outweighs the greater distance (`Params::settle`,
+//! `Params::seam`; not in the paper). This step searches for no new matches, so the usage of the exemplar stays as
+//! varied, in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (Eq. 3) to a third and keeps
+//! more of the texture.
 //!
-//! Each pass starts from the previous one: an exemplar patch whose target was taken searches around it; the others
-//! keep theirs.
+//! Each pass starts from the matches of the previous pass. An exemplar patch whose target has been taken searches anew
+//! around that target; all other exemplar patches keep their matches.
 
 use super::budget::budget;
 use super::finder::Nearest;
@@ -28,19 +30,19 @@ use crate::patch::{Domain, Field, NONE, pack, unpack};
 /// The outcome of a retrieval pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
-    /// Share of the exemplar patches left of the knee.
+    /// Share of the exemplar patches whose error lies left of the knee of the sorted errors.
     pub knee: f64,
     /// Number of target patches matched in this pass.
     pub gained: usize,
-    /// Share of the wanted target patches that are matched after it.
+    /// Share of the wanted target patches that are matched after this pass.
     pub coverage: f64,
 }
 
-/// The last pass is the first that covers less than this share of the target [origin not recorded].
+/// The passes end after the first pass that matches less than this share of the target [origin not recorded].
 const MIN_GAIN: f64 = 0.005;
 
-/// Matches every wanted target patch. `field` holds the matches or hints of the previous iteration, whose distances
-/// are valid except where `changed`; the result replaces it. Matches with `kept` set stay unchanged.
+/// Matches every wanted target patch. `field` holds the matches or hints of the previous iteration and receives the
+/// result. Its distances are valid except where `changed` is set. Matches with `kept` set stay unchanged.
 pub(super) fn retrieve(
     level: &Level,
     field: &mut Field,
@@ -80,8 +82,8 @@ pub(super) fn retrieve(
         }
     }
 
-    // Match the remaining patches by ordinary retrieval, starting from the previous iteration's matches and those of
-    // neighbours.
+    // Match the remaining patches by ordinary retrieval, starting from their matches in the previous iteration and from
+    // the matches of neighbouring patches.
     for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
@@ -126,7 +128,7 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
     }
     free.compact();
 
-    // Demote matches whose target is now taken to hints.
+    // Turn matches whose target is now taken into hints: keep the position, but discard the distance.
     for (at, error) in reverse.at.iter().zip(&mut reverse.error) {
         if *at != NONE {
             let (x, y) = unpack(*at);

@@ -1,6 +1,6 @@
-//! Shading study (§4.2): while the artist continues painting, the parts of the result made from changed parts of the
-//! artwork are synthesised anew, starting from the field of the last result. Matching and painting cost in proportion
-//! to the affected area; quantising the guides and the artwork is repeated in full.
+//! Shading study (§4.2): while the artist continues painting, the parts of the result that come from changed parts of
+//! the artwork are synthesised anew, starting from the field of the last result. The time for matching and painting is
+//! proportional to the affected area; the guides and the artwork are quantised anew in full.
 
 use super::level::{Level, Problem, encode, encoded};
 use super::multires;
@@ -31,8 +31,8 @@ pub struct Study {
     /// The last result, encoded for display and linear.
     picture: Image,
     image: Image,
-    /// Artwork pixels changed since the result was last updated, and result pixels that are out of date as a
-    /// consequence. A cancelled update leaves some of both.
+    /// Artwork pixels changed since the last update of the result, and result pixels that are out of date as a
+    /// consequence. After a cancelled update, some pixels of both lists remain set.
     pending: Vec<bool>,
     old: Vec<bool>,
 }
@@ -63,9 +63,9 @@ impl Study {
         Ok((study, output))
     }
 
-    /// Takes over the pixels of `artwork` (linear, same size as the first) where the one-channel `changed` is above
-    /// 0.5, and returns the new picture, linear. Non-finite changes count as black. After an error (a cancellation),
-    /// the next call completes the update.
+    /// Copies the pixels of `artwork` where the one-channel image `changed` is above 0.5, updates the result, and
+    /// returns the new picture in linear colour. `artwork` is linear and has the size of the first artwork. Non-finite
+    /// changes count as black. After an error, such as a cancellation, the next call completes the update.
     pub fn repaint(&mut self, artwork: &Image, changed: &Image, job: Job) -> Result<Image> {
         self.artwork.check_same_size("the first artwork", artwork, "artwork")?;
         self.artwork.check_same_size("artwork", changed, "changed")?;
@@ -107,7 +107,7 @@ impl Study {
         Ok(image)
     }
 
-    /// The current source of each pixel in the artwork: see `Report::sources`.
+    /// For each target pixel, the position in the artwork from which its paint comes: see `Report::sources`.
     pub fn sources(&self, job: Job) -> Result<Image> {
         sources(&self.field, &self.problem, usize::from(!self.problem.is_of(&self.artwork)), job)
     }

@@ -1,4 +1,5 @@
-//! What a run needs, checked before it begins: settings of its stages, its inputs, and the results it goes on from.
+//! Checks what a run needs before it begins: the settings of its stages, its inputs, and the earlier results that it
+//! uses.
 
 use super::{Params, Stage, Transfer};
 use crate::error::{Error, ErrorKind, Result, check_range};
@@ -7,10 +8,10 @@ use crate::scene::surface::{self, Surface};
 use glam::DVec4;
 
 impl Transfer {
-    /// Checks a run of the stages `from..=to`; takes no time worth speaking of.
+    /// Checks a run of the stages `from..=to`; takes negligible time.
     ///
     /// # Errors
-    /// `InvalidArgument` for settings out of range, `InvalidOperation` for what is missing.
+    /// `InvalidArgument` for settings out of range, `InvalidOperation` for missing inputs or results.
     pub fn check(&self, from: Stage, to: Stage) -> Result<()> {
         if from > to {
             return Err(Error::argument(format!("the run is from stage {from:?} to {to:?}; it must go forwards")));
@@ -29,7 +30,7 @@ impl Transfer {
         Ok(())
     }
 
-    /// Checks that the scene has the surface, where the run is to light it.
+    /// If the run includes [`Stage::Emission`], checks that the scene has the surface to be lit.
     pub(super) fn check_surface(&self, from: Stage, to: Stage) -> Result<()> {
         match &self.input.scene {
             Some(scene) if (from..=to).contains(&Stage::Emission) => self.find_surface(scene).map(drop),
@@ -37,8 +38,8 @@ impl Transfer {
         }
     }
 
-    /// The plane of the scene that receives the lights. Parts of a ceiling that lie in one plane, as between beams, are one surface
-    /// and share one pattern, whichever objects they belong to; what lies in other planes is left as it is.
+    /// The plane of the scene that receives the lights. Parts of a ceiling that lie in one plane, as between beams, are
+    /// one surface and share one pattern, whichever objects they belong to. Parts in other planes are left as they are.
     pub(super) fn find_surface(&self, scene: &Scene) -> Result<Surface> {
         match self.input.triangles[..] {
             [] => surface::find(scene, &self.input.surface),
@@ -75,7 +76,7 @@ impl Transfer {
         Ok(())
     }
 
-    /// The stages whose results one goes on from. Features do without a view.
+    /// The stages whose results a stage needs. Features do not need a view.
     fn stages_before(&self, stage: Stage) -> &'static [Stage] {
         match stage {
             Stage::View | Stage::Features => &[],
@@ -117,7 +118,7 @@ impl Params {
     }
 }
 
-/// Checks rectangles without lamps, as of [`super::Input`].
+/// Checks the rectangles without lamps of [`super::Input`].
 pub fn check_zones(zones: &[DVec4]) -> Result<()> {
     match zones.iter().position(|z| !(z.is_finite() && z.x <= z.z && z.y <= z.w)) {
         Some(i) => {
@@ -129,12 +130,12 @@ pub fn check_zones(zones: &[DVec4]) -> Result<()> {
     }
 }
 
-/// What an earlier stage or the caller should have provided.
+/// The error for a missing input or result; `what` tells how to provide it.
 pub(super) fn missing(what: &str) -> Error {
     Error::new(ErrorKind::InvalidOperation, format!("{what} first"))
 }
 
-/// The same, of a result that is to be used.
+/// The value, or an error if it is missing; `what` tells how to provide it.
 pub(super) fn need<'a, T>(value: &'a Option<T>, what: &str) -> Result<&'a T> {
     value.as_ref().ok_or_else(|| missing(what))
 }

@@ -1,22 +1,23 @@
-//! What a photo's clipped pixels were before they were clipped.
+//! Estimates the values that a photo's clipped pixels had before they were clipped.
 //!
-//! A plane is lit by a mixture of two lights, more or less: that of its lamps and that which the room sends back. Its colours
-//! then lie on a line, which the pixels that are whole tell, and a channel that is clipped follows from one that is not. As
-//! it is a guess beyond what was seen, it is taken no further than the mean ratio of the channels goes; it was white at least.
-//! Where all channels are clipped nothing more is known.
+//! A plane is lit by a mixture of two lights: that of its lamps and that which the room reflects. Its colours therefore
+//! lie roughly on a line. The unclipped pixels determine this line, and a clipped channel follows from an unclipped
+//! one. This is extrapolation, so the estimate never exceeds what the mean ratio of the channels gives; it is white at
+//! least. Where all channels are clipped, nothing more is known.
 
 use glam::{BVec3, DVec3, Vec3};
 
-/// From where on a channel of the photo itself counts as clipped: the two largest values of eight bits, decoded, are. Those of
-/// an unwarped photo, whose pixels are means of several, are so already below (`emission::Params::clip_level`).
+/// Value from which on a channel of the photo itself counts as clipped: the two largest 8-bit values, decoded, do. In
+/// an unwarped photo, whose pixels are means of several, clipping shows at lower values already
+/// (`emission::Params::clip_level`).
 const CLIPPED: f32 = 0.987;
-/// Share of the pixels that must be whole in two channels for their line to be known.
+/// Minimum share of the pixels that must be unclipped in two channels for their line to be known.
 const LEAST_WHOLE: f64 = 0.02;
-/// Where a plane's brightness varies by no more than this share of itself, the line goes through black.
+/// Relative variation of a plane's brightness up to which the line is drawn mainly towards black.
 const EVEN: f64 = 0.05;
 
-/// Mean colour of pixels, what was clipped made up for if they are of one plane; and the share of pixels, per channel, of
-/// which no more is known than that they are white at least. `None` without pixels.
+/// The mean colour of some pixels, and for each channel the share of pixels that are only known to be white at least.
+/// If the pixels are of one plane, clipped values are replaced by estimates. `None` without pixels.
 pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) -> Option<(DVec3, DVec3)> {
     let mut moments = [[Moments::default(); 3]; 3];
     let mut count = 0.0;
@@ -37,7 +38,7 @@ pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) 
         let mask = clipped(rgb);
         let mut colour = rgb.as_dvec3();
         for y in (0..3).filter(|c| mask.test(*c)) {
-            // The brightest channel that is whole knows best.
+            // Use the brightest unclipped channel: it predicts best.
             let known = (0..3).filter(|&x| !mask.test(x)).filter_map(|x| Some((rgb[x], lines[y][x]?)));
             match known.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 Some((value, line)) => colour[y] = colour[y].max(line.at(value.into())),
@@ -58,7 +59,7 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..9).map(|i| (i % 3, i / 3)).filter(|(x, y)| x != y)
 }
 
-/// Sums over the pixels that are whole in two channels.
+/// Sums over the pixels that are unclipped in two channels.
 #[derive(Clone, Copy, Default)]
 struct Moments {
     n: f64,
@@ -68,12 +69,12 @@ struct Moments {
     xy: f64,
 }
 
-/// How one channel follows from another.
+/// The line by which one channel follows from another.
 #[derive(Clone, Copy)]
 struct Line {
     start: f64,
     slope: f64,
-    /// Of the means.
+    /// Ratio of the means of the two channels.
     ratio: f64,
 }
 
@@ -92,7 +93,7 @@ impl Moments {
         self.xy += x * y;
     }
 
-    /// The line of least squares, drawn towards the one through black; of no fewer than `least` pixels.
+    /// The line of least squares, drawn towards the line through black. `None` for fewer than `least` pixels.
     fn line(&self, least: f64) -> Option<Line> {
         let (x, y) = (self.x / self.n, self.y / self.n);
         if self.n < least || !(x > 0.0) {

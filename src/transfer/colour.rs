@@ -1,7 +1,8 @@
-//! The colour that the photo asks for.
+//! The target colour that follows from the photo.
 //!
-//! Pixels that are clipped say no more than "at least white" in the channels that are, which often follow from those that are
-//! not ([`clipping`]). What does not counts as white, and a channel most of which is so is asked for as a least.
+//! A clipped channel of a pixel is known only to be at least white. Often its value follows from the channels that are
+//! not clipped ([`clipping`]). If it does not, it counts as white. A channel that is unknown in most pixels gets a
+//! lower bound as its target instead of an exact value.
 
 use super::clipping;
 use crate::error::{Error, Result};
@@ -20,23 +21,23 @@ pub enum TargetColour {
     WholeImage,
 }
 
-/// What the photo asks for.
+/// The target that follows from the photo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Target {
     /// Mean linear colour, relative to the photo's white.
     pub colour: Vec3,
-    /// Whether that is all that is known of a channel, or it may be brighter.
+    /// For each channel, whether the colour is its exact target or a lower bound.
     pub constraint: [Constraint; 3],
 }
 
-/// Halo of a lamp that glare brightens, as a share of the photo's longer side.
+/// Width of the halo of glare around a lamp, as a share of the photo's longer side.
 const HALO: f32 = 0.01;
 /// If any value of a photo exceeds this, the photo goes beyond white (1), so it is not clipped at white.
 const WHITE: f32 = 1.001;
-/// Share of the pixels from which on a channel that is not known is asked for as a least.
+/// Share of pixels with an unknown value above which a channel's target is a lower bound.
 const MOSTLY: f64 = 0.5;
 
-/// Mean of the chosen part.
+/// The mean colour of the chosen part of the photo.
 pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: &Image, job: Job) -> Result<Target> {
     photo.check_same_size("the photo", plane, "the plane's mask")?;
     photo.check_same_size("the photo", lights, "the lights' mask")?;

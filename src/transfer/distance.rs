@@ -1,19 +1,20 @@
-//! How far the photo's camera was from the lit plane, by the size of its lamps: a photo alone tells lengths only up to a factor,
-//! but lamps come in few sizes, and cameras are held at few heights.
+//! Estimates how far the photo's camera was from the lit plane, from the size of the lamps. A photo alone tells lengths
+//! only up to a factor, but lamps come in few sizes, and cameras are held at few heights.
 //!
-//! Bayes' rule over the logarithm of the distance, on a grid. The prior is of rooms and halls; the likelihood of a lamp's two
-//! sides is a mixture of the usual sizes and of any size.
+//! Applies Bayes' rule to the logarithm of the distance, on a grid. The prior covers rooms and halls. The likelihood of
+//! a lamp's two sides is a mixture of the usual sizes and of any size.
 
-/// Distances that are weighed, in metres, and how many.
+/// Range of the distances in the grid, in metres, and their number.
 const RANGE: [f64; 2] = [0.3, 20.0];
 const STEPS: usize = 400;
 
-/// Prior, as log-normals: weight, median in metres, and standard deviation of the logarithm. Ceilings of 2.4 to 3.5 m over a camera at
-/// 1.2 to 1.7 m; halls. [convention]
+/// Prior of the distance, a mixture of log-normals: weight, median in metres, and standard deviation of the logarithm.
+/// The first is for ceilings of 2.4 to 3.5 m over a camera at 1.2 to 1.7 m, the second for halls. [convention]
 const PRIOR: [[f64; 3]; 2] = [[0.8, 1.4, 0.35], [0.2, 4.0, 0.6]];
 
-/// Sides of usual lamps in metres, the longer first, and how usual they are: panels and troffers that replace tiles of 0.6 m
-/// (EN 13964, 2 ft in America), and battens for tubes of 1.2 and 1.5 m (IEC 60081). [convention]
+/// Usual lamps: the longer and the shorter side in metres, and the probability of this size. They are panels and
+/// troffers that replace tiles of 0.6 m (EN 13964, 2 ft in America), and battens for tubes of 1.2 and 1.5 m (IEC
+/// 60081). [convention]
 const SIZES: [[f64; 3]; 8] = [
     [0.6, 0.6, 0.18],
     [1.2, 0.6, 0.12],
@@ -26,7 +27,8 @@ const SIZES: [[f64; 3]; 8] = [
 ];
 /// Probability of a lamp of any other size.
 const OTHER: f64 = 0.5;
-/// Sides of lamps in general, in metres: a lamp of another size has each with equal probability of its logarithm. [convention]
+/// Range of the sides of lamps of other sizes, in metres; the logarithm of each side is uniformly distributed.
+/// [convention]
 const SIDES: [f64; 2] = [0.05, 3.0];
 /// Share of a lamp's side that shines; the rest is its frame. [convention]
 const SHINES: f64 = 0.96;
@@ -36,9 +38,10 @@ const SIDE_ERROR: f64 = 0.07;
 /// A distance with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
-    /// Metres; the median of what the lamps and the prior say.
+    /// Distance in metres; where it is estimated, the median of the posterior.
     pub metres: f64,
-    /// Standard deviation of its logarithm, about its relative error; 0 where the caller sets the distance.
+    /// Standard deviation of the logarithm of the distance, about its relative error; 0 where the caller sets the
+    /// distance, or a length from which it follows.
     pub error: f64,
 }
 
@@ -48,7 +51,8 @@ impl Distance {
         Self { metres, error: 0.0 }
     }
 
-    /// By the sides of the median lamp, the longer first, where 1 is the distance; 0 where there is no lamp, or no rectangle.
+    /// The distance estimated from the sides of the median lamp, the longer first, in units of the distance. Sides of
+    /// 0: there is no lamp, or none that is a rectangle.
     pub fn of_lamps(sides: [f64; 2]) -> Self {
         let [low, high] = RANGE.map(f64::ln);
         let step = (high - low) / STEPS as f64;

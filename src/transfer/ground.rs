@@ -1,4 +1,4 @@
-//! Where on the surface's rectangle there is room for light.
+//! The parts of the surface's rectangle where lamps may lie.
 
 use crate::emission::Placement;
 use crate::error::Result;
@@ -14,8 +14,8 @@ const CRACK: f64 = 1e-3;
 /// A surface that covers this share of its rectangle covers all of it.
 const FULL: f32 = 0.9999;
 
-/// What there is at each texel of a texture of the given size over the rectangle of `surface`; nothing where all is open.
-/// `untouched` is the same surface before it was turned, along whose axes zones are given.
+/// The placement at each texel of a texture of the given size over the rectangle of `surface`; `None` if all texels are
+/// open. `untouched` is the surface before it was turned; the zones are given along its axes.
 pub(super) fn of(
     scene: &Scene,
     (surface, untouched): (&Surface, &Surface),
@@ -32,11 +32,11 @@ pub(super) fn of(
     let (width, height) = (size.x as usize, size.y as usize);
     let density = size.as_dvec2() / surface.size.as_dvec2();
 
-    // What the surface covers; cut at its edge, light stays wherever a texel may be seen.
+    // Find the texels that the surface covers. If its edge cuts lamps, keep every texel that may be seen in part.
     let slack = if keeps_margin { CRACK } else { 1.0 };
     let covered = coverage(scene, surface, size, slack)?;
 
-    // Where lamps may not reach: zones, and with a margin whatever is not surface; grown by the margin.
+    // Mark where lamps may not lie: in zones and, with a margin, off the surface. Then grow these parts by the margin.
     let mut blocked = Image::new(width, height, 1)?;
     for (i, out) in blocked.data.iter_mut().enumerate() {
         let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
@@ -62,7 +62,7 @@ pub(super) fn of(
     Ok(Some(ground))
 }
 
-/// A point of one surface, in metres from its corner, as one of another in the same plane.
+/// Converts a point of one surface, in metres from its corner, to the same coordinates of another surface in its plane.
 fn on_other(from: &Surface, to: &Surface, at: DVec2) -> DVec2 {
     let point = from.origin.as_dvec3() + from.u_axis.as_dvec3() * at.x + from.v_axis.as_dvec3() * at.y;
     let offset = point - to.origin.as_dvec3();

@@ -1,9 +1,9 @@
-//! The lighting transfer: from a photo, a few strokes and a 3D scene to that scene lit as in the photo
+//! The lighting transfer: takes a photo, a few strokes and a 3D scene, and lights the scene as in the photo
 //! ("Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization").
 //!
-//! Runs the stages in order and passes data between them, which never know of each other. Every intermediate can be read,
-//! replaced by the caller's own, and the run taken up again from any stage: a better depth map, a hand-drawn mask or
-//! known vanishing points stand in for a stage's result.
+//! Runs the stages in order and passes data between them; the stages do not know each other. The caller can read every
+//! intermediate result, replace it, and resume the run at any stage. A better depth map, a hand-drawn mask or known
+//! vanishing points can thus replace the result of a stage.
 
 mod check;
 mod clipping;
@@ -49,13 +49,13 @@ pub enum Stage {
     Features = 1,
     /// The mask of the plane that carries the lights.
     Plane = 2,
-    /// The mask of the lights in it.
+    /// The mask of the lights on this plane.
     Lights = 3,
     /// The plane seen straight on.
     Unwarp = 4,
     /// The emissive texture, laid onto the scene's surface.
     Emission = 5,
-    /// Its colour and intensity.
+    /// The colour and intensity of the emission.
     Relight = 6,
     /// The picture.
     Render = 7,
@@ -79,7 +79,7 @@ const WEIGHTS: [f64; 8] = [0.06, 0.06, 0.03, 0.03, 0.06, 0.12, 0.14, 0.5];
 pub struct Input {
     /// Linear RGB, 1 = display white.
     pub photo: Option<Arc<Image>>,
-    /// Focal length in pixels that the photo's file says, and its standard deviation.
+    /// Focal length in pixels as the photo's file states it, and its standard deviation.
     pub photo_focal: Option<[f64; 2]>,
     /// Depth of the photo, if the caller has it.
     pub depth: Option<(Arc<Image>, DepthKind)>,
@@ -89,11 +89,12 @@ pub struct Input {
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,
-    /// (mesh, triangle) of those that receive the lights instead, if there are any.
+    /// The (mesh, triangle) pairs that receive the lights instead of `surface`, if there are any.
     pub triangles: Vec<(usize, usize)>,
     /// Rectangles of the surface without lamps: `(u0, v0, u1, v1)` in metres from its corner along its axes.
     pub zones: Vec<DVec4>,
-    /// Whence the result is rendered; the scene's first camera if absent, and if it has none one is chosen.
+    /// The camera of the picture. If absent, the scene's first camera is used; if the scene has none, a camera is
+    /// chosen.
     pub camera: Option<Camera>,
 }
 
@@ -104,14 +105,14 @@ pub struct Params {
     pub features: features::Params,
     /// First phase: the plane.
     pub plane: segment::Params,
-    /// Second phase: the lights in it.
+    /// Second phase: the lights on this plane.
     pub lights: segment::Params,
-    /// `width`, `height`, `scale` and `offset` are set by the transfer, from the surface's size and the three below.
+    /// The transfer sets `width`, `height`, `scale` and `offset`, from the surface's size and the three settings below.
     pub emission: emission::Params,
     /// How the pattern lies on the surface.
     pub pattern: Pattern,
-    /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`: it sets the scale of the pattern, where
-    /// nothing else does. 0: estimated from the size of the lamps.
+    /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`. It sets the size of the pattern
+    /// with [`Scale::Distance`]. 0: estimated from the size of the lamps.
     pub plane_distance: f64,
     /// Longest side of the emissive texture in texels, in `[1, 16384]`.
     pub max_texels: usize,
@@ -152,30 +153,31 @@ pub struct LitScene {
     pub texel_size: f64,
 }
 
-/// What each stage has made; all of it may be replaced.
+/// The results of the stages; the caller may replace each of them.
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     pub view: Option<Arc<View>>,
-    /// The view by lines alone, where the lamps have shown another.
+    /// The view that was found from lines alone, if the lamps have led to another one.
     pub view_by_lines: Option<Arc<View>>,
-    /// Whether the caller has set the view, which then stays.
+    /// Whether the caller has set the view; such a view is not corrected.
     pub view_is_given: bool,
     pub features: Option<Arc<Features>>,
-    /// Lamps that were found beyond the plane as it was laid out first. The room was enlarged to hold them, and they are
-    /// examples of the plane.
+    /// Lamps that were found beyond the plane as it was first laid out. The room was enlarged to hold them, and they
+    /// serve as examples of the plane.
     pub beyond: Vec<Stroke>,
     pub plane: Option<Arc<Segmentation>>,
     pub lights: Option<Arc<Segmentation>>,
     pub unwarped: Option<Arc<Unwarped>>,
     pub emission: Option<Arc<Emission>>,
-    /// The distance of the photo's camera from its plane that the pattern's size amounts to; none of a given texture.
+    /// The distance of the photo's camera from its plane that the size of the pattern implies; absent for a given
+    /// texture.
     pub distance: Option<Distance>,
     /// The texture on the surface at the photo's own strength: `white_luminance` times its linear values.
     pub unsolved: Option<Arc<LitScene>>,
-    /// Mean colour the surface is to have, relative to the photo's white.
+    /// Mean colour that the surface should have, relative to the photo's white.
     pub target: Option<Vec3>,
     pub solution: Option<Solution>,
-    /// The scene with the solved emission, and a camera if it had none.
+    /// The scene with the solved emission. It also has a chosen camera if the scene had none.
     pub lit: Option<Arc<LitScene>>,
     pub film: Option<Arc<Film>>,
     /// Seconds each stage took when it last ran.
@@ -191,10 +193,11 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Runs the stages `from..=to`. What a stage needs must have been made before, or given by the caller.
+    /// Runs the stages `from..=to`. The earlier results that they need must exist, from an earlier run or from the
+    /// caller.
     ///
-    /// `publish` is called with the results whenever a stage ends, and while the picture is being rendered: after a
-    /// cancel or an error they hold all that was finished.
+    /// `publish` is called with the results whenever a stage ends, and while the picture is being rendered. After a
+    /// cancellation or an error, the results hold all that was finished.
     pub fn run(&mut self, from: Stage, to: Stage, job: Job, mut publish: impl FnMut(&Results)) -> Result<()> {
         self.check(from, to)?;
         self.check_surface(from, to)?;
@@ -237,7 +240,7 @@ impl Transfer {
         .map_err(|e| self.with_likely_unit(stage, e).context(format_args!("stage {stage:?}")))
     }
 
-    /// An error of a stage that works on a scene of implausible size names that size too: it is the likely cause.
+    /// If a stage fails on a scene of implausible size, adds this size to the error, because it is the likely cause.
     fn with_likely_unit(&self, stage: Stage, error: Error) -> Error {
         let is_cause = stage >= Stage::Emission && error.kind != ErrorKind::Cancelled;
         match self.input.scene.as_ref().filter(|_| is_cause).and_then(|scene| scene.implausible_size()) {

@@ -1,4 +1,4 @@
-//! How the pattern of lights lies on the surface: how large, how turned, from where on, and where not.
+//! How the pattern of lights lies on the surface: its size, its rotation, its offset, and where it is left out.
 
 use super::distance::Distance;
 use crate::emission::{self, Measure};
@@ -11,38 +11,42 @@ use std::f64::consts::TAU;
 /// What sets the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// The distance of the photo's camera from the lit plane, [`super::Params::plane_distance`], or as its lamps tell it.
+    /// By the distance of the photo's camera from the lit plane: [`super::Params::plane_distance`], or an estimate from
+    /// the lamps.
     Distance,
-    /// The longer side of a lamp, the median of the photo's, is this long.
+    /// By the length of a lamp's longer side, the median over the photo's lamps.
     Lamp(f64),
-    /// The shorter period of their lattice is this long; without a lattice, the median distance from a lamp to the nearest other.
+    /// By the shorter period of the lamps' lattice; without a lattice, by the median distance from a lamp to its
+    /// nearest neighbour.
     Spacing(f64),
     /// The surface is as many lamps wide as the photo's plane.
     Across,
 }
 
-/// Share of the box around a lamp from which it is a rectangle: half way from a disc's. [convention]
+/// Minimum share of its bounding box that a rectangular lamp covers: halfway between a disc and a full box.
+/// [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
-/// Number of times that a surface may be as long as the plane in the photo where the texels cannot show the pattern of the
-/// plane: a hall of 600 m beside 6 m of a ceiling. [convention]
+/// Ratio of the surface's length to that of the plane in the photo, above which it is an error that the texels cannot
+/// show the pattern of the plane: a hall of 600 m beside 6 m of a ceiling. [convention]
 const MAX_REPEATS: f64 = 100.0;
 
-/// Number of texels along the plane in the photo from which its pattern shows. [convention]: two lamps with a gap each.
+/// Minimum number of texels along the plane in the photo for its pattern to show: two lamps with a gap each.
+/// [convention]
 const MIN_SHOWN_TEXELS: f64 = 4.0;
 
 /// How the pattern lies on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
     pub scale: Scale,
-    /// Metres per texel, in `[0, 1e6]`; 0: as fine as the unwarped photo, where `max_texels` allow it.
+    /// Metres per texel, in `[0, 1e6]`; 0: the size of an unwarped pixel, or the least size that `max_texels` allows.
     pub texel_size: f64,
     /// Turn of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
     pub rotation: f64,
     /// Shift of the pattern along its own axes in metres, each in `[-1e6, 1e6]`.
     pub offset: DVec2,
-    /// Distance in metres that lamps keep from the surface's edge and from the zones of the input, in `[-1, 1e6]`; those that
-    /// do not are left out. Below 0 the surface's edge cuts lamps.
+    /// Minimum distance in metres of lamps from the surface's edge and from the zones of the input, in `[-1, 1e6]`;
+    /// lamps that are nearer are left out. Below 0 the surface's edge cuts lamps.
     pub margin: f64,
 }
 
@@ -58,7 +62,7 @@ pub(super) struct Sizing {
     pub pixel: f64,
     /// The distance of the photo's camera from its plane at which the pattern has that size.
     pub distance: Distance,
-    /// The exemplar, where it was measured for that.
+    /// The measurements of the exemplar, if the size depends on them.
     pub measured: Option<Measure>,
 }
 
@@ -86,8 +90,8 @@ impl Pattern {
         Ok(())
     }
 
-    /// The size of an unwarped pixel, which is `pixel` where the photo's camera is 1 from its plane. `plane_distance` is its
-    /// distance in metres; 0: as the lamps tell it.
+    /// The size of an unwarped pixel on the surface. `pixel` is the size of an unwarped pixel if the photo's camera is
+    /// at distance 1 from its plane. `plane_distance` is the actual distance in metres; 0: estimated from the lamps.
     pub(super) fn sizing(
         &self,
         (pixel, plane_distance): (f64, f64),
@@ -108,7 +112,7 @@ impl Pattern {
         };
         let distance = match self.scale {
             Scale::Distance => {
-                // Discs come in every size.
+                // Only rectangles are used, because discs come in every size.
                 let is_rectangle = measured.lamp_fill > MIN_FILL;
                 Distance::of_lamps(measured.lamp_sides.map(|side| if is_rectangle { side * pixel } else { 0.0 }))
             }
@@ -137,8 +141,8 @@ impl Pattern {
             )));
         }
         let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
-        // The synthesis has limits, whose message would not tell the user what is wrong, and takes minutes for a pattern that
-        // no texel can show.
+        // Refuse here what the synthesis would refuse with a message that does not tell the user what is wrong. Also
+        // refuse a pattern that no texel can show, which would take minutes.
         let (surface_length, shown) = (size.max_element(), pixels as f64 * pixel);
         let is_lost = surface_length > MAX_REPEATS * shown && texel * MIN_SHOWN_TEXELS > shown;
         if is_lost || !emission::SCALES.contains(&(texel / pixel)) {

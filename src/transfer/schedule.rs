@@ -30,7 +30,7 @@ pub struct Fixture {
     /// ([`crate::photometry::temperature::Temperature`]); 0 for a lamp that is off.
     pub cct: f64,
     pub duv: f64,
-    /// Number of its kind, as of [`crate::emission::Luminaire`].
+    /// Index of the lamp's kind, as in [`crate::emission::Luminaire`].
     pub kind: u32,
     /// Corners of the outline in metres.
     pub outline: Vec<Vec3>,

@@ -1,6 +1,7 @@
-//! The luminaire schedule as a file: CSV, a row for each fixture, for spreadsheets; JSON, with the outlines, for programs.
+//! The luminaire schedule as a file: CSV for spreadsheets, with a row for each fixture; JSON for programs, with the
+//! outlines.
 //!
-//! Numbers have seven significant digits, more than `f32` knows.
+//! Numbers have seven significant digits, about the precision of `f32`.
 
 use super::Fixture;
 use glam::Vec3;
@@ -42,7 +43,7 @@ fn row(fixture: &Fixture) -> [f64; 19] {
     })
 }
 
-/// A number that every reader takes: no exponent where none is needed, never `NaN`.
+/// A number that every reader accepts: without an exponent, never `NaN`.
 fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(0.0);
     if rounded.is_finite() { rounded.to_string() } else { "0".into() }

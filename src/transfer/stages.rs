@@ -1,4 +1,4 @@
-//! Each stage of the transfer: gathers its input from the results before it, runs it, keeps its result.
+//! The stages of the transfer. Each takes its input from earlier results, runs, and stores its result.
 
 use super::check::need;
 use super::distance::Distance;
@@ -14,12 +14,14 @@ use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
-/// Factor by which a wall may move away to hold lamps beyond it: a layout by strokes is surer than one by lines alone,
-/// or by a camera that the lines do not determine. [bench photos:tune, photos:real]
+/// Maximum factors by which a wall may move away to hold lamps beyond it. The second one is for uncertain layouts: the
+/// plane was proposed because strokes were missing, or the lines do not determine the camera.
+/// [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 
-/// How often the view is corrected: the second time by the lamps that the first correction showed. [bench photos:tune]
+/// Maximum number of corrections of the view. The second correction uses the lamps that the first has shown.
+/// [bench photos:tune]
 const LAMP_ROUNDS: i32 = 2;
 
 impl Transfer {
@@ -33,11 +35,11 @@ impl Transfer {
         Ok(())
     }
 
-    /// Computes the features; of a room that is laid out already where it is given.
+    /// Computes the features. If `layout` is given, it is used instead of laying out the room anew.
     pub(super) fn compute_features(&mut self, layout: Option<features::Layout>, job: Job) -> Result<()> {
         let photo = need(&self.input.photo, "set the photo")?;
         let depth = self.input.depth.as_ref().map(|(image, kind)| features::DepthMap { image, kind: *kind });
-        // What the strokes tell of the plane, they tell of the room around it.
+        // Strokes on the plane are evidence about the whole room.
         let painted = self.input.strokes.plane_strokes();
         let strokes: Vec<_> =
             painted.map(|s| features::PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
@@ -75,8 +77,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// Corrects the view where the lamps contradict it, enlarges the room if lamps lie beyond their plane as it was laid
-    /// out, and finds plane and lights anew.
+    /// Corrects the view where the lamps contradict it, and enlarges the room if lamps lie beyond their plane as it was
+    /// laid out. After each of these changes, finds the plane and the lights anew.
     pub(super) fn look_again(&mut self, job: Job) -> Result<()> {
         for round in 0..LAMP_ROUNDS {
             let part = job.part(0.3 * f64::from(round), 0.3 * f64::from(round + 1));
@@ -87,7 +89,7 @@ impl Transfer {
         self.enlarge_room(job.part(0.6, 1.0))
     }
 
-    /// Takes the view in which the lamps are alike, where lines do not determine it; says whether it did.
+    /// If lines do not determine the view, takes the view in which the lamps are alike; returns whether it did so.
     fn correct_view(&mut self, job: Job) -> Result<bool> {
         let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
             return Ok(false);
@@ -155,7 +157,7 @@ impl Transfer {
             }
         };
 
-        // Only where there is surface, and room for lamps.
+        // Remove lamps where there is no surface, or no room for lamps.
         let size = UVec2::new(emission.texture.width as u32, emission.texture.height as u32);
         if let Some(ground) =
             ground::of(scene, (&surface, &found), pattern.margin, &self.input.zones, size, job.part(0.9, 0.93))?
@@ -163,7 +165,7 @@ impl Transfer {
             emission.restrict(&ground, job.part(0.93, 0.95))?;
         }
 
-        // Onto the surface, as bright as the photo shows the lamps.
+        // Place the texture on the surface, as bright as the photo shows the lamps.
         let mut lit = (**scene).clone();
         let strength = Vec3::splat(self.params.white_luminance);
         let texel_size = f64::from(surface.size.x) / emission.texture.width as f64;
@@ -174,13 +176,13 @@ impl Transfer {
         Ok(())
     }
 
-    /// As many texels as the surface needs, continued from the unwarped lights.
+    /// Synthesises the texture from the unwarped lights, with as many texels as the surface needs.
     fn texture_from_photo(&self, surface: &Surface, job: Job) -> Result<(Emission, Distance)> {
         let photo = need(&self.input.photo, "set the photo")?;
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
 
-        // Warp the mask of the lights as the photo was.
+        // Warp the mask of the lights like the photo.
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
         let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
@@ -242,7 +244,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// Whence a lit scene is rendered: the input's camera, the scene's first, or one chosen.
+    /// The camera from which a lit scene is rendered: the input's camera, else the scene's first camera, else a chosen
+    /// one.
     pub(crate) fn viewpoint(&self, world: &World, lit: &LitScene) -> Camera {
         let own = self.input.camera.as_ref().or(lit.scene.cameras.first());
         own.cloned().unwrap_or_else(|| viewpoint::choose(world, &lit.surface))
@@ -259,7 +262,7 @@ impl Transfer {
             results.film = Some(Arc::new(film.clone()));
             publish(&results);
         });
-        // A cancelled render keeps what it has.
+        // Keep the unfinished picture if the rendering is cancelled.
         self.results.film = results.film;
         self.results.film = Some(Arc::new(film?));
         Ok(())
@@ -267,7 +270,7 @@ impl Transfer {
 }
 
 impl Results {
-    /// Goes back to what was known before the lamps were found.
+    /// Restores the view and the room to their state before lamps were found.
     pub(super) fn forget_lamps(&mut self) {
         self.beyond.clear();
         if let Some(view) = self.view_by_lines.take() {
@@ -277,14 +280,14 @@ impl Results {
 }
 
 impl LitScene {
-    /// The same with another strength of the emission, in cd/m² per channel.
+    /// The same scene with another strength of the emission, in cd/m² per channel.
     pub fn with_strength(&self, strength: Vec3) -> Self {
         let mut scene = (*self.scene).clone();
         scene.materials[self.placed.material].emission = strength;
         Self { scene: Arc::new(scene), ..self.clone() }
     }
 
-    /// The same lamps in white light of the same luminance: what the colour of the solution is compared with.
+    /// The same lamps in white light of the same luminance, with which the colour of the solution is compared.
     pub fn in_white(&self) -> Self {
         let mut scene = (*self.scene).clone();
         let material = &mut scene.materials[self.placed.material];

@@ -1,4 +1,4 @@
-//! A camera for scenes that come without one: in the corner of the room under the lit surface from where most is seen.
+//! Chooses a camera for scenes without one: in that corner of the room under the lit surface from which most is seen.
 
 use crate::render::World;
 use crate::scene::surface::Surface;
@@ -7,14 +7,14 @@ use glam::{Vec2, Vec3};
 
 /// Vertical angle of view in radians.
 const FOV_Y: f32 = 0.9;
-/// How far into the room from a corner, as shares of the surface's sides.
+/// Distances from a corner that are tried, as shares of the surface's sides.
 const INSETS: [f32; 2] = [0.08, 0.2];
-/// Where between the surface and the far end of the scene.
+/// Distances from the surface that are tried, as shares of the distance to the far end of the scene.
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
-/// Rays that judge a view: across and down.
+/// Number of rays by which a view is judged: across and down.
 const RAYS: [usize; 2] = [12, 8];
 
-/// The candidate with the longest mean line of sight, each cut at the size of the surface.
+/// The candidate with the longest mean line of sight; each line of sight counts up to the size of the surface.
 pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
     let depth = depth_below(world.scene(), surface);
     let mut best = (f32::NEG_INFINITY, None);

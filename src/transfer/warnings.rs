@@ -1,11 +1,12 @@
-//! All reasons to doubt a transfer: the lists of its stages one after the other, each with its stage.
+//! All reasons to doubt a transfer: the warnings of its stages in order, each with its stage.
 
 use super::{Results, Stage};
 use crate::segment::{self, StrokeSet};
 use crate::warning::Warning;
 
 impl Results {
-    /// Reasons to doubt the results that there are, in the order of the stages. `strokes` are those that made the masks.
+    /// Reasons to doubt the results that exist, in the order of the stages. `strokes` are the strokes that made the
+    /// masks.
     pub fn warnings(&self, strokes: &StrokeSet) -> Vec<(Stage, Warning)> {
         let mut all = Vec::new();
         let mut add = |stage, list: Vec<Warning>| all.extend(list.into_iter().map(|warning| (stage, warning)));

@@ -167,7 +167,7 @@ class VertexAttribute(IntEnum):
 
 
 class CandidateKind(IntEnum):
-    """What a candidate is."""
+    """The kind of a candidate."""
 
     OBJECT = 0
     """All meshes of one name."""
@@ -181,8 +181,9 @@ class RenderImage(IntEnum):
     BEAUTY = 0
     """Mean radiance of each pixel, linear RGB in cd/m²."""
     VARIANCE = 1
-    """Variance of that mean; 3 channels. Groups of eight pixels share the results of their paths, so their
-    errors are correlated: the variance of a sum over pixels is up to eight times the sum of their variances."""
+    """Variance of the mean radiance of each pixel; 3 channels. Groups of eight pixels share the results of
+    their paths, so their errors are correlated: the variance of a sum over pixels is up to eight times the sum
+    of their variances."""
     PATHS = 2
     """Number of paths of each pixel; 1 channel."""
     INTERVAL = 3
@@ -252,9 +253,10 @@ class FocalSource(IntEnum):
     ASSUMED = 2
     """Assumed: 0.85 times the width of the photo."""
     FROM_METADATA = 3
-    """Mainly from what the photo's file says; see luxfer_image_get_metadata."""
+    """Mainly from the metadata of the photo's file; see luxfer_image_get_metadata."""
     FROM_LAMPS = 4
-    """From lamps that are alike, as their plane shows them (lighting transfer only)."""
+    """Estimated so that lamps of one kind look alike when their plane is seen straight on (lighting transfer
+    only)."""
 
 
 class DepthKind(IntEnum):
@@ -267,7 +269,7 @@ class DepthKind(IntEnum):
 
 
 class Normalisation(IntEnum):
-    """Normalisation of the photo's colours for a network, which its file does not state."""
+    """How the photo's colours are normalised for a network, whose file does not state it."""
 
     BY_SIZE = 0
     """Chosen by the size of the network's input: Normalisation.IMAGENET for 256 x 256, else
@@ -284,7 +286,7 @@ class FeaturesImage(IntEnum):
     """An image of the features."""
 
     CHANNELS = 0
-    """The ten channels; luxfer_image_read reads some of them."""
+    """The ten channels; luxfer_image_read reads up to four of them at a time."""
     DEPTH_CONFIDENCE = 1
     """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
     NETWORK_DEPTH = 2
@@ -333,23 +335,23 @@ class SegmentImage(IntEnum):
 
 
 class EmissionLaw(IntEnum):
-    """How the lights of an exemplar go on."""
+    """The law by which a texture continues the lights of its exemplar."""
 
     BEST = 0
-    """The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly
-    better."""
+    """The law that predicts the lamps of the photo best: the law of EmissionLaw.CORRELATION, unless another law
+    is clearly better."""
     CORRELATION = 1
-    """The law that the correlation of the lights shows, by min_regularity."""
+    """The law that follows from the autocorrelation of the lights and from min_regularity."""
     LATTICE = 2
-    """A lattice of two periods."""
+    """The lamps form a lattice with two periods."""
     ROW = 3
-    """A row of one period; the extent of the exemplar serves as the other."""
+    """The lamps form a row with one period; the extent of the exemplar serves as the other period."""
     WHOLE = 4
     """The exemplar repeats as a whole."""
     FREE = 5
-    """Patches go anywhere."""
+    """The lights have no period: patches of the exemplar may lie anywhere."""
     COPY = 6
-    """Of results only: the texture is a part of the exemplar, or was given."""
+    """In results only: the texture is a part of the exemplar, or the caller gave it."""
 
 
 class EmissionImage(IntEnum):
@@ -363,7 +365,7 @@ class EmissionImage(IntEnum):
     """Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3
     channels."""
     METADATA = 3
-    """Metadata of the result, with these channels."""
+    """Metadata of the result, with the channels of EmissionImage.EXEMPLAR_METADATA."""
 
 
 class Constraint(IntEnum):
@@ -416,7 +418,7 @@ class PatternScale(IntEnum):
 
     DISTANCE = 0
     """The distance of the photo's camera from the plane with the lights: plane_distance of TransferParams, or
-    the estimate from the lamps where that is 0."""
+    if that is 0, the estimate from the size of the lamps."""
     LAMP = 1
     """The length of a lamp: the median of the longer sides of the photo's lamps."""
     SPACING = 2
@@ -503,8 +505,8 @@ class WarningCode(IntEnum):
     """The code of a warning."""
 
     FOCAL_ASSUMED = 1
-    """The vanishing points do not determine the focal length, which was assumed; the severity is its relative
-    standard deviation."""
+    """The vanishing points do not determine the focal length, which was assumed; the severity is the relative
+    standard deviation of the focal length."""
     VIEW_UNCERTAIN = 2
     """The directions of the room axes are uncertain; the severity is the largest standard deviation in
     radians."""
@@ -514,31 +516,34 @@ class WarningCode(IntEnum):
     """The walls do not meet at right angles, or the pixels are not square; the severity is the largest
     deviation in radians."""
     LAYOUT_UNCERTAIN = 5
-    """The room was laid out from its lines with little trust, and there is no depth map; the severity is that
-    trust, below the limit."""
+    """There is no depth map, and the room that was fitted to the lines of the photo is uncertain; the severity
+    is the confidence of the fit, below the limit."""
     UNSEEN = 6
-    """Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part;
-    the severity is their share of the mask and these regions. The place is the pixel where one more stroke
-    helps most."""
+    """Much of a mask is unlike every stroke, or the mask leaves out regions that partly resemble the painted
+    lamps; the severity is the share of these pixels in the mask and these regions. The place is the pixel where
+    one more stroke helps most."""
     CONTRADICTORY_STROKES = 7
-    """Strokes of both classes cover the same pixels; the severity is their number per sample."""
+    """Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the
+    number of samples drawn from the strokes."""
     OFF_IMAGE_STROKES = 8
-    """Strokes lie outside the photo; the severity is the number of these pixels per sample."""
+    """Pixels of strokes lie outside the photo; the severity is the number of these pixels, divided by the
+    number of samples drawn from the strokes."""
     UNCERTAIN_MASK = 9
     """A mask is uncertain; the severity is the expected share of wrong pixels."""
     EMPTY_MASK = 10
     """A mask has no pixel; the severity is 0, below the limit."""
     MISSED_STROKES = 11
-    """A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one
-    of them."""
+    """A mask contradicts the strokes that it was made from; the severity is the share of the painted pixels
+    that it contradicts. The place is one of these pixels."""
     ALMOST_ALL_LIT = 12
-    """Lights cover much of their plane; the severity is its share."""
+    """Lights cover much of their plane; the severity is the share of the plane that they cover."""
     MAGNIFIED = 13
-    """Much of the unwarped plane is magnified; the severity is its share. The place is the one that is
-    magnified most."""
+    """Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane
+    that is strongly magnified. The place is the point with the largest magnification."""
     PLANE_NEAR_HORIZON = 14
-    """The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane,
-    below the limit. The place is the flattest."""
+    """The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the
+    angle between the plane and the viewing ray, below the limit. The place is the point with the smallest
+    angle."""
     PATTERN_UNCERTAIN = 15
     """The texture differs from the photo in its statistics; the severity is the error of EmissionReport."""
     FEW_LAMPS = 16
@@ -548,7 +553,8 @@ class WarningCode(IntEnum):
     UNREACHABLE = 18
     """Colour channels do not meet their target; the severity is their number."""
     TARGET_CLIPPED = 19
-    """The photo clips the target, which is a lower bound; the severity is the number of these channels."""
+    """The photo clips channels of the target, which are then lower bounds; the severity is the number of these
+    channels."""
     IMPLAUSIBLE_SIZE = 20
     """A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in
     metres, below the limit if the scene is too small. The message names the likely unit."""
@@ -563,8 +569,8 @@ class WarningCode(IntEnum):
     """A texture without light would differ less from the photo than this one; the severity is the error of
     EmissionReport. It takes the place of WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
-    """A mask is a proposal, because strokes are missing: strokes of one class on the plane, or positive strokes
-    on lights; the severity is the share of the mask that is expected to be wrong."""
+    """A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are
+    missing; the severity is the share of the mask that is expected to be wrong."""
     FAR_FROM_ORIGIN = 25
     """A scene lies far from the origin. If its positions are relative to an origin of its own
     (luxfer_scene_get_origin), the severity is the distance of that origin in metres, above a limit of 0; if
@@ -598,8 +604,8 @@ class Group(IntEnum):
     BY_Z = 4
     """Lamps whose centres agree in their third coordinate form a group: z of meshes."""
     BY_TYPE = 5
-    """Lamps of one type form a group: lamps of about equal area; of punctual lights all points, all spots, and
-    all luminaires of one distribution."""
+    """Lamps of one type form a group: lamps of about equal area; for punctual lights, all points, all spots,
+    and all luminaires with one distribution."""
 
 
 class Aim(IntEnum):
@@ -857,12 +863,11 @@ class ContextParams(TypedDict, total=False):
     num_threads: int
     """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. Jobs
     share these threads. Calls that return when their work is done never wait for a job: they run on the calling
-    thread, or on as many further threads, which the context starts for the first of them."""
+    thread, or on another set of as many threads, which the context starts when such a call first needs it."""
     memory_budget_mib: int
     """Limit in MiB for the pixels, meshes and textures of all objects that the caller creates in this context;
-    a call that would exceed it returns Status.OUT_OF_MEMORY. 0, the default: no limit. What the decoder of a
-    picture file takes counts while the file is read. The working memory of jobs and their results do not
-    count."""
+    a call that would exceed it returns Status.OUT_OF_MEMORY. 0, the default: no limit. While a picture file is
+    read, the memory of its decoder counts too. The working memory of jobs and their results do not count."""
 
 
 class ImageView(TypedDict, total=False):
@@ -914,10 +919,11 @@ class PhotoMetadata:
     based speed of ISO 12232. 0 = unknown. Valid only for the image that the camera wrote: editors that change
     the brightness keep these tags."""
     white_luminance_low: float
-    """Lower bound of white_luminance: 0.71 times it, if the camera states its standard output sensitivity
-    instead."""
+    """Lower bound of white_luminance: 0.71 times white_luminance, which holds if the ISO speed is a standard
+    output sensitivity instead."""
     white_luminance_high: float
-    """Upper bound of white_luminance: one stop above it, if the camera states a recommended exposure index."""
+    """Upper bound of white_luminance: one stop above white_luminance, which is assumed for an ISO speed that is
+    a recommended exposure index."""
     colour: FileColour
     """How the colours of the file were understood."""
 
@@ -967,16 +973,16 @@ class SceneLoadParams(TypedDict, total=False):
     """Settings of reading a scene's file."""
 
     allow_external_files: int
-    """1: the file may name files outside its folder, by .. or an absolute path, and they are read; 0, the
-    default: this gives Status.UNSUPPORTED. Set it only for files that you trust. Only files are read, never
-    devices or addresses on a network."""
+    """1: files outside the folder of the file, which it names by .. or an absolute path, are read; 0, the
+    default: such a name gives Status.UNSUPPORTED. Set it only for files that you trust. Only files are read,
+    never devices or addresses on a network."""
     unit: float
     """Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF has it. It scales positions,
     and leaves intensities and luminances as they are. 0.001: the file is in millimetres."""
     keep_origin: int
-    """0, the default: positions of a scene that lies far from the origin of its file, as on a national grid,
-    are relative to an origin of the scene's own, which luxfer_scene_get_origin gives; 1: they keep the origin
-    of the file, and are rounded to floats there."""
+    """0, the default: if a scene lies far from the origin of its file, as on a national grid, its positions are
+    relative to an origin of its own, which luxfer_scene_get_origin gives; 1: positions stay relative to the
+    origin of the file, and are rounded to floats there."""
 
 
 class MaterialParams(TypedDict, total=False):
@@ -1016,7 +1022,7 @@ class TextureUse:
     texture: int
     """Index of the texture; LUXFER_NONE if the material has no such texture: the fields below are then 0."""
     uv_set: int
-    """Set of the mesh's texture coordinates that it uses, 0 or 1."""
+    """The mesh's set of texture coordinates that the material uses for this texture, 0 or 1."""
     wrap_u: Wrap
     """Wrap along u."""
     wrap_v: Wrap
@@ -1168,9 +1174,9 @@ class Requirements:
     textures: int
     """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
-    """Number of bounces that matter: light that is scattered more often is at most the share error, given in
-    the call, of all light that surfaces scatter. 0 if the albedos give no bound. It informs: no render ends
-    paths there."""
+    """Number of bounces that matter: light that is scattered more often is at most a share of all light that
+    surfaces scatter; the argument error gives this share. 0 if the albedos give no bound. For information only:
+    no rendering ends paths at this number."""
     brightest_material: int
     """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
@@ -1207,25 +1213,26 @@ class Candidate:
     index: int
     """Index of the object's first mesh, or of the material."""
     triangles: int
-    """Number of triangles with an area."""
+    """Number of triangles whose area is not 0."""
     area: float
     """Area in m²."""
     level_area: float
     """Area in m² of the triangles that are inclined by less than 15 degrees, on either side."""
     height: float
-    """Mean height in metres of the triangles of level_area; of all triangles if level_area is 0."""
+    """Mean height in metres of the triangles that level_area counts; of all triangles if level_area is 0."""
     low: float
     """Lowest point, in metres."""
     high: float
     """Highest point, in metres."""
     normal: tuple[float, float, float]
-    """Mean direction of the front sides by area, a unit vector; 0 if they cancel, as for a box."""
+    """Mean normal of the front sides, weighted by area, as a unit vector; 0 if the normals cancel, as for a
+    box."""
     score: float
-    """Resemblance to a ceiling, in [0, 1]: the level share of the area, times the share of the scene's plan
-    that it covers, times the square of its height as a share of the scene's; a name such as "ceiling" counts
-    too."""
+    """Resemblance to a ceiling, in [0, 1]: the product of level_area / area, of level_area as a share of the
+    floor area of the scene's bounding box, and of the square of the height as a share of the scene's height. A
+    name such as "ceiling" raises the score."""
     name: str
-    """Its name, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates."""
+    """Name of the candidate, in zero-terminated UTF-8. The strings live as long as the luxfer_candidates."""
     reason: str
     """The reason for the score, in English and with its figures."""
 
@@ -1238,8 +1245,7 @@ class RenderParams(TypedDict, total=False):
     height: int
     """Height of the image in pixels, in [1, 65536]; default 720."""
     samples: int
-    """Paths per pixel, in [1, 1048576]; default 64. With a target error it is the largest mean over the
-    image."""
+    """Paths per pixel, in [1, 1048576]; default 64. With a target error: the largest mean over the image."""
     target_error: float
     """Stop when the field error of the report falls to this value, >= 0; paths go to the pixels where they
     reduce the error most. Default 0: no target."""
@@ -1258,8 +1264,8 @@ class RenderParams(TypedDict, total=False):
     Default 0: no preview, as for final images. It does not change the other images."""
     relative_error: float
     """Stop when the field relative_error of the report falls to this value, >= 0; paths go to the pixels where
-    they reduce it most. It weighs noise as the eye sees it, in dark areas as in bright ones. Default 0: no
-    target. With several targets, rendering stops when all are reached."""
+    they reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright ones. Default
+    0: no target. With several targets, rendering stops when all are reached."""
 
 
 @dataclass(frozen=True)
@@ -1306,8 +1312,8 @@ class RectifyParams(TypedDict, total=False):
     """Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
     resolution of the photo does not support this size."""
     max_magnification: float
-    """Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are
-    cut off."""
+    """Largest magnification of the photo, > 0; default 16. Parts of the plane that are so far away that they
+    would be magnified more are cut off."""
     seed: int
     """Seed of the search; default 1."""
 
@@ -1322,7 +1328,7 @@ class RectifyReport:
     """Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate
     is 0 at infinity."""
     vanishing_errors: tuple[float, float, float]
-    """Standard deviations of their directions in camera space, in radians."""
+    """Standard deviations of the directions of the vanishing points in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
     """Number of segments that agree with each vanishing point; 0: derived from the other two."""
     focal_source: FocalSource
@@ -1403,8 +1409,8 @@ class SegmentParams(TypedDict, total=False):
     seed: int
     """Seed of the samples; default 1."""
     refine_tolerance: float
-    """Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
-    neighbours as one surface, in [1e-3, 1e6]; default 8."""
+    """Difference of the first three channels, in their units (CIELAB units for colour), below which the
+    refinement treats neighbours as one surface, in [1e-3, 1e6]; default 8."""
     subject: Subject | str | int
     """The subject of the positive strokes: Subject; default Subject.AUTO. For lamps the settings above have no
     effect."""
@@ -1468,14 +1474,16 @@ class EmissionParams(TypedDict, total=False):
     """Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536];
     default 192."""
     law: EmissionLaw | str | int
-    """How the lights go on: EmissionLaw other than EmissionLaw.COPY; default EmissionLaw.BEST."""
+    """The law by which the texture continues the lights: EmissionLaw other than EmissionLaw.COPY; default
+    EmissionLaw.BEST."""
     clean_lamps: int
-    """With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and
-    lie at the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the
-    outline of the mask."""
+    """1, the default: all lamps of a kind get one size and an outline that is exact at any resolution, and lie
+    exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each lamp is shown with its
+    outline in the mask."""
     max_magnification: float
-    """Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in
-    [1, 1e6]: what is magnified more counts as not shown. Default 0: all of it is used."""
+    """Largest magnification at which parts of the exemplar are used, in [1, 1e6]: the factor in length by which
+    the photo is magnified at a pixel, relative to the pixel of the exemplar that is magnified least. Parts
+    beyond it count as not shown. Default 0: all parts are used."""
 
 
 @dataclass(frozen=True)
@@ -1493,22 +1501,24 @@ class EmissionReport:
     lattice."""
     exemplar_lamps: int
     """Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then
-    cuts a large part of the lamps. Without a whole lamp the texture shows the cut ones."""
+    cuts a large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border
+    cuts."""
     sampling_error: float
     """Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined
     for error, between the whole texture and parts of it that are as large as the exemplar. If error is at most
     twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar,
     for blended exemplars, and for a plan."""
     law: EmissionLaw
-    """How the lights go on: EmissionLaw."""
+    """The law by which the texture continues the lights: EmissionLaw."""
     runner_up: EmissionLaw
-    """The law that would have been next best: EmissionLaw."""
+    """The best of the other laws: EmissionLaw."""
     law_score: float
-    """How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo
-    pixels; NaN where too few of the lights are whole lamps to tell."""
+    """How well the law predicts each lamp of the photo from the other lamps, in [0, 1]; lamps weigh in
+    proportion to their pixels in the photo. NaN if laws were not compared, for example because too few of the
+    lights are whole lamps."""
     margin: float
-    """By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
-    slightly better."""
+    """law_score minus the score of runner_up. Negative if the law was kept although another law scores slightly
+    better."""
 
 
 @dataclass(frozen=True)
@@ -1526,7 +1536,7 @@ class Luminaire:
     area: float
     """Area in texels; texels at the edge count with the share that the lamp covers."""
     flux_share: float
-    """Share of the luminous flux of the whole texture, in [0, 1]."""
+    """Share of the luminous flux of all lamps of the texture, in [0, 1]."""
     colour: tuple[float, float, float]
     """Mean linear colour, relative to the photo's white."""
     kind: int
@@ -1593,8 +1603,8 @@ class PatternParams(TypedDict, total=False):
     only: lamps without a lattice have no fixed places and are not shifted."""
     margin: float
     """Minimum distance in metres of lamps from the edge of the surface and from the zones of
-    luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. A value below 0, such as the
-    default -1, keeps the lamps at the edge of the surface, which cuts them."""
+    luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as
+    the default -1, lamps at the edge of the surface stay, cut by the edge."""
 
 
 class TransferParams(TypedDict, total=False):
@@ -1608,8 +1618,8 @@ class TransferParams(TypedDict, total=False):
     ceiling tiles; plane_distance and plane_distance_error of TransferReport state it."""
     white_luminance: float
     """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100, as matt white paper has in 314 lux.
-    The strength of the lamps is proportional to it. One photo does not show it: see proposed_white of
-    TransferReport."""
+    The strength of the lamps is proportional to it. A photo alone does not determine this luminance: see
+    proposed_white of TransferReport."""
     target: Target | str | int
     """Target; default Target.SURFACE."""
     rectify: RectifyParams
@@ -1651,7 +1661,8 @@ class TransferReport:
     unwarp_error: float
     """Largest expected error of a corner of the unwarped image, in unwarped pixels."""
     emission_error: float
-    """Relative difference between texture and photo in the share of the lit area."""
+    """As the field error of EmissionReport: largest relative difference between texture and photo in three
+    statistics of their lamps."""
     relight_error: float
     """Largest relative half-width of the solution's 95 % confidence intervals."""
     render_error: float
@@ -1662,18 +1673,21 @@ class TransferReport:
     target: tuple[float, float, float]
     """Mean colour that the surface should have, relative to the photo's white."""
     plane_distance: float
-    """Distance of the photo's camera from the plane in metres that the size of the pattern amounts to; NaN
-    before the stage EMISSION has ended, and for a given texture."""
+    """Distance in metres of the photo's camera from the plane that corresponds to the size of the pattern on
+    the surface; NaN before the stage EMISSION has ended, and if the caller gave the texture."""
     plane_distance_error: float
-    """Relative standard deviation of plane_distance where it is estimated from the size of the lamps: about
-    0.25 for lamps of a usual size, 0.6 where they do not tell. 0 where the settings determine the distance."""
+    """Relative standard deviation of plane_distance if it is estimated from the size of the lamps: about 0.25
+    for lamps of a usual size, 0.6 if the lamps do not determine it. 0 if the settings determine the
+    distance."""
     proposed_white: float
-    """Value proposed for TransferParams.white_luminance in cd/m²: by the exposure that the photo's file states,
-    as PhotoMetadata has it; else 159, which white paper has in the 500 lux of an office."""
+    """Value proposed for TransferParams.white_luminance in cd/m²: the white_luminance of PhotoMetadata if the
+    photo's file states the exposure, else 159, the luminance of white paper in the 500 lux of an office."""
     proposed_white_low: float
-    """Lower bound of proposed_white: by the exposure; else 32, for the 100 lux of a corridor."""
+    """Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for
+    the 100 lux of a corridor."""
     proposed_white_high: float
-    """Upper bound of proposed_white: by the exposure; else 318, for 1000 lux."""
+    """Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318,
+    for 1000 lux."""
 
 
 @dataclass(frozen=True)
@@ -1709,12 +1723,12 @@ class Warning:
     code: WarningCode
     """WarningCode."""
     stage: Stage
-    """The stage whose result is in doubt, Stage. Of a luxfer_segment it is LIGHTS with a mask to look within,
-    PLANE without; of a luxfer_scene it is SCENE."""
+    """The stage whose result is in doubt, Stage. For a luxfer_segment it is LIGHTS if luxfer_segment_set_region
+    gave a mask, else PLANE; for a luxfer_scene it is SCENE."""
     has_place: int
     """1 if the warning has a place in the photo, else 0."""
     severity: float
-    """The figure that raised it; each code has its own."""
+    """The figure that caused the warning; its meaning depends on the code."""
     limit: float
     """The limit that the figure has passed."""
     place: tuple[float, float]
@@ -1746,7 +1760,7 @@ class IlluminanceParams(TypedDict, total=False):
     columns: int
     """Points along the first edge or texture coordinate, in [1, 65536]; default 32."""
     rows: int
-    """Points along the second, in [1, 65536]; default 32."""
+    """Points along the second edge or texture coordinate, in [1, 65536]; default 32."""
     samples: int
     """Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024."""
     seed: int
@@ -1786,8 +1800,8 @@ class LampsParams(TypedDict, total=False):
     """Weight of equal powers against the goals, in [1e-9, 1e3]: small values meet the goals, large values keep
     the powers equal; default 1e-6."""
     tolerance: float
-    """A goal counts as met if the error is at most this share of the goal, in [1e-6, 1], or within its noise;
-    default 0.01."""
+    """A goal counts as met if its error is at most this share of the goal, in [1e-6, 1], or is within its
+    noise; default 0.01."""
     paths: int
     """Maximum number of paths for each goal, in [1024, 2^30]; default 2^20."""
     target_error: float
@@ -1820,7 +1834,7 @@ class Lamp:
     """One lamp."""
 
     group: int
-    """Index of its group."""
+    """Index of the group that the lamp belongs to."""
     centre: tuple[float, float, float]
     """Centre: texture coordinates and 0, or, without a texture, the position in metres."""
     scale: tuple[float, float, float]
@@ -1849,7 +1863,8 @@ class LampsGoal:
     achieved_lux: float
     """Illuminance with the powers found, in lux."""
     half_width_lux: float
-    """Half-width of the 95 % confidence interval of achieved_lux, in lux, if all channels err to one side."""
+    """Half-width of the 95 % confidence interval of achieved_lux, in lux, as if the errors of all channels had
+    one sign."""
     background_lux: float
     """Illuminance from all other light, in lux."""
 
@@ -1895,8 +1910,8 @@ class ImportanceReport:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]
-    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
-    the cells is about a third of it."""
+    """Change of response, noise included, if the cells of the map were twice as wide and high. The error due to
+    the size of the cells is about a third of this change."""
 
 
 class PlacementParams(TypedDict, total=False):
@@ -1943,8 +1958,8 @@ class Placement:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]
-    """Change of response if the cells of the map were twice as wide and high, noise included. The error due to
-    the cells is about a third of it."""
+    """Change of response, noise included, if the cells of the map were twice as wide and high. The error due to
+    the size of the cells is about a third of this change."""
 
 
 @dataclass(frozen=True)
@@ -1964,8 +1979,9 @@ class GlareReport:
     """Solid angle of all sources in steradians."""
     unseen_lights: int
     """Number of lights of the rendered scene that shine from points: the image does not show them, and ugr
-    leaves them out; rate them with luxfer_scene_get_glare. Known for images of luxfer_render_get_image and
-    luxfer_render_get_layer; 0 for others, whose scene has WarningCode.NOT_IN_PICTURE."""
+    leaves them out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image and
+    luxfer_render_get_layer; 0 for other images. The scene of such an image has WarningCode.NOT_IN_PICTURE if it
+    has luminaires."""
 
 
 @dataclass(frozen=True)
@@ -1996,9 +2012,10 @@ class ObserverGlare:
     solid_angle: float
     """Solid angle of the visible parts of all rated luminaires in view, in steradians."""
     sources: int
-    """Number of these luminaires."""
+    """Number of rated luminaires in view."""
     outside_range: int
-    """Number of these whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid."""
+    """Number of these luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is
+    valid."""
 
 
 class FalseColourParams(TypedDict, total=False):
@@ -2118,8 +2135,8 @@ class StylizeParams(TypedDict, total=False):
     """Sweeps in which a target patch may continue the match of its neighbour, for fewer seams, in [0, 100];
     default 2; the paper has 0."""
     seam: float
-    """Cost of a seam between neighbouring patches in those sweeps, as a share of the mean error, in [0, 100];
-    default 0.2."""
+    """Cost of a seam between neighbouring patches in the sweeps of settle, as a share of the mean error, in [0,
+    100]; default 0.2."""
     vote: StylizeVote | str | int
     """StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
@@ -2229,8 +2246,8 @@ class SheetReport:
     marks: int
     """Number of marks found, of 10; at least 6 are needed."""
     residual: float
-    """Root mean square distance between the marks and their positions by to_photo, in pixels of the photo. More
-    than one or two pixels mean that the paper is not flat or that the lens distorts."""
+    """Root mean square distance in pixels of the photo between the marks and the positions that to_photo gives
+    them. More than one or two pixels mean that the paper is not flat or that the lens distorts."""
     error: float
     """Expected alignment error in pixels of the picture."""
     to_photo: tuple[float, ...]
@@ -2260,13 +2277,12 @@ class PlanReport:
     relight_seconds: float
     """Seconds for relighting, including the preparation of the scene; 0 unless the plan is of a transfer."""
     relight_error: float
-    """Predicted field error of RelightReport, half the width of its interval; 0 unless the plan is of a
-    transfer."""
+    """Predicted value of RelightReport.error; 0 unless the plan is of a transfer."""
     render_seconds: float
     """Seconds for rendering; in a plan of a transfer including the preparation of the scene; 0 in a plan of a
     stylisation."""
     render_error: float
-    """Predicted field error of RenderReport; 0 in a plan of a stylisation."""
+    """Predicted value of RenderReport.error; 0 in a plan of a stylisation."""
 
 
 class RenderPart(TypedDict, total=False):

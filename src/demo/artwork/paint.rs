@@ -14,7 +14,7 @@ struct Brush {
     /// Half the brush width, and the length of a stroke, in units.
     radius: f32,
     length: f32,
-    /// Minimum local detail for its use.
+    /// Minimum local detail at which the brush is used.
     detail: f32,
 }
 

@@ -21,7 +21,7 @@ pub struct Appearance {
     pub shine: f32,
     /// Redness of the light from other objects.
     pub bleed: f32,
-    /// Whether it shows an object, as opposed to table or wall.
+    /// Whether the position shows an object, as opposed to table or wall.
     pub is_object: bool,
     /// Unit direction in the picture (y down) of strokes that follow the form.
     pub along: Vec2,

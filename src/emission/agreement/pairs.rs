@@ -3,10 +3,11 @@
 use super::statistics::nearest_distances;
 use glam::DVec2;
 
-/// Distances that are looked at, and the width of the kernel, in mean distances to the nearest other.
+/// Longest distance that is looked at, and the half width of the kernel, as multiples of the mean distance to the
+/// nearest point.
 const REACH: f64 = 2.5;
 const KERNEL: f64 = 0.15;
-/// Steps of distance.
+/// Number of steps into which the distances are divided.
 const STEPS: usize = 100;
 
 /// Points in a window that begins at 0.
@@ -15,11 +16,13 @@ pub struct Points<'a> {
     pub size: DVec2,
 }
 
-/// Share of the pairs of near points that one pattern has at other distances than another: 0 where both have the same
-/// share at each, 1 where they have no distance in common. `None` where one has no two points near each other.
+/// How far the distances between near points differ from one pattern to another: the share of one pattern's pairs that
+/// lie at other distances than the other's. 0 where both have the same share of pairs at each distance, 1 where they
+/// have no distance in common. `None` where either pattern has no two points near each other.
 ///
-/// Pairs are counted by what part of the window shows them (translation correction, Ohser 1983), and spread over
-/// distances by a kernel (Stoyan and Stoyan 1994), whose width the first pattern sets.
+/// A pair counts the more, the smaller the part of the window that can show a pair so far apart (translation
+/// correction, Ohser 1983). Pairs are spread over distances by a kernel (Stoyan and Stoyan 1994), whose width the first
+/// pattern sets.
 pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     let nearest = nearest_distances(of.at);
     let spacing = nearest.iter().sum::<f64>() / nearest.len() as f64;
@@ -32,7 +35,7 @@ pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     (all_a > 0.0 && all_b > 0.0).then_some(off / 2.0)
 }
 
-/// How many pairs there are at each step of distance, to a factor: `g(r) r`.
+/// The number of pairs at each step of distance, up to a constant factor: `g(r) r`.
 fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
     let (reach, width) = (REACH * spacing, KERNEL * spacing);
     let mut order: Vec<DVec2> = points.at.to_vec();

@@ -1,8 +1,9 @@
-//! How far the statistics of an exemplar may be from those of its ceiling, of which it shows a part with few lamps.
+//! Estimates how far the statistics of an exemplar may be from those of its whole ceiling, because it shows only a part
+//! with few lamps.
 //!
-//! The texture stands in for that ceiling (parametric bootstrap; Efron 1979): parts of it with the extent of the
-//! exemplar, its missing corners included, are measured as the exemplar was. What they differ from the whole no
-//! synthesis could know.
+//! The texture stands in for the ceiling (parametric bootstrap; Efron 1979). Parts of the texture with the extent of
+//! the exemplar, its missing corners included, are measured as the exemplar was. Their difference from the whole
+//! texture is an error that no synthesis could avoid.
 
 use super::statistics::{Pattern, Statistics};
 use crate::emission::exemplar::{Exemplar, components, roles};
@@ -12,11 +13,12 @@ use crate::image::{Image, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Parts that are measured.
+/// Number of parts that are measured.
 const PARTS: usize = 6;
 
-/// Root mean square over parts of the texture of their largest relative difference from `whole`, its own statistics;
-/// `None` where it has no room for several. A texel is `scale` unwarped pixels; `periods` are in those.
+/// Root mean square, over parts of the texture, of the largest relative difference between a part's statistics and
+/// `whole`, those of the texture; `None` where the texture has no room for several parts. A texel is `scale` unwarped
+/// pixels; `periods` are in unwarped pixels.
 pub fn error(
     exemplar: &Exemplar,
     (texture, mask): (&Image, &Image),
@@ -40,7 +42,7 @@ pub fn error(
     }))?;
     let periods = periods.map(|p| p.map(|p| p / scale));
     let parts = exec::map(PARTS, job, |k| -> Result<f64> {
-        // Spread evenly (Roberts 2018).
+        // Spread the parts evenly (Roberts 2018).
         let step = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
         let corner = (room * (step * (k as f64 + 0.5)).fract()).round();
         let at = |i: usize| (corner.y as usize + i / width) * mask.width + corner.x as usize + i % width;

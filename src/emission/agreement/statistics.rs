@@ -1,10 +1,10 @@
-//! What two light patterns have in common: the statistics by which a texture is held against its exemplar.
+//! Statistics of a light pattern, by which a texture is compared with its exemplar.
 //!
-//! A border cuts a pattern anywhere, so plain counts in a window differ by what happens to lie on its rim, and more so
-//! the fewer lamps there are. Every mean here is therefore weighed. Along an axis with a known period the weights are
-//! those of as many whole periods as the window holds, averaged over all their places in it: wherever they are cut,
-//! each part of the period weighs the same. Along others they are a Hann window, which fades to nothing at the border
-//! (Harris 1978).
+//! A border cuts a pattern anywhere, so plain counts in a window vary with the lamps that happen to lie on its rim, and
+//! vary more the fewer lamps there are. Every mean here is therefore weighted. Along an axis with a known period, the
+//! weights average over all positions of as many whole periods as the window holds: wherever the border cuts the
+//! pattern, each part of the period weighs the same. Along other axes, the weights are a Hann window, which fades to 0
+//! at the border (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
 use crate::image::colour::luminance;
@@ -16,13 +16,13 @@ use std::f64::consts::{PI, TAU};
 pub struct Statistics {
     /// Share of the pattern that is lit.
     pub lit: f64,
-    /// Mean luminance of what is lit.
+    /// Mean luminance of the lit part.
     pub luminance: f64,
     /// Mean area of a whole lamp; 0 if there is none.
     pub area: f64,
-    /// Mean distance from a whole lamp to the nearest other; 0 where that is known of none.
+    /// Mean distance from a whole lamp to the nearest other whole lamp; 0 where it is known for no lamp.
     pub spacing: f64,
-    /// Lamps that end inside.
+    /// Number of lamps that end inside the pattern.
     pub whole: usize,
 }
 
@@ -30,7 +30,7 @@ pub struct Statistics {
 pub struct Pattern<'a, C> {
     pub width: usize,
     pub height: usize,
-    /// Its connected lights, and which of them end inside.
+    /// The connected lights of the pattern, and which of them count as whole lamps.
     pub components: &'a Components,
     pub whole: &'a [bool],
     /// Period along x and y, if there is one; infinite where the pattern as a whole is the period.
@@ -44,7 +44,7 @@ impl Statistics {
         let Pattern { width, height, components, whole, periods, colour } = pattern;
         let columns: Vec<f64> = (0..*width).map(|x| weight(x as f64 + 0.5, *width, periods[0])).collect();
 
-        // Of pixels.
+        // Sums over pixels.
         let (mut all, mut lit, mut light) = (0.0, 0.0, 0.0);
         for y in 0..*height {
             let row = weight(y as f64 + 0.5, *height, periods[1]);
@@ -58,7 +58,7 @@ impl Statistics {
             }
         }
 
-        // Of lamps.
+        // Means over lamps.
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
         let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
@@ -67,7 +67,7 @@ impl Statistics {
             let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
             ratio(counted().map(|i| place(lamps[i].0) * value(i)).sum(), weights)
         };
-        // Where something cut off is nearer than the nearest whole lamp, the distance to the nearest is not known.
+        // The distance to the nearest lamp is not known where a cut lamp is nearer than the nearest whole lamp.
         let cut = components.list.iter().zip(*whole).filter(|(_, whole)| !**whole).map(|(c, _)| c.centre);
         let mut centres: Vec<DVec2> = lamps.iter().map(|l| l.0).collect();
         let nearest = nearest_distances(&centres);
@@ -83,8 +83,8 @@ impl Statistics {
         }
     }
 
-    /// Of a mixture of patterns with the given weights. How far apart lamps of different patterns are it does not
-    /// tell: where there are several, the spacing is 0.
+    /// The statistics of a mixture of patterns with the given weights. The distance between lamps of different patterns
+    /// is unknown: with several patterns the spacing is 0.
     pub fn mixed(parts: impl Iterator<Item = (Self, f64)>) -> Self {
         let parts: Vec<(Self, f64)> = parts.collect();
         if let [(only, _)] = parts[..] {
@@ -95,14 +95,14 @@ impl Statistics {
         Self {
             lit: ratio(lit, sum(&|_| 1.0)),
             luminance: ratio(sum(&|p| p.lit * p.luminance), lit),
-            // Lamps are as many as their light over their area.
+            // The number of lamps is their lit area over the area of one lamp.
             area: ratio(sum(&|p| if p.area > 0.0 { p.lit } else { 0.0 }), sum(&|p| ratio(p.lit, p.area))),
             spacing: 0.0,
             whole: parts.iter().map(|(part, _)| part.whole).sum(),
         }
     }
 
-    /// The same where a pixel is this many times as long.
+    /// The same statistics with all lengths multiplied by `scale`.
     pub fn scaled(self, scale: f64) -> Self {
         Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
     }
@@ -136,11 +136,11 @@ pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
     (cells.iter().map(off).sum::<f64>() / cells.len().max(1) as f64).sqrt()
 }
 
-/// What a place along a side weighs.
+/// The weight of a position along a side.
 fn weight(at: f64, side: usize, period: Option<f64>) -> f64 {
     let side = side as f64;
     let Some(period) = period else { return (PI * at / side).sin().powi(2) };
-    // Of a single period, all.
+    // Where the window is no longer than one period, every position weighs the same.
     let spare = if period < side { side % period } else { 0.0 };
     if spare > 0.0 { (at.min(side - at) / spare).min(1.0) } else { 1.0 }
 }
@@ -149,7 +149,8 @@ fn ratio(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
-/// From each point the distance to the nearest other; infinite for one alone. They are swept in the order of x.
+/// The distance from each point to the nearest other point; infinite for a single point. The points are swept in the
+/// order of x.
 pub fn nearest_distances(points: &[DVec2]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_unstable_by(|&i, &j| points[i].x.total_cmp(&points[j].x));

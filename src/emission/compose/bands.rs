@@ -1,4 +1,4 @@
-//! Bands of rows, and the lamps that may touch each: a texel looks at few.
+//! Bands of rows, each with a list of the lamps that may touch it, so that rendering a texel looks at few lamps.
 
 use super::layer::Layer;
 use crate::emission::lamps::instance::Instance;
@@ -7,7 +7,8 @@ use glam::DVec2;
 /// Rows of texels that share one list of lamps. [bench emission:seconds]
 const BAND: usize = 16;
 
-/// Which lamps may touch each band of rows, and their texels: index, then `[x0, y0, x1, y1)`.
+/// For each band of rows, the lamps that may touch it: the index of the lamp, then the texels `[x0, y0, x1, y1)` that
+/// the lamp may touch.
 #[derive(Default)]
 pub struct Bands(Vec<Vec<(u32, [u32; 4])>>);
 

@@ -25,7 +25,7 @@ use glam::DVec2;
 pub struct Composition {
     pub width: usize,
     pub height: usize,
-    /// One of each exemplar.
+    /// One layer for each exemplar.
     pub(in crate::emission) layers: Vec<Layer>,
     /// Which lamps of each layer touch which rows.
     pub(in crate::emission) bands: Vec<Bands>,
@@ -40,7 +40,7 @@ impl Composition {
         Self::of(None, input, styles, params, job)
     }
 
-    /// The same where the first exemplar has been read.
+    /// Like [`Self::new`], but takes the reading of the first exemplar if there is one.
     pub(in crate::emission) fn of(
         mut reading: Option<Reading>,
         input: &Input,
@@ -86,7 +86,7 @@ impl Composition {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }
 
-    /// How the lights of the first exemplar go on, and what that was chosen by.
+    /// How the lights of the first exemplar go on, and how that law was chosen.
     pub fn law(&self) -> (Continuation, Choice) {
         let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
         first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))
@@ -103,7 +103,8 @@ impl Composition {
     /// number or size.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check(tile)?;
-        // A crumb, and whatever joins a piece to something larger, lies within its reach of the tile.
+        // A crumb that touches the tile lies within this margin of it; so does any light that joins the crumb to a
+        // larger piece.
         let margin = if self.has_crumbs() { crumbs::reach(self.crumb) + 2 } else { 0 };
         let around = tile.widened(margin, self.width, self.height);
         let (mut texture, mut mask) = self.render(input, styles, around, job)?;
@@ -118,7 +119,7 @@ impl Composition {
         Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
     }
 
-    /// The whole texture, its coverage, and the lamps of that.
+    /// The whole texture, its coverage, and the connected lights of the coverage.
     pub(in crate::emission) fn all(
         &self,
         input: &Input,
@@ -133,7 +134,8 @@ impl Composition {
         Ok((texture, coverage, found))
     }
 
-    /// Takes the crumbs out of a tile. What the border of the texture leaves of a lamp is none.
+    /// Removes the crumbs from a tile. A piece that touches the border of the texture is the rest of a lamp, not a
+    /// crumb.
     fn remove_crumbs(&self, texture: &mut Image, mask: &mut Image, found: &mut Components, tile: Tile) {
         let is_cut = |min: [usize; 2], max: [usize; 2]| {
             let (low, high) = ([tile.x + min[0], tile.y + min[1]], [tile.x + max[0] + 1, tile.y + max[1] + 1]);
@@ -146,13 +148,13 @@ impl Composition {
         self.crumb > 1.0
     }
 
-    /// A tile and its coverage, crumbs and all.
+    /// Renders a tile and its coverage, crumbs included.
     fn render(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check_exemplars(input, styles)?;
         self.render_lights(input, styles, tile, Lights::All, job)
     }
 
-    /// Some lights of a tile, and their coverage.
+    /// Renders some of the lights of a tile, and their coverage.
     pub(in crate::emission) fn render_lights(
         &self,
         input: &Input,
@@ -168,7 +170,7 @@ impl Composition {
         render::run(&frame, &sources, &self.bands, tile, lights, job)
     }
 
-    /// Checks that exemplars are those, or as large as those, that the composition was made of.
+    /// Checks that the exemplars are as many and as large as those that the composition was made of.
     pub(in crate::emission) fn check_exemplars(&self, input: &Input, styles: &[Style]) -> Result<()> {
         if styles.len() + 1 != self.layers.len() {
             let (given, planned) = (styles.len() + 1, self.layers.len());

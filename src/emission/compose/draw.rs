@@ -1,12 +1,12 @@
 //! Several exemplars in one texture: the blend of styles that the paper leaves to the future (§8).
 //!
-//! A lamp halfway between two designs is a lamp of neither. So lamps are drawn: each exemplar's pattern is planned
-//! over all of the texture, and each of its lamps is kept with the probability that the exemplar's weight has at the
-//! lamp's centre. Lamps of different exemplars that would overlap share one draw, so that exactly one of them is kept;
-//! every other is kept by a draw of its own. The mean light per area then blends linearly. Where most lamps overlap
-//! several others, neighbours share a draw too, and the styles change from patch to patch; of two that meet there the
-//! later exemplar's gives way. Lights that are no lamps, since they run out of their exemplar, are dimmed by the
-//! weight instead.
+//! A lamp halfway between two designs would belong to neither. So lamps are drawn at random: each exemplar's pattern is
+//! planned over all of the texture, and each of its lamps is kept with a probability equal to the exemplar's weight at
+//! the lamp's centre. Lamps of different exemplars that would overlap share one draw, so that exactly one of them is
+//! kept; every other lamp has a draw of its own. The mean light per area then blends linearly. Where many lamps overlap
+//! several others, neighbouring lamps share a draw too, and the styles change from patch to patch; where two kept lamps
+//! overlap there, the lamp of the later exemplar is dropped. Lights that run out of their exemplar are not lamps: they
+//! are dimmed by the weight instead.
 //!
 //! Lattices of different exemplars keep their own period and phase; [`crate::emission::Params::centred`] has them meet
 //! in the middle.
@@ -19,16 +19,17 @@ use crate::rng::Rng;
 use glam::DVec2;
 use std::collections::HashMap;
 
-/// Side of the squares that share a draw where lamps are dense, in sides of the longest lamp.
+/// Side of the squares whose lamps share a draw where lamps are dense, as a multiple of the longest lamp's length.
 const PATCH: f64 = 3.0;
-/// Share of lamps that overlap several others from which they are dense.
+/// Lamps are dense if more than this share of the later exemplars' lamps overlap several lamps of earlier ones.
 const DENSE: f64 = 0.1;
 
 /// A lamp of some exemplar, and the box around it in texels.
 struct Lamp {
     low: DVec2,
     high: DVec2,
-    /// In [0, 1): kept are the lamps of the exemplar whose part of that interval it falls into.
+    /// A random number in [0, 1). The weights divide that interval among the exemplars; the lamp is kept if the number
+    /// falls into the part of its own exemplar.
     draw: f64,
 }
 
@@ -37,7 +38,7 @@ impl Lamp {
         (self.low + self.high) / 2.0
     }
 
-    /// Area that both cover, where the other is moved by `shift`.
+    /// Area that both boxes cover, with `other` moved by `shift`.
     fn overlap(&self, other: &Self, shift: DVec2) -> f64 {
         let sides = self.high.min(other.high + shift) - self.low.max(other.low + shift);
         sides.max(DVec2::ZERO).element_product()
@@ -53,7 +54,7 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
         layers.iter().map(|layer| layer.instances.iter().map(|i| boxed(layer, i)).collect()).collect();
     let longest = lamps.iter().flatten().map(|l| (l.high - l.low).max_element()).fold(1.0, f64::max);
 
-    // Lamps of earlier layers that each lamp overlaps, most first.
+    // Lamps of earlier layers that each lamp overlaps, largest overlap first.
     let mut seen = Near { cells: HashMap::new(), side: longest, size: params.repeats() };
     let mut below: Vec<Vec<Vec<(usize, usize)>>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {
@@ -63,7 +64,8 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     let several = below.iter().flatten().filter(|b| b.len() > 1).count();
     let is_dense = several as f64 > DENSE * below[1..].iter().map(Vec::len).sum::<usize>() as f64;
 
-    // Draws: of the lamp that is overlapped most, of a patch, or of its own.
+    // A lamp takes the draw of the earlier lamp that it overlaps most; without one, the draw of its square where lamps
+    // are dense, else a draw of its own.
     for k in 0..layers.len() {
         for (i, others) in below[k].iter().enumerate() {
             let patch = (lamps[k][i].centre() / (PATCH * longest)).floor();
@@ -77,14 +79,14 @@ pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
         }
     }
 
-    // Who stays, and of those that still overlap the first.
+    // Decide which lamps stay. Of drawn lamps that overlap, the one of the earliest layer stays.
     let size = DVec2::new(params.width as f64, params.height as f64);
     let mut stays: Vec<Vec<bool>> = Vec::new();
     for (k, layer) in lamps.iter().enumerate() {
         let is_drawn = |lamp: &Lamp| {
             let at = lamp.centre() / size;
             let start: f64 = (0..k).map(|j| f64::from(weights.at(j, at))).sum();
-            // The last interval ends where all do, whatever rounding makes of the sum.
+            // The last interval ends at exactly 1, whatever rounding makes of the sum.
             let end = if k + 1 == lamps.len() { 1.0 } else { start + f64::from(weights.at(k, at)) };
             weights.at(k, at) > 0.0 && (start..end).contains(&lamp.draw)
         };
@@ -108,12 +110,12 @@ fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
     Lamp { low, high: (point(lamp.max) + 1.0 + instance.shift) / layer.scale, draw: 0.0 }
 }
 
-/// Lamps by the square their centre lies in; squares are as long as the longest lamp, so what overlaps is in one next
-/// to it.
+/// Lamps, listed by the square that their centre lies in. Squares are as long as the longest lamp, so that overlapping
+/// lamps lie in the same square or in adjacent ones.
 struct Near {
     cells: HashMap<[i64; 2], Vec<(usize, usize, DVec2)>>,
     side: f64,
-    /// Of the texture, if it repeats.
+    /// Size of the texture, if it repeats.
     size: Option<DVec2>,
 }
 

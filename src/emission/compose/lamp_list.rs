@@ -1,9 +1,9 @@
-//! The lamps of a composition, one by one: what a texture consists of that is never there as a whole.
+//! The lamps of a composition, one by one, listed without ever rendering the texture as a whole.
 //!
-//! Every lamp of a texture is a shifted one of an exemplar, so a list needs their outlines once, and for each lamp its
-//! place. Where texels are not unwarped pixels a lamp is what it is in the exemplar; a texture shows it to the texel.
-//! Lights that are no lamps follow the patches, as those do that run through their exemplar, and without
-//! [`crate::emission::Params::whole_lamps`] all: these are listed as the texture shows them.
+//! Every lamp of a texture is a shifted lamp of an exemplar, so the list stores each outline once, and the place of
+//! each lamp. Where a texel is not one unwarped pixel, the list gives a lamp as it is in the exemplar, while the
+//! texture shows it to the texel. Some lights follow the patches instead: lights that run through their exemplar and,
+//! without [`crate::emission::Params::whole_lamps`], all lights. These are listed as the texture shows them.
 
 use super::composition::{Composition, exemplars};
 use super::layer::Layer;
@@ -20,18 +20,18 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, Vec2Swizzles};
 
-/// Share of a lamp that must be within the texture for it to be one of its lamps.
+/// A lamp is listed if more than this area of it, in texels, lies within the texture.
 const MIN_SHOWN: f64 = 1e-6;
 
 /// The lamps that a composition shows.
 pub struct LampList {
-    /// The components of each exemplar, in its pixels.
+    /// The components of each exemplar, in its unwarped pixels.
     shapes: Vec<Vec<Luminaire>>,
-    /// Each lamp and its exemplar.
+    /// Each lamp shown, after the index of its exemplar.
     shown: Vec<(u32, Instance)>,
     /// Lights that follow the patches.
     others: Vec<Luminaire>,
-    /// Light of all of them.
+    /// Total flux of all listed lights.
     flux: f64,
 }
 
@@ -55,7 +55,7 @@ impl LampList {
         }
         for (k, layer) in composition.layers.iter().enumerate() {
             job.check()?;
-            // A part of the exemplar shows the lamps that lie there.
+            // A texture that is a copied part of the exemplar shows the exemplar's components at one shift.
             let copied = layer.patch_map.shifts.first().filter(|_| layer.continuation == Continuation::Copy);
             let copies = copied.map(|shift| {
                 let instance = |component| Instance { component, shift: shift.exact };
@@ -75,14 +75,14 @@ impl LampList {
         Ok(list)
     }
 
-    /// Tells the kinds of all exemplars' lamps that are shown, and of lights that are none.
+    /// Numbers the kinds of the lamps shown, over all exemplars, and of the lights that follow the patches.
     fn number_kinds(&mut self, composition: &Composition) {
         let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
         for (k, instance) in &self.shown {
             let is_whole = composition.layers[*k as usize].exemplar.roles[instance.component].is_whole();
             counts[*k as usize][instance.component] += usize::from(is_whole);
         }
-        // All in texels.
+        // Compare all shapes in texels.
         let size = DVec2::new(composition.width as f64, composition.height as f64);
         let factors = composition.layers.iter().map(|layer| 1.0 / layer.scale);
         let shown = |(shapes, factor): (&Vec<Luminaire>, f64)| {
@@ -96,12 +96,12 @@ impl LampList {
         listed.zip(lamps).for_each(|(lamp, told)| lamp.kind = told.kind);
     }
 
-    /// How many there are.
+    /// The number of listed lights.
     pub fn count(&self) -> usize {
         self.shown.len() + self.others.len()
     }
 
-    /// One of them; of those that the border cuts, what is within.
+    /// The light at an index; if the border cuts it, the part within the texture.
     pub fn get(&self, composition: &Composition, index: usize) -> Option<Luminaire> {
         let mut lamp = match self.shown.get(index) {
             Some(&(k, instance)) => self.placed(composition, k as usize, instance),
@@ -118,7 +118,7 @@ impl LampList {
         let shift = layer.rounded(instance.shift);
         let size = DVec2::new(composition.width as f64, composition.height as f64);
         let whole = shape.moved(shift, 1.0 / layer.scale);
-        // Copied lights are dimmed by the exemplar's weight; others are there or not.
+        // Copied lights are dimmed by the exemplar's weight; other lamps are shown in full or not at all.
         let whole = match layer.continuation {
             Continuation::Copy => {
                 Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole }
@@ -136,7 +136,7 @@ fn flux(lamp: &Luminaire) -> f64 {
     f64::from(luminance(lamp.colour)) * lamp.area
 }
 
-/// What of a lamp lies within a texture of the given size.
+/// The part of a lamp that lies within a texture of the given size.
 fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     let sides = [(DVec2::NEG_X, 0.0), (DVec2::NEG_Y, 0.0), (DVec2::X, size.x), (DVec2::Y, size.y)];
     let outline =
@@ -149,7 +149,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     }
     let axis = DVec2::from_angle(lamp.orientation);
     let extent = |axis: DVec2| polygon::extent(&outline, axis);
-    // What is left may be longer across than along.
+    // The remaining part may be longer across the lamp's axis than along it.
     let (size, quarter) = (DVec2::new(extent(axis), extent(axis.perp())), std::f64::consts::FRAC_PI_2);
     let (size, orientation) = match lamp.orientation {
         angle if size.x >= size.y => (size, angle),
@@ -158,7 +158,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     Luminaire { centre: centroid(&outline), size, orientation, area: lamp.area * share, outline, kind: 0, ..lamp }
 }
 
-/// The centre of what a polygon encloses.
+/// The centroid of the area that a polygon encloses.
 fn centroid(corners: &[DVec2]) -> DVec2 {
     let origin = corners.first().copied().unwrap_or_default();
     let (mut sum, mut area) = (DVec2::ZERO, 0.0);

@@ -24,12 +24,12 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::{DVec2, Vec3};
 
-/// Share of the smallest lamp's area below which a piece of light is a crumb of an edge that resampling broke off.
-/// [judged on 5 photos]
+/// A piece of light is a crumb, broken off an edge by resampling, if its area is below this share of the smallest
+/// lamp's. [judged on 5 photos]
 const CRUMB: f64 = 0.02;
-/// Sides of a patch in working pixels, at least. [bench emission:knobs]
+/// Smallest side of a patch, in working pixels. [bench emission:knobs]
 const MIN_BLOCK: f64 = 16.0;
-/// Side of a patch on a lattice, in its longer period. [bench emission:knobs]
+/// Side of a patch on a lattice, as a multiple of the lattice's longer period. [bench emission:knobs]
 const BLOCK_PERIODS: f64 = 1.5;
 
 /// Where the texture shows which part of an exemplar.
@@ -45,9 +45,9 @@ pub struct Layer {
     pub instances: Vec<Instance>,
     /// Whether lamps are copied as a whole; else all lights follow the patches.
     pub has_pieces: bool,
-    /// Where the photo is clipped, the colours of the lamps it shows.
+    /// Colours of the lamps for the parts that the photo shows clipped; `None` where it shows nothing clipped.
     pub rim_colours: Option<RimColours>,
-    /// The designs of its lamps; none where lamps are shown as the photo has them.
+    /// The designs of the lamps; empty where lamps keep the outlines of the photo.
     pub designs: Designs,
     /// The mean colour of each component, where lamps shine evenly.
     pub even: Option<Vec<Vec3>>,
@@ -58,7 +58,7 @@ pub struct Layer {
 /// How the exemplar is laid out on the texture.
 struct Setting<'a> {
     params: &'a Params,
-    /// The lattice as it was found, and as the texture needs it.
+    /// The continuation as it was found, and as the texture uses it: stretched if the texture is tileable.
     found: Continuation,
     continuation: Continuation,
     /// Where the lattice begins, in unwarped pixels.
@@ -119,7 +119,7 @@ impl Layer {
         })
     }
 
-    /// Whether its lamps are shown by their designs.
+    /// Whether lamps are drawn from designs.
     pub fn is_clean(&self) -> bool {
         !self.designs.kinds.is_empty()
     }
@@ -129,33 +129,34 @@ impl Layer {
         !self.has_pieces || self.exemplar.roles[component] == Role::Through
     }
 
-    /// Whether any component does.
+    /// Whether any component follows the patches pixel by pixel.
     pub fn has_by_pixel(&self) -> bool {
         !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
     }
 
-    /// Whether some of its lights are shown as the patches have them, in another order than the exemplar's.
+    /// Whether some lights follow the patches, and the patches are not just a copied part of the exemplar.
     pub fn follows_patches(&self) -> bool {
         self.has_by_pixel() && self.continuation != Continuation::Copy
     }
 
-    /// Shifts become whole pixels where pixels are copied one to one, so that copies are exact.
+    /// Rounds a shift to whole pixels where a texel is one unwarped pixel, so that copies are exact.
     pub fn rounded(&self, shift: DVec2) -> DVec2 {
         if self.scale == 1.0 { shift.round() } else { shift }
     }
 
-    /// Area in texels below which a piece of light is a crumb; 0 where no lamp says what is small.
+    /// Area in texels below which a piece of light is a crumb; 0 without lamps copied as a whole.
     pub fn crumb(&self) -> f64 {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
         if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
     }
 }
 
-/// Score of a lattice from which a texture shows its lamps rather than the photo, whose outlines are ragged.
-/// [bench photos:tune]
+/// Score from which a lattice is trusted to place clean lamps, in a texture that could also copy the photo with its
+/// ragged outlines. [bench photos:tune]
 const SURE: f64 = 0.6;
 
-/// Unwarped pixels that a pixel of the photo covers, from which outlines are ragged. [convention]: steps that show.
+/// Outlines are ragged if a pixel of the photo is at least this many unwarped pixels long. [convention]: steps that
+/// show.
 const RAGGED: f64 = 2.0;
 
 /// What a texture is made from.
@@ -206,7 +207,8 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
     Ok((window, Source { exemplar, found, regularity, choice }))
 }
 
-/// Whether the pixels of the photo are larger than those of the unwarped photo, at the median of its lamps.
+/// Whether outlines are ragged: a pixel of the photo is [`RAGGED`] or more unwarped pixels long, at the median of the
+/// whole lamps.
 fn is_ragged(exemplar: &Exemplar) -> bool {
     let lamps = exemplar.evidence(Role::is_whole);
     weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
@@ -246,7 +248,7 @@ impl<'a> Setting<'a> {
         let lamp = lit / lamps.len() as f64 / working.pitch.element_product();
         let guide = Guide { working, metadata, metadata_weight, cap: self.cap, lamp, candidates };
 
-        // One row is made, and repeated beside itself: the exemplar tells no more.
+        // For a row, one strip is laid out and repeated beside itself: the exemplar shows nothing beyond the strip.
         let row = match continuation {
             Continuation::Row([_, across]) => {
                 let period = across.abs() / working.pitch;
@@ -270,7 +272,8 @@ impl<'a> Setting<'a> {
         })
     }
 
-    /// Lamps on a lattice, each at its site, where designs tell what lamps look like.
+    /// Places lamps at the exact sites of their lattice. Returns `shown` unchanged where there are no designs or no
+    /// sites, and for a row that ends within the exemplar.
     fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
         let &Self { params, continuation, offset, .. } = self;
         let ends = match continuation {
@@ -323,8 +326,8 @@ pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Lumi
     luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
 }
 
-/// Lamps of free patches, shifted by the offset. They begin nowhere; only where they repeat there is something to
-/// shift.
+/// Shifts the lamps of free patches by the offset. Free patches have no origin, so an offset is allowed only in a
+/// tileable texture.
 fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
     if params.offset == DVec2::ZERO {
         return Ok(lamps);
@@ -344,8 +347,8 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     Ok(lamps)
 }
 
-/// A patch that holds more than one lamp and its neighbours: one and a half times the longer period; without one, a
-/// quarter of the exemplar.
+/// Side of a patch that holds a lamp and parts of its neighbours: one and a half times the longer period of a lattice;
+/// without a lattice, a quarter of the exemplar's shorter side.
 fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

@@ -1,8 +1,8 @@
-//! Lights that follow the patches, of a texture that is never there as a whole: those that run through are as long as
-//! it is.
+//! Finds the lights that follow the patches, without ever rendering the texture as a whole, though a light that runs
+//! through is as long as the texture.
 //!
-//! The texture is swept from top to bottom in bands. Of every connected light sums are kept, and its first and last
-//! texel in each row; so its outline is that of what lies between these, to the texel.
+//! The texture is swept from top to bottom in bands. For every connected light, running sums are kept, and its first
+//! and last texel in each row. Its outline encloses everything between these two texels, to the texel.
 
 use super::composition::Composition;
 use super::render::Lights;
@@ -19,10 +19,10 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Rows of texels that are looked at at once, and those beside them that tell how much of them is light.
+/// Rows of texels in a band, and further rows above and below that are needed to tell how much of each texel is light.
 const BAND: usize = 64;
 const BESIDE: usize = 2;
-/// No light.
+/// The index of a texel without light.
 const NONE: u32 = u32::MAX;
 
 /// Every light of a composition that follows the patches, in the order of their first texel. Their shares of flux are
@@ -71,16 +71,16 @@ pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job
         .collect())
 }
 
-/// Lights of which some turned out to be one.
+/// Lights found so far; some of them turn out to be parts of one light and are joined.
 #[derive(Default)]
 struct Joined {
     parts: Vec<Light>,
-    /// For each the one it is a part of.
+    /// For each light, the index of the light that it was joined to; its own index if there is none.
     into: Vec<u32>,
 }
 
 impl Joined {
-    /// Adds new ones; the index of the first.
+    /// Adds `count` empty lights and returns the index of the first.
     fn add(&mut self, count: usize) -> u32 {
         let first = self.parts.len();
         self.parts.resize_with(first + count, Light::default);
@@ -115,24 +115,24 @@ struct Span {
     right: u32,
 }
 
-/// What is known of a light.
+/// The sums and the rows of a light.
 #[derive(Default)]
 struct Light {
     /// Number of its texels.
     texels: f64,
-    /// Sums over what of texels is light: area, centres from that of the first, and their products; and over its
-    /// texels: colours.
+    /// Sums over the lit parts of texels: area, centres and products of centres, all relative to `origin`, the centre
+    /// of the first texel. `colours` is a sum over whole texels.
     area: f64,
     origin: DVec2,
     centres: DVec2,
     squares: DVec3,
     colours: DVec3,
-    /// From top to bottom; rows of equal ends are one.
+    /// From top to bottom; adjacent rows with equal ends share one span.
     spans: Vec<Span>,
 }
 
 impl Light {
-    /// Adds a part of a texel, a step from one of its own.
+    /// Adds the lit `area` of the texel that lies a step `[u, v]` from `[x, y]`, a texel of the light.
     fn cover(&mut self, [x, y]: [usize; 2], [u, v]: [isize; 2], area: f64) {
         let p = DVec2::new(x as f64 + u as f64, y as f64 + v as f64) + 0.5 - self.origin;
         self.area += area;
@@ -140,7 +140,7 @@ impl Light {
         self.squares += DVec3::new(p.x * p.x, p.x * p.y, p.y * p.y) * area;
     }
 
-    /// Adds a texel, row by row.
+    /// Adds a texel; texels must come row by row.
     fn push(&mut self, [x, y]: [usize; 2], colour: Vec3) {
         if self.texels == 0.0 {
             self.origin = DVec2::new(x as f64, y as f64) + 0.5;
@@ -159,7 +159,7 @@ impl Light {
         }
     }
 
-    /// The last row is done: it joins those before it that end where it does.
+    /// Ends the last row: joins it to the span above if both have the same ends.
     fn close(&mut self) {
         if let [.., before, last] = &mut self.spans[..]
             && (before.left, before.right, before.row + before.rows) == (last.left, last.right, last.row)
@@ -169,7 +169,7 @@ impl Light {
         }
     }
 
-    /// Takes in another, whose first row is no higher.
+    /// Merges another light into this one; the first row of the other must not lie above that of this light.
     fn merge(&mut self, other: Self) {
         let by = other.origin - self.origin;
         let Self { area, centres: c, squares: s, .. } = other;
@@ -200,7 +200,7 @@ impl Light {
         }
     }
 
-    /// Whether it is small and does not touch the border of a texture of the given size.
+    /// Whether the light is small and does not touch the border of a texture of the given size.
     fn is_crumb(&self, crumb: f64, [width, height]: [u32; 2]) -> bool {
         let touches = |s: &Span| s.row == 0 || s.row + s.rows == height || s.left == 0 || s.right == width;
         self.area < crumb && !self.spans.iter().any(touches)
@@ -211,7 +211,7 @@ impl Light {
         let [xx, xy, yy] =
             (self.squares - DVec3::new(mean.x * mean.x, mean.x * mean.y, mean.y * mean.y) * self.area).to_array();
         let orientation = orientation([xx, xy, yy]);
-        // Down the left ends and up the right ones.
+        // The outline runs down the left ends of the spans and up their right ends.
         let corner = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y));
         let down = self.spans.iter().flat_map(|s| [corner(s.left, s.row), corner(s.left, s.row + s.rows)]);
         let up = self.spans.iter().rev().flat_map(|s| [corner(s.right, s.row + s.rows), corner(s.right, s.row)]);

@@ -7,24 +7,24 @@ use crate::emission::output::Emission;
 use crate::error::{Error, Result};
 use crate::job::Job;
 
-/// What there is at a texel.
+/// Whether light may be shown at a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
     /// Room for light.
     Open,
-    /// Nothing that could be seen: light there is taken out.
+    /// Not visible: light there is removed.
     Hidden,
-    /// No place for a lamp: those that reach it are taken out whole.
+    /// No place for a lamp: lamps that reach the texel are removed whole.
     KeepOut,
 }
 
 impl Emission {
-    /// Takes out light that has no place; `ground` has one entry for each texel. The statistics stay those of the
-    /// pattern.
+    /// Removes light where `ground`, with one entry per texel, does not allow it. The statistics are not updated: they
+    /// keep describing the whole pattern.
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {
-        // Whole lamps first: what is hidden of them counts as well.
+        // Mark the lamps to remove whole before hidden light is removed: the hidden parts of a lamp count as well.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
         for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Placement::KeepOut) {
@@ -44,7 +44,7 @@ impl Emission {
                 found.list.len()
             )));
         }
-        // Lamps that stay whole are what they were; of the others the mask tells what is left, to the texel.
+        // Lamps that stay whole keep their outline and size; the others are measured again from the mask, to the texel.
         let mask = &self.mask;
         let mut lamps = luminaires::find(&self.texture, &left, &|i| mask.data[i], job)?;
         for (label, (lamp, component)) in (1..).zip(lamps.iter_mut().zip(&left.list)) {

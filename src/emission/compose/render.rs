@@ -2,9 +2,9 @@
 //! §6, Fig. 12h).
 //!
 //! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the
-//! photo, where the area the texel covers is averaged. What is light is decided in the unwarped image: where it is
-//! magnified, by its confidence between pixels, so that outlines are no staircases; where it is reduced, by share of
-//! area.
+//! photo, where the area the texel covers is averaged. Whether a texel is light is decided in the unwarped image. Where
+//! that image is magnified, its confidence is interpolated between pixels, so that outlines are no staircases; where it
+//! is reduced, the lit share of the texel's area decides.
 
 use super::bands::Bands;
 use super::source::{Source, Texel};
@@ -35,7 +35,8 @@ pub struct Frame<'a> {
     pub weights: &'a Weights,
 }
 
-/// A tile of the texture, and how much of each texel is light: of its mask from 0.5 on, of others less.
+/// Renders a tile of the texture, and how much of each texel is light: at least 0.5 for a texel of the mask, less for
+/// any other.
 pub fn run(
     frame: &Frame,
     sources: &[Source],
@@ -123,7 +124,8 @@ impl Row<'_> {
         }
     }
 
-    /// Holds the coverage to the share of the samples: at least half of a lit texel is light.
+    /// Makes the coverage agree with the share of lit samples: at least 0.5 where half of the samples or more are lit,
+    /// less than 0.5 elsewhere.
     fn finish(&mut self) {
         for (coverage, &share) in self.coverage.iter_mut().zip(&self.shares) {
             *coverage = if share >= 0.5 { coverage.clamp(0.5, 1.0) } else { coverage.min(BELOW_HALF) };
@@ -131,7 +133,7 @@ impl Row<'_> {
     }
 }
 
-/// The mask of what is at least half light, in its place.
+/// Turns coverage into a mask, in place: 1 where at least half of a texel is light, else 0.
 pub fn threshold(coverage: &mut Image) {
     coverage.data.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
 }

@@ -1,26 +1,27 @@
-//! The photo beneath a texel: the mean of what it shows of a small square of the unwarped image.
+//! The photo beneath a texel: its mean colour over a small square of the unwarped image.
 //!
 //! The homography makes the square a quadrangle. Points about a pixel of the photo apart along each of its sides are
 //! averaged, each between pixels by cubics (Catmull and Rom 1974), so that detail is neither lost where the photo is
 //! magnified nor missed where it is reduced.
 //!
-//! The elliptical weighted average (Heckbert 1989, 3.5), usual for this, takes a fifth to a half of the time, yet is
-//! less exact: its Gaussian, as wide as it is published, weighs what other texels show too, and as narrow as a texel
-//! it has not its shape. Only where tens of texels share a pixel along one side, and nothing is left to recover, its
-//! blur is nearer to the truth. Both are held against that by `cargo bench --bench emission -- recovery`.
+//! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time, yet is
+//! less exact. At its published width the Gaussian also weighs parts of the photo that belong to other texels; made as
+//! narrow as a texel, it does not have the texel's shape. Only where tens of texels share a photo pixel along one side,
+//! so that no detail is left to recover, its blur is nearer to the truth. `cargo bench --bench emission -- recovery`
+//! compares both methods with the truth.
 
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::{DVec2, Vec3};
 
-/// Most points along each side: of texels next to the horizon.
+/// Most points along each side; it limits texels next to the horizon.
 const MAX_POINTS: f64 = 32.0;
 
-/// Mean colour of a photo over the square of a side around a point of the unwarped image, of what of it the photo
-/// shows; nothing where it shows none or is not finite.
+/// Mean colour of a photo over a square of the unwarped image, given by its middle and its side. Only points within the
+/// photo count; `None` where there are none, or where the mean is not finite.
 pub fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> Option<Vec3> {
     let at = |step: DVec2| to_photo.apply(middle + step * side);
-    // A length that is none has no points: the horizon.
+    // At the horizon the length is NaN, which makes no points.
     let points = |axis: DVec2| (at(axis * 0.5) - at(axis * -0.5)).length().ceil().clamp(1.0, MAX_POINTS) as usize;
     let (across, down) = (points(DVec2::X), points(DVec2::Y));
     let (mut sum, mut shown) = (Vec3::ZERO, 0.0);
@@ -34,8 +35,8 @@ pub fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> O
     Some(sum / shown).filter(|colour| colour.is_finite())
 }
 
-/// Colour at a point of the photo, its border extended; nothing off the photo. Not beyond the four pixels around it:
-/// next to a bright lamp cubics go below nothing.
+/// Colour at a point of the photo, whose border is extended; `None` off the photo. The result stays within the range of
+/// the four pixels around the point, because next to a bright lamp cubics fall below 0.
 fn cubic(photo: &Image, p: DVec2) -> Option<Vec3> {
     let size = DVec2::new(photo.width as f64, photo.height as f64);
     if !(p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {
@@ -56,7 +57,7 @@ fn cubic(photo: &Image, p: DVec2) -> Option<Vec3> {
             }
         }
     }
-    // Not `clamp`, which is no number's: what is not finite stays so.
+    // Only finite sums are limited: a sum that is not finite stays so.
     Some(if sum.is_finite() { sum.max(least).min(most) } else { sum })
 }
 

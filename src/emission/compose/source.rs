@@ -8,8 +8,8 @@ use crate::error::Result;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3, Vec4};
 
-/// Least and most samples along each side of a texel that is larger than an unwarped pixel. Fewer would not tell where
-/// half of it is light to an eighth of its side. [rounding]
+/// Least and most samples along each side of a texel that is larger than an unwarped pixel. With fewer samples, an edge
+/// of the light could not be placed to an eighth of the texel's side. [rounding]
 const MIN_SAMPLES: f64 = 4.0;
 const MAX_SAMPLES: f64 = 16.0;
 
@@ -32,8 +32,8 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
     Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
 }
 
-/// Width in photo pixels of the rim that blur darkens, and the share of a lamp that is looked at, at least. [judged on
-/// 20 photos]
+/// Width in photo pixels of a lamp's rim that blur darkens, and the smallest share of the lamp's sides within which its
+/// colour is read. [judged on 20 photos]
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
@@ -41,8 +41,8 @@ const MIN_INNER: f64 = 0.5;
 #[derive(Clone, Copy)]
 pub struct Texel {
     pub colour: Vec3,
-    /// Share of its samples that are light, and mean confidence that they are: the same but for the finer steps of
-    /// this.
+    /// Share of the texel's samples that are light, and mean confidence that they are. Both measure the same; the
+    /// confidence has finer steps.
     pub share: f32,
     pub coverage: f32,
 }
@@ -100,7 +100,8 @@ impl Source<'_> {
         if share <= 0.0 {
             return Some(Texel { colour: Vec3::ZERO, share: 0.0, coverage: 0.0 });
         }
-        // Look where the lamp of the photo, larger by its bloom, shows the same part, but not at its blurred rim.
+        // Read the colour at the matching point of the lamp in the photo, which bloom enlarges, but not from its
+        // blurred rim.
         let axes = [design.axis, design.axis.perp()];
         let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
         let half = design.size / 2.0;
@@ -134,7 +135,7 @@ impl Source<'_> {
         self.unclipped(lamp.unwrap_or(0), value)
     }
 
-    /// The light of a component where the photo shows `value`.
+    /// The colour of a component where the photo shows `value`; clipped channels follow the colour of the rim.
     fn unclipped(&self, label: u32, value: Vec3) -> Vec3 {
         match (&self.layer.rim_colours, label.checked_sub(1)) {
             (Some(rim_colours), Some(component)) => rim_colours.undo(component as usize, value),
@@ -147,20 +148,20 @@ impl Source<'_> {
         self.layer.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
     }
 
-    /// Whether an unwarped pixel is of the light that is shown.
+    /// Whether an unwarped pixel belongs to a component that is shown.
     fn is_light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> bool {
         let label = self.label(pixel);
         label != 0 && is_shown(label)
     }
 
-    /// How much an unwarped pixel is. Beside a lamp confidence fades away; where it is none of a lamp's, it is
-    /// nobody's.
+    /// How much of an unwarped pixel is light that is shown. The fading confidence beside a lamp counts for whichever
+    /// lamp is shown; a pixel of a component counts for that component only.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
         if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }
     }
 
-    /// Pixels and weights of a bilinear look-up, or of the pixel a point lies in.
+    /// Pixels and weights of a bilinear look-up; with `nearest`, only the pixel that the point lies in.
     fn taps(&self, p: DVec2, nearest: bool) -> [(usize, f32); 4] {
         let (width, height) = (self.layer.exemplar.width, self.layer.exemplar.height);
         let at = |x: f64, y: f64| {

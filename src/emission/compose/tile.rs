@@ -19,7 +19,7 @@ impl Tile {
         Self { x, y, width: end(self.x, self.width, width) - x, height: end(self.y, self.height, height) - y }
     }
 
-    /// Its part of an image of the tile `around` it.
+    /// Cuts this tile out of an image of the larger tile `around` it.
     pub fn cut(self, image: &Image, around: Self) -> Result<Image> {
         let mut out = Image::new(self.width, self.height, image.channels)?;
         let (dx, dy) = (self.x - around.x, self.y - around.y);

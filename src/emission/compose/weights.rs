@@ -5,21 +5,21 @@ use crate::error::{Error, Result};
 use crate::image::Image;
 use glam::DVec2;
 
-/// By how much weights may exceed 1 together: rounding.
+/// By how much the sum of the weights may exceed 1, for rounding.
 const ROUNDING: f32 = 1e-4;
 
-/// A further exemplar, and where its lights take the place of the first one's.
+/// A further exemplar, and the weights with which its lights replace those of the first exemplar.
 #[derive(Clone, Copy)]
 pub struct Style<'a> {
     pub input: Input<'a>,
     /// Its unwarped pixels per texel, in `[1e-3, 1e3]`.
     pub scale: f64,
-    /// Its weight in `[0, 1]`, one channel, stretched over the texture. What all further exemplars leave of 1 is the
-    /// first's.
+    /// Weight of this exemplar in `[0, 1]`: an image of one channel, stretched over the texture. The first exemplar's
+    /// weight is 1 minus the weights of all further exemplars.
     pub weights: &'a Image,
 }
 
-/// The weight of every exemplar everywhere. Of a single one it is 1.
+/// A weight map for each exemplar. A single exemplar has no map; its weight is 1.
 pub struct Weights(Vec<Image>);
 
 impl Weights {

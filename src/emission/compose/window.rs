@@ -9,13 +9,13 @@ use glam::DVec2;
 /// A part of the exemplar as large as the texture.
 pub struct Window {
     pub corner: DVec2,
-    /// Whether all of it is.
+    /// Whether the photo shows every pixel of this part.
     pub is_shown: bool,
 }
 
 impl Window {
-    /// Of the parts that are shown everywhere that whose share of light is nearest to the exemplar's, less the offset;
-    /// nothing where there is none.
+    /// Finds the part, among those that are fully shown, whose share of light is nearest to the exemplar's, and moves
+    /// it back by the offset. `None` where no part is fully shown.
     pub fn find(exemplar: &Exemplar, params: &Params) -> Result<Option<Self>> {
         let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
         let (w, h) = (side(params.width), side(params.height));
@@ -48,7 +48,7 @@ impl Window {
     }
 }
 
-/// The patch_map of a texture that is a part of the exemplar.
+/// The patch map of a texture that is a part of the exemplar.
 pub fn copy(corner: DVec2, (width, height): (usize, usize), pitch: DVec2) -> PatchMap {
     let working = (-corner / pitch).round();
     PatchMap::single(width, height, Shift { working: [working.x as i32, working.y as i32], exact: -corner })

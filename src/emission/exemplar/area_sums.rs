@@ -14,8 +14,8 @@ impl AreaSums {
         Self::of(|i| u32::from(mask(i)), width, height)
     }
 
-    /// The same of whole numbers. Sums wrap, which does not matter where those of the rectangles asked for stay below
-    /// 2³².
+    /// Sums over rectangles of whole numbers. Running sums wrap around, which does no harm as long as the sum of each
+    /// rectangle asked for stays below 2³².
     pub fn of(value: impl Fn(usize) -> u32, width: usize, height: usize) -> Result<Self> {
         let stride = width + 1;
         let mut sums = try_vec(stride * (height + 1), 0u32)?;

@@ -19,14 +19,14 @@ const WIDEST: f64 = 0.05;
 const MIN_DEPTH: f32 = 0.03;
 /// Share of the lines across a bar that must show light on both sides of it. [bench photos:tune]
 const MIN_LENGTH: f64 = 0.1;
-/// Stretches along a bar that are judged one by one. [convention]
+/// Number of stretches along a bar that are judged one by one. [convention]
 const STRETCHES: usize = 24;
-/// Stretches that a bar across may cover: the widest one lies in as many. [convention]
+/// Number of stretches that a crossing bar may cover: the widest bar lies in this many. [convention]
 const CROSSING: usize = 2;
-/// Depth of a stretch, in the bar's own, below which a sharp view of it shows that there is no bar. [bench
-/// photos:tune]
+/// Depth of a stretch, as a share of the bar's depth, below which a sharp view of the stretch shows that there is no
+/// bar. [bench photos:tune]
 const ABSENT: f32 = 0.25;
-/// Relative difference of the distances between bars up to which they are a period. [bench photos:tune]
+/// Largest relative difference between the distances of bars that form a period. [bench photos:tune]
 const SAME_PERIOD: f64 = 0.12;
 
 /// The unwarped lights of a plane, and where the photo shows it.
@@ -62,15 +62,15 @@ impl Bar {
     }
 }
 
-/// The plane seen along one of its axes: `across` counts positions across the bars, `along` those along them.
+/// The plane seen along one of its axes: `across` and `along` are the numbers of positions across and along the bars.
 pub struct Lines<'a> {
     plane: &'a LitPlane<'a>,
     is_column: bool,
     across: usize,
     along: usize,
     widest: usize,
-    /// By what share each pixel is darker than the light beside it: of the brightest lit pixels nearby on either side,
-    /// the darker one counts. NaN where a side has no light.
+    /// By what share each pixel is darker than the light beside it. The light beside it is the darker of two pixels:
+    /// the brightest lit pixel nearby on either side. NaN where a side has no light.
     depth: Vec<f32>,
 }
 
@@ -130,7 +130,7 @@ impl<'a> Lines<'a> {
         self.along.div_ceil(STRETCHES)
     }
 
-    /// The bars that show.
+    /// The bars that the photo shows.
     pub fn bars(&self) -> Vec<Bar> {
         let least = (self.along as f64 * MIN_LENGTH) as usize;
         let profile: Vec<Option<f32>> = (0..self.across).map(|u| self.median_depth(u, 0..self.along, least)).collect();
@@ -139,7 +139,7 @@ impl<'a> Lines<'a> {
         let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };
         let mut excess: Vec<f32> = profile.iter().map(|p| p.map_or(0.0, |p| p - level)).collect();
 
-        // The deepest position first; a bar reaches as far as half of its depth.
+        // Take the deepest position first. A bar extends to where its depth falls to half.
         let mut bars = Vec::new();
         while let Some((peak, &depth)) =
             excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)
@@ -147,7 +147,7 @@ impl<'a> Lines<'a> {
             let first = (0..=peak).rev().take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
             let last = (peak..self.across).take_while(|&u| excess[u] >= depth / 2.0).last().unwrap_or(peak);
             bars.push(Bar { first, last, depth });
-            // The flanks belong to it as well.
+            // The flanks belong to the bar as well.
             let falls = |a: usize, b: usize| excess[b] <= excess[a] && excess[b] > 0.0;
             let start = (1..=first).rev().take_while(|&u| falls(u, u - 1)).last().map_or(first, |u| u - 1);
             let end = (last..self.across - 1).take_while(|&u| falls(u, u + 1)).last().map_or(last, |u| u + 1);
@@ -197,7 +197,8 @@ impl<'a> Lines<'a> {
     pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
-        // Where another bar crosses, both are equally dark.
+        // Where another bar crosses, the bar does not stand out from it, so the stretch looks as if the bar were
+        // absent.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
         let mut is_changed = false;
@@ -224,15 +225,15 @@ pub struct Stretch {
     sharpness: f64,
 }
 
-/// The bluntest view in which a bar shows.
+/// The sharpness of the bluntest view in which a bar shows.
 pub fn bluntest(bar: &Bar, stretches: &[Stretch]) -> f64 {
     let evident = stretches.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }
 
-/// For each position of a line the most light of the `count` positions before it, 0 without any.
+/// For each position of a line, the brightest light among the `count` positions before it; 0 without any.
 fn brightest_before<'a>(light: impl Iterator<Item = f32>, count: usize, brightest: impl Iterator<Item = &'a mut f32>) {
-    // Positions that may still be the brightest of a window, with falling light.
+    // Positions that may still become the brightest of a window, in order of falling light.
     let mut window: VecDeque<(usize, f32)> = VecDeque::new();
     for (u, (light, brightest)) in light.zip(brightest).enumerate() {
         while window.front().is_some_and(|(first, _)| first + count < u) {

@@ -30,7 +30,7 @@ pub struct Components {
 }
 
 impl Components {
-    /// Takes out those that `goes` says of by index.
+    /// Removes the components for whose index `goes` returns true, and renumbers the rest.
     pub fn remove(&mut self, goes: impl Fn(usize) -> bool) {
         let mut left = 0;
         let numbers: Vec<u32> = std::iter::once(0)

@@ -5,13 +5,14 @@ use super::foreshortening::LocalMap;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Relative difference of both sides up to which two lamps are alike. [judged on 20 photos]
+/// Largest relative difference, in each of both sides, of two lamps that are alike. [judged on 20 photos]
 const LIKE: f64 = 0.2;
-/// Pixels of the photo by which a side is off, and by which bloom may lengthen it: by more unwarped pixels where the
-/// photo is magnified more. [judged on 20 photos]
+/// Pixels of the photo by which a side may be measured wrongly, and by which bloom may lengthen a side. They are more
+/// unwarped pixels where the photo is magnified more. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
-/// The same of lamps that may be alike: what another fact must confirm, as a place on a lattice. [judged on 20 photos]
+/// The same two limits for lamps that only may be alike: another fact, such as a place on a lattice, must confirm them.
+/// [judged on 20 photos]
 const MAYBE_LIKE: f64 = 0.33;
 const MAYBE_BLUR: f64 = 2.5;
 
@@ -21,9 +22,9 @@ pub struct Evidence {
     pub component: usize,
     pub centre: DVec2,
     pub size: DVec2,
-    /// Pixels of the photo that show it.
+    /// Number of photo pixels that show the lamp.
     pub weight: f64,
-    /// Unwarped pixels along x and y by which a photo pixel of blur moves its edges.
+    /// Unwarped pixels along x and y by which one photo pixel of blur moves the lamp's edges.
     pub blur: DVec2,
 }
 
@@ -34,9 +35,9 @@ impl Evidence {
         Self { component, centre: lamp.centre, size, weight, blur }
     }
 
-    /// Groups of lamps that are alike but for blur, in each those that the photo shows best first.
+    /// Groups lamps that are alike but for blur. In each group the lamps that the photo shows best come first.
     pub fn kinds(lamps: &[Self]) -> Vec<Vec<Self>> {
-        // From little blur to much, so that each lamp meets those most alike in blur.
+        // Go from little blur to much, so that each lamp is compared with lamps of similar blur.
         let mut order = lamps.to_vec();
         order.sort_by(|a, b| a.blur.length().total_cmp(&b.blur.length()));
         let mut kinds: Vec<Vec<Self>> = Vec::new();
@@ -54,14 +55,14 @@ impl Evidence {
         kinds
     }
 
-    /// Whether two lamps may be of one size, seen through their blur.
+    /// Whether two lamps may have the same size, considering their blur.
     pub fn is_like(&self, other: &Self) -> bool {
         let blur = (self.blur + other.blur) * NOISE / 2.0 + (self.blur - other.blur).abs() * BLOOM;
         let slack = self.size.max(other.size) * LIKE + blur;
         (self.size - other.size).abs().cmple(slack).all()
     }
 
-    /// Whether two lamps in the same place of a lattice may be of one size.
+    /// Whether two lamps may have the same size, if they lie at the same place of a lattice.
     pub fn may_be_like(&self, other: &Self) -> bool {
         let slack = self.size.max(other.size) * MAYBE_LIKE + (self.blur + other.blur) * MAYBE_BLUR;
         (self.size - other.size).abs().cmple(slack).all()

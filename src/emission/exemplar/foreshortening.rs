@@ -30,7 +30,7 @@ impl LocalMap {
         self.jacobian.inverse()
     }
 
-    /// By how many unwarped pixels an edge across x and one across y move if they move by one pixel of the photo.
+    /// By how many unwarped pixels an edge across x, and an edge across y, move if they move by one pixel in the photo.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());
@@ -38,11 +38,13 @@ impl LocalMap {
     }
 }
 
-/// The part of an unwarped image that is magnified no more than so many times as its least magnified pixel, in length.
+/// The part of an unwarped image whose magnification in length, relative to the least magnified pixel, stays within a
+/// limit.
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     to_photo: Homography,
-    /// Largest value of the homography's denominator: magnification in length is its power of 3/2, to a factor.
+    /// Largest allowed value of the homography's denominator. Magnification in length is proportional to the
+    /// denominator to the power of 3/2.
     max_denominator: f64,
 }
 
@@ -56,7 +58,7 @@ impl MagnificationLimit {
         (max_denominator < high).then_some(Self { to_photo, max_denominator })
     }
 
-    /// Takes the pixels beyond the limit out of the shown ones.
+    /// Marks the pixels beyond the limit as not shown.
     pub fn restrict(&self, shown: &mut [bool], width: usize) {
         shown.iter_mut().enumerate().for_each(|(i, shown)| *shown &= self.contains(pixel_centre(i, width)));
     }

@@ -1,7 +1,8 @@
-//! Fragments: pieces of light that broke off a lamp, as between the blades of a louvre, and specks.
+//! Fragments: specks, and pieces of light that broke off a lamp, for example between the blades of a louvre.
 //!
-//! A lamp is one of a kind. A piece that covers far fewer photo pixels than a lamp of the smallest kind would in its
-//! place, and that lies close to another light or has no like, is no lamp: it tells where light is, and is not shown.
+//! A lamp usually has others of its kind. A piece is a fragment, not a lamp, if it covers far fewer photo pixels than a
+//! lamp of the smallest kind would cover in its place, and either lies close to another light or has few of its like. A
+//! fragment tells where light is, but is not shown.
 
 use super::components::{Component, Components};
 use super::evidence::Evidence;
@@ -10,16 +11,18 @@ use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// Share of all lamps' photo pixels that a kind of lamps has at least. [judged on 20 photos]
+/// Smallest share of all lamps' photo pixels that makes a group of alike pieces a kind of lamps. [judged on 20 photos]
 const MIN_KIND: f64 = 0.15;
 /// Share of the photo pixels of a lamp below which a piece is a fragment. [judged on 20 photos]
 const MAX_FRAGMENT: f64 = 0.2;
-/// Distance to the nearest light up to which a piece broke off, in longer sides of a lamp. [judged on 20 photos]
+/// Largest distance from a piece to the light that it broke off, as a multiple of the longer side of a lamp.
+/// [judged on 20 photos]
 const CLOSE: f64 = 0.35;
-/// A kind of so many lamps stands for itself, however small. [judged on 20 photos]
+/// A group of this many alike pieces or more is a kind of lamps, however small, unless the pieces lie close to other
+/// lights. [judged on 20 photos]
 const MANY: usize = 3;
 
-/// Gives fragments among the whole lamps the role of lamps that are cut.
+/// Gives the fragments among the whole lamps the role [`Role::Cut`].
 pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], to_photo: Homography) {
     let mut lamps: Vec<Evidence> = Vec::new();
     for (k, component) in components.list.iter().enumerate().filter(|(k, _)| roles[*k].is_whole()) {
@@ -28,7 +31,7 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     lamps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
-    // Kinds of lamps that are a good part of the light.
+    // Major kinds: those that make up a good part of the light.
     let kinds = Evidence::kinds(&lamps);
     let is_major = |kind: &&Vec<Evidence>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {
@@ -49,7 +52,7 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     }
 }
 
-/// Whether the box of another component comes this near.
+/// Whether the bounding box of another component lies within `reach`.
 fn has_neighbour(components: &Components, own: usize, reach: f64) -> bool {
     let corners = |c: &Component| {
         let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);

@@ -25,8 +25,8 @@ use working::{Sources, Working};
 /// Confidence from which a pixel is light. [convention]
 pub const LIT: f32 = 0.5;
 
-/// Pixels of the photo that a lamp covers at least, unless no light covers more: a disc three pixels across. [judged
-/// on 5 photos]
+/// Fewest photo pixels that a lamp covers, unless no light covers as many: roughly a disc three pixels across.
+/// [judged on 5 photos]
 const MIN_LAMP: f64 = 9.0;
 
 /// Lit share of the plane from which it is a luminous ceiling. [bench photos:tune]
@@ -51,8 +51,8 @@ pub struct Exemplar {
 }
 
 impl Exemplar {
-    /// Cuts an exemplar out of its input, up to a magnification unless that is 0. Errors: no valid pixel, no light
-    /// (`Degenerate`).
+    /// Cuts an exemplar out of its input. Parts beyond `max_magnification` are left out, unless that is 0. Errors: no
+    /// valid pixel, no light (`Degenerate`).
     pub fn new(input: &Input, working_side: f64, max_magnification: f64, job: Job) -> Result<Self> {
         let Input { unwarped: image, light, .. } = *input;
         let (width, height) = (image.width, image.height);
@@ -89,10 +89,11 @@ impl Exemplar {
 
     /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
     pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
-        // Lamps are what the texture may show as such.
+        // Count as lamps the components that the texture may show as one piece.
         let Self { width, height, components, .. } = self;
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
-        // A luminous ceiling goes on without the dark ceiling around it.
+        // The pattern of a luminous ceiling continues without the dark ceiling around its panes, so measure within
+        // their box.
         let [low, high] = if self.is_luminous_ceiling() { self.box_of_lights() } else { [[0, 0], [*width, *height]] };
         let is_inside = |x: usize, y: usize| x >= low[0] && y >= low[1] && x <= high[0] && y <= high[1];
         let colour = |i: usize| {
@@ -102,8 +103,9 @@ impl Exemplar {
         Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }
 
-    /// How much of an unwarped pixel is light, as far as `light`, the confidence, tells: of components, and of what
-    /// fades beside them. Nothing beyond the last pixel is.
+    /// How much of an unwarped pixel is light, by `light`, its confidence. Pixels of components count, and so do the
+    /// unlit pixels where confidence fades out beside them; lit pixels without a component give 0. An index beyond the
+    /// last pixel gives 0.
     pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
         let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
         match self.shown.get(pixel) {
@@ -145,8 +147,8 @@ impl Exemplar {
         self.components.list.iter().enumerate().filter(|(k, _)| self.roles[*k].is_piece())
     }
 
-    /// The part that is magnified up to a factor against the sharpest pixel; `None` where that is all, or there is no
-    /// photo.
+    /// The part that is magnified at most `max_magnification` times as much as the sharpest pixel; `None` where that is
+    /// the whole exemplar, or without a photo.
     pub fn magnification_limit(&self, max_magnification: f64) -> Option<MagnificationLimit> {
         MagnificationLimit::new(self.to_photo?, (&self.shown, self.width), max_magnification)
     }

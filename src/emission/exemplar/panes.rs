@@ -12,12 +12,13 @@ use crate::job::Job;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Share of a cell between bars that is light, from which it is a pane. [bench photos:real]
+/// A cell between bars is a pane if at least this share of the cell is light. [bench photos:real]
 const PANE: f64 = 0.35;
-/// Share of a pane's median luminance from which a pixel of its cell belongs to it, though the mask left it out.
-/// [bench photos:real]
+/// A pixel that the mask left out belongs to the pane of its cell if it reaches this share of the pane's median
+/// luminance. [bench photos:real]
 const BRIGHT: f32 = 0.5;
-/// Width of a dark line inside a pane up to which it is leading, in the side of the cell. [bench photos:real]
+/// Largest width of a dark line inside a pane that counts as leading, as a share of the cell's side.
+/// [bench photos:real]
 const LEADING: f64 = 0.06;
 
 /// The light of the panes without the bars between them; `None` where the plane is no luminous ceiling, or the light
@@ -47,7 +48,7 @@ pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     Ok(Some(light))
 }
 
-/// Takes the bars across one axis out of the light. The bars, in order, and whether any of them was light.
+/// Takes the bars across one axis out of the light. Returns the bars, in order, and whether any lit pixel was removed.
 fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     let mut bars = lines.bars();
     let mut is_changed = false;
@@ -58,7 +59,8 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
         bluntest = bluntest.min(own);
         is_changed |= lines.cut(bar, &stretches, own, light);
     }
-    // Where the photo is sharper than in any view of a bar, one that follows by its period would show.
+    // A bar predicted by the period is not cut where the photo shows no bar although it is at least as sharp there as
+    // the bluntest view of a bar that shows.
     let beyond = lines.beyond(&bars);
     for bar in &beyond {
         is_changed |= lines.cut(bar, &lines.stretches(bar), bluntest, light);
@@ -91,7 +93,8 @@ impl Cell<'_> {
     }
 }
 
-/// Makes one pane of a cell that is mostly light: with its leading, and with the parts that the mask left out.
+/// Makes one pane of a cell that holds enough light: fills its leading, and adds the bright parts that the mask left
+/// out.
 fn fill(cell: &Cell, light: &mut Image) {
     let lit: Vec<usize> = cell.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
     if lit.is_empty() || (lit.len() as f64) < PANE * cell.pixels().count() as f64 {
@@ -118,7 +121,8 @@ fn fill(cell: &Cell, light: &mut Image) {
     cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
 }
 
-/// Closes the narrow gaps of a line of pixels: its first one, the step to the next, and their number.
+/// Fills the narrow gaps of a line of pixels. The line is given by its first pixel, the step to the next pixel, and the
+/// number of pixels.
 fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
     let widest = (count as f64 * LEADING) as usize;
     let mut last = None;

@@ -2,10 +2,12 @@
 
 use super::components::{Component, Components};
 
-/// A lamp that the border cuts is like a whole one if it is at most this much longer and wider. [judged on 5 photos]
+/// A lamp that the border cuts resembles a whole lamp if its sides are at most this many times those of the whole lamp.
+/// [judged on 5 photos]
 const CUT_LAMP_SLACK: f64 = 1.35;
-/// A lamp may touch the border with this share of its width and be whole: masks fray. A border that cuts it off meets
-/// all of its width; one that meets so much of it takes a twentieth of a round lamp. [judged on 5 photos]
+/// A lamp that touches the border with at most this share of its width still counts as whole, because masks fray. A
+/// border that really cuts a lamp meets all of its width; a border that meets this share of a round lamp's width cuts
+/// off only a twentieth of the lamp. [judged on 5 photos]
 const WHOLE_CONTACT: f64 = 0.6;
 /// A light runs through if it covers this share of the shown pixels on a line through it. [rounding]
 const RUNS_THROUGH: f64 = 0.97;
@@ -15,14 +17,15 @@ const RUNS_THROUGH: f64 = 0.97;
 pub enum Role {
     /// A lamp that ends inside the shown region.
     Whole,
-    /// The same, though a few of its pixels lie at the border.
+    /// A whole lamp, though a few of its pixels lie at the border.
     WholeAtBorder,
-    /// A part of such a lamp that the border cuts off. It is not shown: whole ones take its place.
+    /// The visible part of a lamp that the border cuts and that resembles a whole lamp. It is not shown: whole lamps
+    /// take its place.
     Cut,
     /// A light that the border cuts and that no whole lamp resembles. It moves as one piece, as far as the photo shows
     /// it.
     Partial,
-    /// A light that runs through all that is shown. It follows the patches.
+    /// A light that runs through the whole shown region. It follows the patches.
     Through,
 }
 
@@ -73,7 +76,7 @@ fn contacts(components: &Components, shown: &[bool], width: usize, height: usize
     contacts
 }
 
-/// Whether a component covers all that is shown of the row or of the column through its centre.
+/// Whether a component is about as long as the shown part of the row, or of the column, through its centre.
 fn runs_through(c: &Component, shown: &[bool], width: usize, height: usize) -> bool {
     let (x, y) = ((c.centre.x as usize).min(width - 1), (c.centre.y as usize).min(height - 1));
     let row = (0..width).filter(|u| shown[y * width + u]).count();

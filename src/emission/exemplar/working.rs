@@ -7,8 +7,8 @@ use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// A lamp is compared within, and surroundings up to, this share of its half box; and the share of light up to which a
-/// pixel is one of the surroundings. [judged on 20 photos]
+/// Contrast compares the inside of a lamp, up to `INNER` times its half box, with its surroundings, up to `OUTER` times
+/// its half box. A pixel belongs to the surroundings if less than `UNLIT` of it is light. [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;
@@ -25,17 +25,17 @@ pub struct Working {
     pub confidence: Vec<f32>,
     /// Share of a pixel that is light.
     pub coverage: Vec<f32>,
-    /// May be used: shown, and not part of a lamp that the border cuts off while whole ones are there to take its
-    /// place.
+    /// Pixels that patches may show: shown, and not part of a cut lamp ([`super::roles::Role::Cut`]).
     pub usable: Vec<bool>,
-    /// Shown, cut lamps and all, and the share that is light: what the pattern is read from.
+    /// The pattern is read from these two: which pixels are shown, cut lamps included, and the share of each pixel that
+    /// is light.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
-    /// Mean luminance of what is shown, lights and all.
+    /// Mean luminance of the shown part of each pixel, lights included.
     pub luminance: Vec<f32>,
 }
 
-/// What the working size is made from.
+/// The full-size images that the working size is made from.
 pub struct Sources<'a> {
     pub image: &'a Image,
     pub light: &'a Image,
@@ -52,7 +52,8 @@ impl Working {
         let (width, height) = (reduce(image.width), reduce(image.height));
         let pitch = DVec2::new(image.width as f64 / width as f64, image.height as f64 / height as f64);
 
-        // Average colour, confidence, light and validity together; what is not usable counts for nothing.
+        // Average colour, confidence, light and validity together. In the channels for usable pixels, other pixels
+        // count as 0.
         const CHANNELS: usize = 9;
         let mut full = Image::new(image.width, image.height, CHANNELS)?;
         let mut brightest = 0f32;
@@ -82,7 +83,7 @@ impl Working {
         let confidence = try_collect(channel(3).copied())?;
         let coverage = try_collect(channel(4).copied())?;
 
-        // A working pixel is usable if all of it is. If that leaves none, only full size can show what there is.
+        // A working pixel is usable if all of it is. If that leaves no usable pixel, work at full size.
         let all = |c: usize| try_collect(channel(c).map(|&v| v > 1.0 - 1e-4));
         let usable = all(5)?;
         if !usable.contains(&true) && side < longest {
@@ -98,8 +99,8 @@ impl Working {
         self.coverage[pixel] >= 0.5
     }
 
-    /// By how much a box in unwarped pixels, about a centre, is brighter than the unlit surroundings; `None` where
-    /// they are not shown.
+    /// By how much a box, given by its centre and half its sides in unwarped pixels, is brighter than its unlit
+    /// surroundings; `None` where the box or the surroundings are not shown.
     pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
         let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
         let mut sums = [(0.0, 0usize); 2];

@@ -4,10 +4,10 @@ use crate::emission::exemplar::components::Components;
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Steps to the texels around one.
+/// Steps from a texel to the eight texels around it.
 const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// How much of each texel is light: of lamps from 0.5 on, of others less.
+/// How much of each texel is light: at least 0.5 for a texel of a lamp, less for any other.
 pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
 
 /// Which texels are light, and how much of each.
@@ -17,7 +17,8 @@ pub struct Lights<'a> {
     /// 0 or the number of the lamp.
     labels: &'a [u32],
     coverage: Coverage<'a>,
-    /// The most of each lamp by its number, which is taken for all of a texel: a confidence need not reach 1.
+    /// For each lamp number the lamp's largest coverage, which stands for a texel that is all light: confidence need
+    /// not reach 1.
     full: Vec<f32>,
 }
 
@@ -35,12 +36,12 @@ impl<'a> Lights<'a> {
         inside.then(|| y as usize * self.width + x as usize)
     }
 
-    /// The number of a texel's lamp, or 0; nothing beyond the texture.
+    /// The number of a texel's lamp, or 0; `None` beyond the texture.
     pub fn label(&self, at: [isize; 2]) -> Option<u32> {
         self.index(at).map(|i| self.labels[i])
     }
 
-    /// How much of a texel is light; nothing beyond the texture.
+    /// How much of a texel is light; `None` beyond the texture.
     pub fn coverage(&self, at: [isize; 2]) -> Option<f64> {
         let i = self.index(at)?;
         let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));
@@ -52,8 +53,9 @@ impl<'a> Lights<'a> {
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 
-    /// What a texel of a lamp adds to it, as steps from it and areas: itself, whole if it lies deep in the lamp; and
-    /// at the edge its part of those around it that are less than half light.
+    /// Calls `add` with each lit area that a texel adds to its lamp, and with the step from the texel to that area. A
+    /// texel deep in the lamp adds itself as a whole. A texel at the edge adds its own lit part, and its share of the
+    /// light in adjacent texels that are less than half light.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
@@ -71,8 +73,8 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// How much of a texel at the edge is light. Where coverage takes more than two texels from none to all it is
-    /// blurred: there it tells the distance from the edge.
+    /// How much of a texel at the edge is light. Where coverage takes more than two texels to rise from 0 to 1, the
+    /// edge is blurred: there the coverage tells the distance from the edge, from which the share is computed.
     fn sharpened(&self, at: [isize; 2]) -> f64 {
         let coverage = self.coverage(at).unwrap_or(0.0);
         let is_lit = self.label(at) != Some(0);

@@ -3,13 +3,14 @@
 use crate::emission::exemplar::components::{Component, Components};
 use crate::image::Image;
 
-/// How long a piece of light may be, in texels, to be a crumb of that area.
+/// Largest length, in texels, of a crumb whose area is below `crumb` texels.
 pub fn reach(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
-/// Takes out every connected piece of light smaller than `crumb` texels, and compact: no longer than the [`reach`] of
-/// one. Those that `is_cut` says of by their first and last texel are the rest of something larger.
+/// Removes every connected piece of light that is smaller than `crumb` texels and compact, that is, no longer than its
+/// [`reach`]. Pieces for whose first and last column and row `is_cut` returns true stay: they are the rest of a larger
+/// light.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,
@@ -29,8 +30,8 @@ pub fn remove(
     }
 }
 
-/// Takes out the texels of lamps that `goes` names by lamp and texel, and rims whose lamps all go: texels less than
-/// half of which is light, which the mask leaves out.
+/// Removes the texels of lamps for which `goes`, called with lamp and texel, returns true. Also removes rims, the
+/// texels less than half light that the mask leaves out, if all lamp texels next to them go.
 pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
     let (width, height) = (mask.width, mask.height);
     let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);

@@ -1,11 +1,11 @@
 //! Designs: one size and one outline for all lamps of a kind.
 //!
 //! A photo shows lamps ever smaller and more blurred with their distance, and unwarping magnifies the blur: of equal
-//! lamps the far ones come out larger and ragged. Lamps that are alike but for blur are of one kind. Its shape
-//! (rectangle or ellipse) and its size are estimated from all of them, each weighed by how finely the photo shows it;
-//! a bloom that adds equal pixels of the photo to every lamp shows as a size that grows with magnification, and is
-//! taken off as far as the lamps tell. The outline is then exact at any resolution. Lamps of another shape keep their
-//! own outline.
+//! lamps the far ones come out larger and ragged. Lamps that are alike but for blur are of one kind. The shape
+//! (rectangle or ellipse) and the size of a kind are estimated from all its lamps, each weighted by how finely the
+//! photo shows it; bloom adds equally many photo pixels to every lamp, so it shows as a size that grows with
+//! magnification, and is subtracted as far as the lamps show it. The outline is then exact at any resolution. Lamps of
+//! another shape keep their own outline.
 //!
 //! Not modelled: rings, and lamps whose shapes are alike but turned.
 
@@ -18,30 +18,33 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Longest ellipse, in its width: blur makes discs long, but longer shapes are tubes with round ends. And by how much
-/// an ellipse must agree better than a rectangle, whose corners blur rounds. [judged on 20 photos]
+/// Largest length of an ellipse, as a multiple of its width: blur makes discs long, but longer shapes are tubes with
+/// round ends. And by how much better an ellipse must agree with the lamps than a rectangle, because blur rounds the
+/// corners of a rectangle. [judged on 20 photos]
 const MAX_ELLIPSE: f64 = 2.5;
 const ROUNDER: f64 = 0.03;
-/// Photo pixels up to which blur may make the shape of a lamp; ratio of axes from which it is long; and the cosine of
-/// the angle to the blur's long axis. [judged on 20 photos]
+/// Largest area of a lamp, in photo pixels, whose shape blur alone may explain; ratio of axes from which a lamp or its
+/// blur counts as long; and the cosine of the largest angle between the long axes of both. [judged on 20 photos]
 const MAX_SMEARED: f64 = 160.0;
 const SMEAR: f64 = 1.25;
 const ALONG: f64 = 0.9;
-/// Length of the mean of doubled directions, from which lamps are long the same way: 1 where all are. Lamps that are
-/// long each along its own blur are discs, whatever their size. [judged on 20 photos]
+/// Lamps count as long in the same direction if the mean of their doubled directions is longer than this; its length is
+/// 1 where all directions agree. Lamps that are each long along their own blur, in different directions, are discs,
+/// whatever their size. [judged on 20 photos]
 const SAME_WAY: f64 = 0.93;
-/// Share of lamp and shape together that they have in common, at least. [judged on 20 photos]
+/// Smallest area that lamp and shape have in common, as a share of the area that they cover together.
+/// [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// Share of a rectangle's other side, about its middle, in which a side is measured. [judged on 20 photos]
+/// A side of a rectangle is measured within this share of its other side, about the middle. [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
-/// Angle in radians up to which lamps follow the axes of the plane. [judged on 20 photos]
+/// Largest angle, in radians, at which lamps count as aligned with the axes of the plane. [judged on 20 photos]
 const ALIGNED: f64 = 0.07;
 /// Standard deviation of a side, and of the bloom at each edge, in pixels of the photo. [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// Standard deviation of the bloom where the lamps show it: where it explains this share of the differences of their
-/// sides, and there are at least this many lamps. Sides of lamps of several lengths, or hidden in part, do not grow with
-/// magnification. [bench photos:tune, photos:real]
+/// Standard deviation of the bloom where the lamps show bloom: where it explains at least the share `EXPLAINED` of the
+/// differences of their sides, and there are at least `MIN_JUDGES` lamps. Lamps of several lengths, or hidden in part,
+/// do not show it: their sides do not grow with magnification. [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 1.5;
 const EXPLAINED: f64 = 0.5;
 const MIN_JUDGES: usize = 4;
@@ -56,7 +59,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// A uniform side of length s has a standard deviation of s / √12, a diameter d one of d / 4.
+    /// Ratio of a side to the standard deviation of the shape along it: a rectangle of side s has a deviation of s /
+    /// √12, an ellipse of diameter d has a deviation of d / 4.
     fn sides_per_deviation(self) -> f64 {
         match self {
             Self::Rectangle => 12f64.sqrt(),
@@ -80,7 +84,7 @@ pub struct Design {
 pub struct Fitted {
     pub kind: usize,
     pub centre: DVec2,
-    /// Its sides as the photo shows them, blur and all.
+    /// The lamp's sides as the photo shows them, blur included.
     pub size: DVec2,
     /// Unwarped pixels along and across the axis that a pixel of the photo covers.
     pub photo_pixel: DVec2,
@@ -108,7 +112,7 @@ impl Designs {
         designs
     }
 
-    /// Area of the designs over the area of their lamps in the unwarped photo.
+    /// Total area of the lamps by their designs, over their total area in the unwarped photo.
     pub fn area_ratio(&self, exemplar: &Exemplar) -> f64 {
         let (mut designed, mut shown) = (0.0, 0.0);
         for (k, lamp) in exemplar.components.list.iter().enumerate() {
@@ -120,7 +124,7 @@ impl Designs {
         if shown > 0.0 { designed / shown } else { 1.0 }
     }
 
-    /// The design of a component, and how it shows it.
+    /// The design of a component, and how the component fits it.
     pub fn of(&self, component: usize) -> Option<(&Design, &Fitted)> {
         let fitted = self.lamps.get(component)?.as_ref()?;
         Some((&self.kinds[fitted.kind], fitted))
@@ -135,7 +139,7 @@ struct Member {
     centre: DVec2,
     /// Second moments over the area: variances and covariance.
     moments: DMat2,
-    /// Angle of the smallest rectangle around it, in [0, π/2).
+    /// Angle of the smallest rectangle around the outline, in [0, π/2).
     angle: f64,
     weight: f64,
     blur: DVec2,
@@ -162,7 +166,7 @@ impl Member {
         })
     }
 
-    /// Whether it is longest where a pixel of the photo is.
+    /// Whether the lamp and a photo pixel, seen in the unwarped image, are both long, and in the same direction.
     fn is_smeared(&self) -> bool {
         let [[short, x], [long, y]] = principal(self.moments);
         let [[least, u], [most, v]] = principal(self.inverse_map * self.inverse_map.transpose());
@@ -176,8 +180,8 @@ impl Member {
         DVec2::new(along(axis), along(axis.perp()))
     }
 
-    /// Sides along and across an axis, if it is of a shape. A rectangle's are measured in the middle of the other:
-    /// blur rounds its corners.
+    /// Sides along and across an axis, if the lamp has the given shape. A side of a rectangle is measured in the middle
+    /// of its other side, because blur rounds the corners.
     fn sides(&self, axis: DVec2, shape: Shape) -> DVec2 {
         let sides = self.deviations(axis) * shape.sides_per_deviation();
         if shape == Shape::Ellipse {
@@ -198,7 +202,7 @@ impl Member {
     }
 }
 
-/// The design of a kind, and how each lamp shows it; `None` where no simple shape agrees with the lamps.
+/// The design of a kind, and how each lamp fits it; `None` where no simple shape agrees with the lamps.
 fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)> {
     let mut judges: Vec<&Member> = members.iter().filter(|m| m.is_clear).collect();
     if judges.is_empty() {
@@ -235,8 +239,9 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     Some((design, members.iter().map(fitted).collect()))
 }
 
-/// The diameter of lamps so small in the photo that its blur makes their shape: each is longest along the blur's
-/// longest axis. Their shorter axis tells most of it.
+/// The diameter of lamps that are discs made long by blur: most are long along the long axis of their blur, and they
+/// are small in the photo or long in different directions. The diameter is read from the shorter axis. `None` for other
+/// lamps.
 fn smeared_disc(members: &[&Member]) -> Option<f64> {
     let total: f64 = members.iter().map(|m| m.weight).sum();
     let mean_area = members.iter().map(|m| m.weight * m.weight).sum::<f64>() / total;
@@ -266,15 +271,17 @@ fn principal(moments: DMat2) -> [[f64; 2]; 2] {
     [[(mean - spread).max(0.0).sqrt(), axis.x], [(mean + spread).sqrt(), axis.y]]
 }
 
-/// The axis of the rectangles around lamps, mean of their angles modulo a right angle; x where they follow the axes.
+/// The common axis of the rectangles around lamps: the mean of their angles modulo a right angle; the x axis where that
+/// is nearly aligned.
 fn common_axis(members: &[&Member]) -> DVec2 {
     let sum: DVec2 = members.iter().map(|m| DVec2::from_angle(4.0 * m.angle) * m.weight).sum();
     let angle = sum.to_angle() / 4.0;
     if angle.abs() <= ALIGNED { DVec2::X } else { DVec2::from_angle(angle) }
 }
 
-/// The side that lamps have in common, of pairs of a side and the unwarped pixels that a photo pixel covers there:
-/// least squares of side = s + 2 bloom × photo pixel, the bloom held to its deviation.
+/// The side that lamps have in common. Each lamp gives a pair: its side, and the unwarped pixels that a photo pixel
+/// covers there. Solves side = s + 2 bloom × photo pixel by least squares, with a prior on the bloom given by its
+/// standard deviation.
 fn common_side(sides: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     // Normal equations of s and bloom.
     let (mut gram, mut sums, mut square) = (DMat2::ZERO, DVec2::ZERO, 0.0);
@@ -339,12 +346,12 @@ impl Design {
         }
     }
 
-    /// How much of a square of a side is within, the square's middle being at `p` from the centre.
+    /// Share of a square that lies within the design. The square's middle lies at `p` from the design's centre.
     pub fn coverage(&self, p: DVec2, side: f64) -> f64 {
         let q = DVec2::new(p.dot(self.axis), p.dot(self.axis.perp()));
         let half = self.size / 2.0;
         match self.shape {
-            // Exact where the square's sides are the rectangle's directions.
+            // Exact where the square is aligned with the rectangle.
             Shape::Rectangle => {
                 let along = |q: f64, half: f64| {
                     let (low, high) = ((q - side / 2.0).max(-half), (q + side / 2.0).min(half));
@@ -352,7 +359,7 @@ impl Design {
                 };
                 along(q.x, half.x) * along(q.y, half.y)
             }
-            // The signed distance to first order.
+            // From the signed distance to the ellipse, to first order.
             Shape::Ellipse => {
                 let u = q / half;
                 let r = u.length();
@@ -363,7 +370,7 @@ impl Design {
         }
     }
 
-    /// Share of a polygon and the design around its centre that both have in common.
+    /// Area that a polygon and the design around `centre` have in common, over the area that they cover together.
     fn agreement(&self, polygon: &[DVec2], area: f64, centre: DVec2) -> f64 {
         let own = self.outline(centre);
         let common = own.iter().zip(own.iter().cycle().skip(1)).fold(polygon.to_vec(), |clipped, (p, q)| {

@@ -1,8 +1,9 @@
 //! From patches to lamps: which lamps of the exemplar the texture shows, each as one piece.
 //!
-//! The texture is black off the lights (Fig. 12c), so all that a patch contributes is its lamps. A seam that must pass
-//! a lamp, because the lamp is wider than the overlap, would leave part of it; instead a lamp is shown whole where
-//! most of it lies in patches of its own shift, and not at all where less does or where another lamp took the place.
+//! The texture is black off the lights (Fig. 12c), so all that a patch contributes is its lamps. A seam that must cross
+//! a lamp, because the lamp is wider than the overlap, would leave only part of the lamp. Instead a lamp is shown whole
+//! where patches of its own shift show enough of it, and not at all where they show less or where another lamp has
+//! taken the place.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -15,21 +16,23 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
-/// Share of a lamp that patches of its shift must show.
+/// Smallest share of a lamp that patches of its shift must show.
 const MIN_SHARE: f64 = 0.3;
-/// Share of a lamp's pixels that others may hold on a lattice, where rounding is all that can make them meet.
+/// Largest share of a lamp's pixels that other lamps may have taken on a lattice, where only rounding makes lamps
+/// overlap.
 const LATTICE_SLACK: f64 = 0.2;
 
-/// What lamps may do.
+/// Rules for placing lamps.
 #[derive(Clone, Copy)]
 pub struct Rules {
-    /// They lie on a lattice: rounding alone can make them meet.
+    /// Lamps lie on a lattice: only rounding can make them overlap.
     pub is_lattice: bool,
-    /// What leaves the texture on one side comes in on the other.
+    /// A lamp that leaves the texture on one side comes in on the opposite side.
     pub wraps: bool,
 }
 
-/// The lamps shown by a patch map, best supported first, each as the photo shows it or one like it best.
+/// The lamps shown by a patch map. Lamps of which the patches show the largest share are placed first. A lamp that the
+/// photo shows poorly is replaced by one like it that the photo shows well.
 pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
     let canvas = Canvas { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
     let claims = canvas.claims(exemplar.working.height, job)?;
@@ -61,8 +64,8 @@ impl Canvas<'_> {
         self.footprints[k as usize].iter().filter_map(move |&[x, y]| self.texel(x + dx, y + dy))
     }
 
-    /// Which lamps the patches show at which shift, by the share of the lamp that they show, best first: share, lamp
-    /// and label.
+    /// Which lamps the patches show, and at which shift: the shown share of the lamp, the lamp, and the label of the
+    /// shift; largest share first.
     fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
         let rows = rows(&self.footprints, exemplar_height);
         let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
@@ -88,7 +91,8 @@ impl Canvas<'_> {
         Ok(claims)
     }
 
-    /// The lamps that find their place free, best first. Free lamps keep a pixel between them.
+    /// Places the lamps in the order of their claims, where their place is still free. Lamps that lie on no lattice
+    /// keep a pixel between them.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;
@@ -110,18 +114,19 @@ impl Canvas<'_> {
     }
 }
 
-/// The lamps of an exemplar that repeats as a whole: all of them in each cell of the lattice that the texture shows a
-/// part of; where it repeats itself, in each cell that begins in it.
+/// The lamps of an exemplar that repeats as a whole. Each lamp appears once for each cell in which the texture shows a
+/// part of it; in a texture that itself repeats, once for each cell that begins in the texture.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
-        // The shifts that bring some of it into the texture, and the cells around those.
+        // The shifts that bring some of the lamp into the texture, and the cells around those shifts.
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;
-            // A cell that begins on the far side is the one that begins on this.
+            // A cell that begins on the far side of the texture is the cell that begins on the near side, so count it
+            // once.
             let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
             if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
                 instances.push(Instance { component, shift });
@@ -138,8 +143,8 @@ struct Piece {
     lamp: u32,
 }
 
-/// The lamps that each working row shows, from left to right. Of lamps that share a pixel, because both are smaller
-/// than it, the last has it.
+/// The lamps in each working row, from left to right. A pixel shared by several lamps, each smaller than the pixel,
+/// goes to the last of them.
 fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {
@@ -160,7 +165,7 @@ fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
     rows.into_iter().map(pieces).collect()
 }
 
-/// A set of pixels, in the space of a bit each.
+/// A set of pixels, stored with one bit per pixel.
 struct Bits(Vec<u64>);
 
 impl Bits {
@@ -177,7 +182,8 @@ impl Bits {
     }
 }
 
-/// The working pixels of each lamp that is a piece: those whose centre it covers, or at least that of its own centre.
+/// The working pixels of each lamp that moves as one piece: the pixels whose centre the lamp covers or, if there are
+/// none, the pixel that holds the lamp's centre.
 fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
     let working = &exemplar.working;
     let mut footprints = vec![Vec::new(); exemplar.components.list.len()];

@@ -1,8 +1,8 @@
 //! Kinds of lamps: those of about the same size and shape, whatever their colour and however they are turned.
 //!
-//! A lamp is told by its area and the smallest rectangle around its outline, of which a square fills all, a disc π/4,
-//! a triangle half. The lamp with most of its like makes a kind with them; so on with the rest. Of lamps smaller than
-//! about twenty texels the outline does not tell squares from discs as wide.
+//! Lamps are compared by their area and by the smallest rectangle around their outline: a square fills all of that
+//! rectangle, a disc π/4, a triangle half. The lamp with the most lamps like it forms a kind with them; then the same
+//! is done with the rest. Below about twenty texels the outline does not tell a square from a disc of the same width.
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
@@ -13,12 +13,12 @@ use std::collections::BTreeMap;
 const LIKE: f64 = 0.25;
 /// By how much they may differ in the share of their rectangle that they fill.
 const FILL: f64 = 0.1;
-/// By how much rounding and its simpler line make an outline differ, in texels, of both sides together.
+/// By how much rounding and simplification may make outlines differ, in texels, both sides together.
 const ROUNDING: f64 = 2.0;
-/// Steps within which lamps are looked at as one: so many to a factor of e.
+/// Lamps are grouped into steps of nearly equal shape: this many steps to a factor of e.
 const STEPS: f64 = 20.0;
 
-/// What is compared of a lamp, in texels.
+/// The measures by which lamps are compared, in texels.
 #[derive(Clone, Copy)]
 struct Shape {
     area: f64,
@@ -44,7 +44,7 @@ impl Shape {
             && (self.fill() - other.fill()).abs() <= FILL + ROUNDING / short
     }
 
-    /// Lamps of the same are looked at as one.
+    /// The step of a shape. Lamps of the same step are treated as one.
     fn step(self) -> [i64; 3] {
         [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * STEPS).round() as i64)
     }
@@ -57,8 +57,8 @@ struct Step<'a> {
     count: usize,
 }
 
-/// Numbers the kinds of lamps from 1, those with most lamps first. Each counts for as many lamps as it says; those
-/// that count for none, as what the border cuts does, have no kind, 0.
+/// Numbers the kinds of lamps from 1, kinds with most lamps first. Each lamp comes with the number of lamps that it
+/// stands for. A lamp that stands for none, such as one that the border cuts, gets 0: no kind.
 pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     let mut steps: BTreeMap<[i64; 3], Step> = BTreeMap::new();
     for (lamp, count) in lamps {
@@ -72,7 +72,7 @@ pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     }
     let mut left: Vec<Step> = steps.into_values().collect();
 
-    // The one with most of its like, and these; then the same of the rest.
+    // The shape with the most lamps like it forms a kind with them; then the same with the rest.
     let count = |steps: &[Step]| steps.iter().map(|s| s.count).sum::<usize>();
     let mut kinds: Vec<Vec<Step>> = Vec::new();
     loop {
@@ -88,8 +88,8 @@ pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     }
 }
 
-/// Sides of the smallest rectangle around some corners, the long one first: one of its sides lies along one of their
-/// convex hull's (Freeman and Shapira 1975), so along one between two of them.
+/// Sides of the smallest rectangle around some corners, the long side first. One side of that rectangle lies along an
+/// edge of the convex hull (Freeman and Shapira 1975), so every edge of the hull is tried.
 fn smallest_rectangle(corners: &[DVec2]) -> DVec2 {
     let extent = |axis: DVec2| polygon::extent(corners, axis);
     let hull = polygon::convex_hull(corners.to_vec());

@@ -1,8 +1,8 @@
 //! Lamps at the sites of a lattice: each at its exact place, shown as the photo shows it best.
 //!
-//! Patches keep the disorder of the photo: lamps that the mask missed far away, and places that perspective moved. The
-//! sites of the lattice, weighed by photo pixels, tell where lamps belong. A site that is nearly always taken has a
-//! lamp in every cell; at others the patches decide, and the lamp moves to its place.
+//! Patches keep the disorder of the photo: far lamps that the mask missed, and places that perspective moved. The sites
+//! of the lattice, weighted by photo pixels, tell where lamps belong. A site that nearly always has a lamp gets one in
+//! every cell. At other sites the patches decide whether there is a lamp, and the lamp moves to the exact site.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -14,20 +14,23 @@ use crate::emission::reading::sites::{Site, Sites};
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// Share of its places in view that shine, by photo pixels, from which a site has a lamp in every cell. [bench
-/// emission:perspective]
+/// A site gets a lamp in every cell if at least this share of its places in view, by photo pixels, shine.
+/// [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
-/// The same of a site with no more than so many dark places: something may stand before these. [judged on 20 photos]
+/// The same share for a site with at most `FEW_DARK` dark places: something may stand in front of these.
+/// [judged on 20 photos]
 const MOSTLY: f64 = 0.5;
 const FEW_DARK: usize = 2;
 /// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its site does. [judged on 5
 /// photos]
 const SHARP: f64 = 0.4;
-/// Share of a lamp by which two sites may overlap before they are one. [judged on 20 photos]
+/// Two places count as the same site if, along both axes, they are no farther apart than this share of a lamp's side.
+/// [judged on 20 photos]
 const OVERLAP: f64 = 0.5;
 
-/// Lamps where the sites of a law have them, in a texture of `size` unwarped pixels whose lattice begins at `offset`;
-/// of the lamps that patches show those that belong to no such site stay.
+/// Places lamps at the sites of a law, in a texture of `size` unwarped pixels whose lattice begins at `offset`. Lamps
+/// in `shown`, which the patches show, are dropped at sites that get a lamp in every cell, moved to the exact place at
+/// other sites, and kept unmoved away from all sites.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
@@ -58,7 +61,7 @@ pub fn place(
             }
         }
     }
-    // Lamps that patches show elsewhere, each at its place.
+    // Then the lamps that patches show at other sites, moved to the exact site, and away from all sites, unmoved.
     for instance in shown {
         let at = centre(instance.component) + instance.shift - offset;
         let off = |site: &&Site| sites.residual(at - site.at);
@@ -80,7 +83,7 @@ fn is_always_taken(site: &Site, exemplar: &Exemplar) -> bool {
     site.occupancy() >= if site.dark <= FEW_DARK { MOSTLY } else { ALWAYS }
 }
 
-/// The sites without those that lie over a better one, the best first.
+/// The sites, best first, without those that overlap a better site.
 fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut order: Vec<&Site> = sites.list.iter().collect();
     order.sort_by(|a, b| b.shown.total_cmp(&a.shown));

@@ -9,30 +9,31 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::image::colour::luminance;
 use crate::job::Job;
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 
-/// The connected components of a mask, or of what is at least half light.
+/// The connected components of a mask, or of the texels of a coverage that are at least half light.
 pub fn components(mask: &Image) -> Result<Components> {
     components::find(mask.width, mask.height, |i| mask.data[i] >= 0.5)
 }
 
 /// One luminaire for each connected component of the lights, in the order of their first texel.
 pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
-    let total = texture.data.chunks_exact(3).map(|p| f64::from(luminance(Vec3::from_slice(p)))).sum::<f64>();
     let lights = Lights::new(found, coverage, texture.width, texture.height)?;
     let lamps: Result<Vec<Luminaire>> = (1..)
         .zip(&found.list)
         .map(|(label, lamp)| {
             job.check()?;
-            Ok(measure(label, lamp, texture, total, &lights))
+            Ok(measure(label, lamp, texture, &lights))
         })
         .collect();
     let mut lamps = lamps?;
+    let total: f64 = lamps.iter().map(|lamp| lamp.flux_share).sum();
+    lamps.iter_mut().for_each(|lamp| lamp.flux_share = if total > 0.0 { lamp.flux_share / total } else { 0.0 });
     number_kinds(&mut lamps, texture);
     Ok(lamps)
 }
 
-/// Tells the kinds of the lamps of a texture.
+/// Numbers the kinds of the lamps of a texture.
 pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
     let size = DVec2::new(texture.width as f64, texture.height as f64);
     kinds::number(lamps.iter_mut().map(|lamp| {
@@ -41,11 +42,13 @@ pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
     }));
 }
 
-fn measure(label: u32, lamp: &Component, texture: &Image, total: f64, lights: &Lights) -> Luminaire {
+/// A lamp with its flux, in luminance times texels, for the share.
+fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Luminaire {
     let [low, high] = [lamp.min, lamp.max].map(|p| p.map(|v| v as isize));
     let is_in = |at: [isize; 2]| lights.label(at) == Some(label);
 
-    // Area and moments of what is light, its edge included; from its own corner, so that they are the same everywhere.
+    // Area and moments of the light, its edge included, relative to the lamp's own corner, so that equal lamps get
+    // equal bits anywhere in the texture.
     let (mut area, mut sum, mut squares, mut colour) = (0.0, DVec2::ZERO, DVec3::ZERO, DVec3::ZERO);
     for y in low[1]..=high[1] {
         for x in (low[0]..=high[0]).filter(|&x| is_in([x, y])) {
@@ -66,14 +69,13 @@ fn measure(label: u32, lamp: &Component, texture: &Image, total: f64, lights: &L
     let ring = Ring::walk(lamp, &is_in, &|at| lights.coverage(at));
     let (outline, size) =
         ring.outline(DVec2::from_angle(orientation), DVec2::new(texture.width as f64, texture.height as f64));
-    let flux = f64::from(luminance(colour.as_vec3())) * lamp.area as f64;
     Luminaire {
         centre: DVec2::new(low[0] as f64, low[1] as f64) + centre,
         size,
         orientation,
         area,
         colour: colour.as_vec3(),
-        flux_share: if total > 0.0 { flux / total } else { 0.0 },
+        flux_share: f64::from(luminance(colour.as_vec3())) * lamp.area as f64,
         outline,
         kind: 0,
     }
@@ -84,7 +86,7 @@ pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
     let (difference, cross) = (xx - yy, 2.0 * xy);
     let anisotropy = difference.hypot(cross);
     let angle = if anisotropy > 1e-6 * (xx + yy) { 0.5 * cross.atan2(difference) } else { 0.0 };
-    // Rounding may not choose between the two ends.
+    // -π/2 and π/2 are the same direction; rounding must not choose between them.
     if angle <= -std::f64::consts::FRAC_PI_2 + 1e-12 { angle + std::f64::consts::PI } else { angle }
 }
 
@@ -93,6 +95,7 @@ mod tests {
     use super::*;
     use crate::geometry::polygon;
     use crate::job::Monitor;
+    use glam::Vec3;
 
     fn lamps(width: usize, height: usize, inside: impl Fn(f64, f64) -> bool) -> Vec<Luminaire> {
         let on = |x: usize, y: usize| inside(x as f64 + 0.5, y as f64 + 0.5);

@@ -1,11 +1,11 @@
-//! The outline of a lamp, finer than its texels: where half of what a texel covers would be light.
+//! The outline of a lamp, finer than its texels: it runs where half of a texel, centred there, would be light.
 //!
-//! Marching squares (Lorensen and Cline 1987) between the centres of texels. The outline crosses from a texel that is
-//! light to one beside it that is not; on which way it goes on where texels meet by a corner only, the lamp's
-//! connection decides. Where between two centres it crosses, both coverages tell: a straight edge that no other texel
-//! beside these is partly beyond makes their sum its place, to which a level set of values in between comes within
-//! 0.09 texels only. Corners are sharper than a texel can show: where two sides of a few texels meet, they go on until
-//! they do.
+//! Marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between a texel that is
+//! light and an adjacent texel that is not. Where two texels of the lamp meet at a corner only, the outline keeps them
+//! connected, as the lamp's labels do. The coverages of both texels tell where between their centres the outline
+//! crosses: for a straight edge that crosses only these two texels the sum of both coverages is its exact place, while
+//! a level set of interpolated values is off by up to 0.09 texels. A lamp's corners are sharper than texels can show:
+//! two sides that are a few texels long are extended until they meet.
 
 use crate::emission::exemplar::components::Component;
 use crate::geometry::polygon;
@@ -13,13 +13,15 @@ use glam::DVec2;
 
 /// Largest distance in texels between the outline and a crossing.
 const TOLERANCE: f64 = 0.1;
-/// The same of texels' corners where all or nothing of each is light: a staircase becomes a line.
+/// The same distance for an outline along the corners of texels, where each texel is either light or not: it turns a
+/// staircase into a line.
 const STAIRCASE: f64 = 1.0;
-/// A lamp up to this wide, in texels, keeps the corners of its texels too: crossings alone would take half of a single
-/// one.
+/// A lamp up to this wide, in texels, is outlined by the corners of its texels: crossings would enclose only half of a
+/// single texel.
 const NARROW: f64 = 2.0;
-/// How long a side must be to tell its direction, and what is blunt between two, in texels; how far each goes on at
-/// most; and the cosine of the angle by which they turn at least, 60°, which no disc does that has such sides.
+/// In texels: the length from which a side tells its direction, the greatest length of a blunt corner between two
+/// sides, and the greatest length by which a side is extended. Then the cosine of the smallest turn from one side to
+/// the next, 60°: no disc with sides this long turns as much.
 const SIDE: f64 = 2.0;
 const BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
@@ -27,8 +29,9 @@ const CORNER: f64 = 0.5;
 /// How far from the border of the texture, in texels, a corner on it may be by rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The outer boundary of a lamp, the lamp on the right, a crossing and the texel corner before it for each texel's
-/// edge. Points are relative to the lamp's first column and row, so that they have the same bits wherever it lies.
+/// The outer boundary of a lamp, walked with the lamp on the right. Each texel edge gives a crossing and the texel
+/// corner before it. Points are relative to the lamp's first column and row, so that they have the same bits wherever
+/// the lamp lies.
 pub struct Ring {
     crossings: Vec<DVec2>,
     corners: Vec<DVec2>,
@@ -38,9 +41,9 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Walks around a lamp. `is_in` says which texels are its own, by column and row; `coverage` how much of a texel
-    /// is light: of its own from 0.5 on, of others less, and nothing beyond the texture, where the outline ends at the
-    /// border.
+    /// Walks around a lamp. `is_in` says which texels are its own, by column and row; `coverage` says how much of a
+    /// texel is light: at least 0.5 for a texel of the lamp, less for others, and `None` beyond the texture, where the
+    /// outline follows the border.
     pub fn walk(
         lamp: &Component,
         is_in: &dyn Fn([isize; 2]) -> bool,
@@ -80,7 +83,7 @@ impl Ring {
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > NARROW {
-            // From the point farthest from the middle on, however the lamp lies.
+            // Begin at the point farthest from the middle, so that the result does not depend on how the lamp lies.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
             crossings.rotate_left(first);
@@ -96,12 +99,12 @@ impl Ring {
     }
 }
 
-/// By how much the outline of a lamp so narrow may differ from the corners of its texels.
+/// By how much the outline of a lamp of width `narrow` may differ from the corners of its texels.
 pub fn staircase(narrow: f64) -> f64 {
     STAIRCASE.min(0.3 * narrow)
 }
 
-/// The texel on one side ahead of a corner, the right for 1, the left for -1.
+/// The texel ahead of a corner, on the right for a `side` of 1, on the left for -1.
 fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     [
         at[0] + (heading[0] - 1 - side * heading[1]).div_euclid(2),
@@ -109,14 +112,14 @@ fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     ]
 }
 
-/// Where on the way from the centre of a texel to that of one beside it, of which less than half is light, half of a
-/// texel is. Beyond the border nothing is known: the outline is there.
+/// Where the outline crosses, as a share of the way from the centre of a lit texel to the centre of an adjacent texel
+/// that is less than half light. Beyond the border nothing is known: there the outline runs along the border.
 fn crossing(light: f64, beyond: f64) -> f64 {
     let step = light - beyond;
     match () {
         () if beyond.is_nan() => 0.5,
-        // Both are linear in the place of a straight edge: each itself while it spreads over more texels than these,
-        // their sum where it does not. At a half both say the same.
+        // The place of a straight edge follows from the coverages: from their slope where the edge is blurred over more
+        // than these two texels, from their sum where it is not. At a step of one half both formulas agree.
         () if step > 0.5 => light + beyond - 0.5,
         () => ((light - 0.5) / step.max(f64::MIN_POSITIVE)).min(1.0),
     }
@@ -128,7 +131,7 @@ fn farthest(points: &[DVec2], from: DVec2) -> usize {
     (0..points.len()).max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// A ring of points without those that lie near the line between others (Douglas and Peucker 1973).
+/// A ring of points without the points that lie near a line between other points (Douglas and Peucker 1973).
 pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
     // Split the ring at the point farthest from the first, then simplify both halves.
     let far = points.first().map_or(0, |first| farthest(&points, *first));
@@ -157,8 +160,8 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
     }
 }
 
-/// The same ring with the corners that lie beyond its blunt ones, but those that a texture, from its first to its last
-/// corner, cuts.
+/// The ring with its blunt corners replaced by sharp ones, except where the sharp corner would lie outside the texture,
+/// which reaches from `first` to `last`.
 fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];
@@ -185,7 +188,7 @@ fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     out
 }
 
-/// Where two sides would meet if what is between them is no more than a texel's width blunts.
+/// The point where two sides would meet, if the part between them is short enough to be a corner blunted by texels.
 fn corner([a, end]: [DVec2; 2], [start, b]: [DVec2; 2], between: &[DVec2]) -> Option<DVec2> {
     let length: f64 = between.windows(2).map(|w| w[0].distance(w[1])).sum();
     let (u, v) = ((end - a).normalize(), (b - start).normalize());

@@ -1,9 +1,9 @@
 //! Light that the photo shows clipped.
 //!
 //! A lamp is brighter than a photo's white, so its core is white in the photo whatever its colour. At its rim, where
-//! the lens blurs it into the dark, all channels are below white: the rim tells the lamp's colour. A core is then
-//! given that colour, as dark as its clipped channels allow; how bright it is beyond that no photo tells, and
-//! relighting solves for it.
+//! the lens blurs it into the dark, all channels are below white: the rim tells the lamp's colour. The core is given
+//! the rim's colour, at the least brightness that its clipped channels allow. The photo does not tell how much brighter
+//! the core is; relighting solves for that.
 //!
 //! Not modelled: colour that changes within a lamp's core.
 
@@ -11,27 +11,27 @@ use crate::emission::exemplar::components::Components;
 use crate::image::Image;
 use glam::{DVec3, Vec3};
 
-/// A photo whose values go beyond this is taken for one that is not clipped.
+/// A photo with values above this counts as not clipped.
 const MAX_CLIPPED: f32 = 1.05;
-/// Share of the level from which a pixel is the lamp's light rather than that of what is around it.
+/// Share of the clip level from which a pixel near a lamp shows the lamp's light rather than its surroundings.
 const BRIGHT: f32 = 0.5;
-/// Pixels around a lamp that may belong to its rim.
+/// Largest distance from a lamp, in pixels, of a pixel that may belong to its rim.
 const REACH: usize = 2;
-/// Pixels of a rim from which it tells a colour.
+/// Fewest pixels of a rim that tell a colour.
 const MIN_RIM: f64 = 8.0;
-/// No channel is taken to be weaker than this against the strongest.
+/// Smallest ratio of a channel to the strongest channel; a weaker channel is raised to it.
 const MIN_CHANNEL: f64 = 1.0 / 16.0;
 
-/// The colours of lamps, for pixels that show them clipped.
+/// The colours of lamps, read from their rims, for pixels that show the lamps clipped.
 pub struct RimColours {
     level: f32,
-    /// Of each component, its strongest channel 1; nothing where no rim tells it.
+    /// The colour of each component, scaled so that its strongest channel is 1; `None` where no rim tells it.
     colours: Vec<Option<Vec3>>,
 }
 
 impl RimColours {
-    /// Reads the rims of the lamps of an image in which channels from `level` on are clipped; 0 takes none for
-    /// clipped.
+    /// Reads the rims of the lamps of an image in which channels from `level` on are clipped. `None` if `level` is 0,
+    /// if no lit pixel is clipped, or if lit pixels exceed `MAX_CLIPPED`, since such an image is not clipped.
     pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
         let colour = |i: usize| image.rgb(i % image.width, i / image.width);
         let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);
@@ -40,7 +40,7 @@ impl RimColours {
             return None;
         }
 
-        // The light of each rim, and of all of them for lamps that have none.
+        // The summed colour of each rim, and of all rims together, for lamps without a rim of their own.
         let mut sums = vec![(DVec3::ZERO, 0.0); components.list.len() + 1];
         for (i, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
             let value = colour(i);
@@ -60,12 +60,12 @@ impl RimColours {
         Some(Self { level, colours: sums[1..].iter().map(|&sum| of(sum).or(all)).collect() })
     }
 
-    /// The light of a component where the photo shows `value`.
+    /// The colour of a component where the photo shows `value`: clipped channels are replaced by the rim's colour.
     pub fn undo(&self, component: usize, value: Vec3) -> Vec3 {
         let clipped = value.cmpge(Vec3::splat(self.level));
         match self.colours.get(component).copied().flatten() {
             Some(colour) if clipped.any() => {
-                // What channels that are not clipped say of its strength, and the least that those that are allow.
+                // The strength of the rim's colour: unclipped channels tell it, clipped channels set its least value.
                 let strength = value / colour;
                 let least = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
                 let open = Vec3::select(clipped, Vec3::ZERO, strength).max_element();

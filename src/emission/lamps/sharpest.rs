@@ -1,4 +1,4 @@
-//! Lamps that the photo shows small, replaced by like ones that it shows large.
+//! Replaces lamps that the photo shows small by similar lamps that it shows large.
 
 use super::design::Designs;
 use super::instance::Instance;
@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 /// By how much, relatively, lamps of a kind may differ in area, in both sides and in their ratio.
 const LIKE: f64 = 0.25;
 
-/// By how much more, in pixels of the photo: blur and glow make a lamp so much longer that the photo shows small.
-/// Beyond the last of these no lamps are alike.
+/// By how many photo pixels they may differ in addition: blur and glow lengthen a lamp that the photo shows small.
+/// `MIN_LIKE` limits the sum of both, as a relative difference.
 const BLUR: f64 = 2.0;
 
 const MIN_LIKE: f64 = 0.5;
@@ -19,8 +19,8 @@ const MIN_LIKE: f64 = 0.5;
 /// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its kind does.
 const SHARP: f64 = 0.4;
 
-/// Puts in the place of a lamp that the photo shows small one like it that it shows large. Which of several is drawn,
-/// so that they keep their variety.
+/// Replaces each lamp that the photo shows small by a similar lamp that the photo shows large. Among several such lamps
+/// one is drawn at random, so that the texture keeps their variety.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -29,7 +29,7 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
             let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= like * a.max(b) as f64;
             let (a, b) = (&lamps[k], &lamps[*j]);
             let ([w, h], [u, v]) = (a.size(), b.size());
-            // As large and of the same proportions; and with nothing cut off.
+            // Alike in size and proportions, and with nothing cut off.
             let is_alike = close(a.area, b.area) && close(w, u) && close(h, v) && close(w * v, u * h);
             exemplar.roles[*j] == Role::Whole && is_alike
         };
@@ -48,8 +48,8 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// The same of lamps that have a design: of a kind those are shown that the photo shows sharply, each at the middle of
-/// the lamp it stands for.
+/// Like [`show_sharpest`], for lamps that have a design: each lamp that the photo does not show sharply is replaced by
+/// one of its kind that it does, centred on the lamp it replaces.
 pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [Instance], seed: u64) {
     let area = |k: usize| exemplar.photo_area[k];
     let clear = |kind: usize| {

@@ -1,9 +1,9 @@
 //! A stretched lattice, cell by cell.
 //!
-//! Patches show lamps as far apart as the exemplar has them. Where a lattice is stretched, so that the texture can be
-//! repeated, lamps would keep that distance within a patch and jump from one to the next. So each cell of the
-//! stretched lattice shows, in its own place, the lamps of that cell of the exemplar which the patch at its middle
-//! shows.
+//! Patches show lamps at the distances that they have in the exemplar. Where a lattice is stretched, so that the
+//! texture can be repeated, lamps would keep those distances within a patch and jump from one patch to the next. So
+//! each cell of the stretched lattice takes its lamps, in its own place, from one cell of the exemplar: the cell that
+//! the patch at its middle shows.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -16,9 +16,8 @@ use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The lamps of a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's `own`, which
-/// begins at
-/// `offset`. `None` where the exemplar shows no lamp, or no cell of it as a whole.
+/// The lamps of a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's lattice
+/// `own`. The stretched lattice begins at `offset`. `None` where the exemplar shows no lamp, or no whole cell.
 pub fn place(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
@@ -30,7 +29,7 @@ pub fn place(
     let [own, stretched] = [own, stretched].map(|[a, b]| DMat2::from_cols(a, b));
     let (to_own, to_stretched) = (own.inverse(), stretched.inverse());
 
-    // Cells lie around the lamp nearest to the middle of the exemplar, and others like it.
+    // Cells are centred on the lamp nearest to the middle of the exemplar, and on its lattice neighbours.
     let middle = DVec2::new(exemplar.width as f64, exemplar.height as f64) / 2.0;
     let first = exemplar
         .pieces()
@@ -39,7 +38,8 @@ pub fn place(
     let cell_of = |at: DVec2| (to_own * (at - first.centre)).round().to_array().map(|c| c as i64);
     let step = |[i, j]: Cell| DVec2::new(i as f64, j as f64);
 
-    // The lamps of each, and those that are shown where that lamp is, or would be.
+    // The lamps of each cell; then the whole cells: those without a cut lamp in which the photo shows the place of the
+    // central lamp.
     let mut lamps: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     exemplar.pieces().for_each(|(k, lamp)| lamps.entry(cell_of(lamp.centre)).or_default().push(k));
     let components = exemplar.components.list.iter().zip(&exemplar.roles);
@@ -53,7 +53,7 @@ pub fn place(
     }
     let known: BTreeSet<Cell> = whole.iter().copied().collect();
 
-    // Cells whose middle is in the texture: what lies beyond comes in again on the other side.
+    // Use the cells whose middle lies in the texture; the parts of them beyond its border come in on the opposite side.
     let start = first.centre + offset;
     let mut instances = Vec::new();
     for cell in cells::between(to_stretched, DVec2::ZERO - start, size - start) {

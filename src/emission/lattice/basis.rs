@@ -4,13 +4,14 @@ use super::continuation::MAX_SLANT;
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
-/// Lamps that vote. [bench emission:seconds]
+/// Most lamps that vote. [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
 /// Distance from a lattice site, in periods, within which a pair of lamps votes. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
 
-/// A period that all but follows an axis follows it: a row of few lamps cannot tell a slant of a few % from their own
-/// disorder, but carried on for long it would leave the plane's axes, along which the photo was unwarped.
+/// Aligns a period that nearly follows an axis with that axis. A row of few lamps cannot tell a slant of a few % from
+/// the disorder of its lamps, but a long row with that slant would drift away from the axis, along which the photo was
+/// unwarped.
 pub fn straight(period: DVec2) -> DVec2 {
     match () {
         _ if period.x.abs() < MAX_SLANT * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
@@ -19,9 +20,10 @@ pub fn straight(period: DVec2) -> DVec2 {
     }
 }
 
-/// Fits the first `count` basis vectors to the centres of like lamps: every pair whose difference is near `i a + j b`
-/// votes for both vectors by least squares, near pairs first, so that the long ones are counted by an exact ruler. Its
-/// vote weighs as much as the smaller of both is large: crumbs are alike everywhere.
+/// Fits the first `count` basis vectors to the centres of like lamps. Every pair of lamps about `i a + j b` apart, with
+/// whole `i` and `j`, votes for both vectors by least squares. Near pairs vote first, so that the steps between far
+/// lamps are counted with an accurate basis. A vote weighs as much as the area of the smaller lamp, because small
+/// crumbs look alike everywhere.
 pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();

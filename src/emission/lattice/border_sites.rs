@@ -1,8 +1,8 @@
 //! Places of a lattice that the border of the exemplar cuts.
 //!
-//! A lamp there is left out, since only a part of it is seen. So must be the dark of such a place without a lamp: if
-//! patches could show it, but not its like with a lamp, the texture would miss lamps more often than the exemplar
-//! does.
+//! A lamp at such a place is left out, because only a part of it is visible. A place of this kind without a lamp must
+//! be left out too: if patches could show the dark places at the border but not the lit ones, the texture would miss
+//! lamps more often than the exemplar does.
 
 use super::cells;
 use crate::emission::exemplar::components::Component;
@@ -10,12 +10,12 @@ use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
 use crate::error::Result;
 use glam::{DMat2, DVec2};
 
-/// Lamps are at the same place of a cell if they are no farther apart than this, in periods.
+/// Lamps are at the same place of a cell if, after whole lattice steps, they are closer than this, in periods.
 const SAME: f64 = 0.2;
-/// Share of the places wholly in sight that have a lamp, from which a place is made for one.
+/// A place of the cell is meant for a lamp if at least this share of its fully visible copies has one.
 const MADE_FOR: f64 = 0.5;
 
-/// Takes dark places that the border cuts out of what patches may show.
+/// Marks dark places that the border cuts as unusable, so that patches do not show them.
 pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let (width, height) = (exemplar.width, exemplar.height);
     let inverse = DMat2::from_cols(a, b).inverse();
@@ -71,7 +71,7 @@ fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     first
 }
 
-/// Excludes boxes of unwarped pixels from what the texture may show, unless nothing would be left.
+/// Marks boxes of unwarped pixels as unusable for patches, unless that leaves nothing usable.
 fn hide(exemplar: &mut Exemplar, boxes: &[[usize; 4]]) {
     let working = &exemplar.working;
     let mut usable = working.usable.clone();

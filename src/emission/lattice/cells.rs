@@ -2,7 +2,7 @@
 
 use glam::{DMat2, DVec2};
 
-/// The cells whose place, from that of the first, is between two corners; and some around them.
+/// The cells whose place, relative to that of cell (0, 0), lies between two corners; and some cells around them.
 pub fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item = Cell> {
     let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| to_cells * c);
     let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).floor();
@@ -11,5 +11,5 @@ pub fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item =
     (first.y as i64..=last.y as i64).flat_map(move |j| columns.clone().map(move |i| [i, j]))
 }
 
-/// Cells by their steps along both periods.
+/// A cell, given by its steps along both periods.
 pub type Cell = [i64; 2];

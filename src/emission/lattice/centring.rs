@@ -5,7 +5,7 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
 
-/// Most cells of a lattice that are looked at for lamps that its border cuts.
+/// Most cells of a lattice in which lamps cut by the texture's border are counted.
 const MAX_CELLS: f64 = 1e6;
 
 /// A box around lights.
@@ -30,9 +30,9 @@ impl Bounds {
     }
 }
 
-/// The shift of a lattice that puts a lamp, or the middle between two, into the middle of a texture of `size` unwarped
-/// pixels: of these that by which the border cuts fewest lamps, and then leaves most room to them. `None` without a
-/// lattice.
+/// The shift of a lattice that puts a lamp, or the middle between two lamps, into the middle of a texture of `size`
+/// unwarped pixels. Of these shifts, the one with which the border cuts fewest lamps, and then leaves most room beside
+/// the others. `None` without a lattice.
 pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Option<DVec2> {
     let [a, b] = continuation.lattice()?;
     let motif = motif(exemplar, continuation);
@@ -51,8 +51,8 @@ pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Op
     Some(shifts[best])
 }
 
-/// What a lattice repeats: the lamps of a cell, that nearest to the middle of the exemplar first. Where the exemplar's
-/// extent serves as a period, all lamps along it are one.
+/// The boxes that a lattice repeats: the lamps of one cell, the lamp nearest to the middle of the exemplar first. Where
+/// the exemplar's extent serves as a period, all lamps along that axis share one box.
 fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {
@@ -78,7 +78,8 @@ fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     }
 }
 
-/// How many lamps the border of the texture cuts, and how near to it the others come.
+/// The number of lamps that the border of the texture cuts, and the smallest distance of the other lamps from the
+/// border.
 fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (usize, f64) {
     let inverse = DMat2::from_cols(a, b).inverse();
     let (mut cut, mut room) = (0, f64::INFINITY);

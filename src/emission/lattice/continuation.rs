@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};
 
-/// Slant up to which a row of lamps follows an axis. [judged on 5 photos]
+/// Largest slant at which a row of lamps still follows an axis. [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
 
 /// How the texture goes on beyond the exemplar.
@@ -15,7 +15,7 @@ pub enum Continuation {
     Lattice([DVec2; 2]),
     /// One period was found (the first); the extent of the exemplar serves as the second.
     Row([DVec2; 2]),
-    /// Too few lights to have a law: the extent of the exemplar serves as both periods.
+    /// Too few lights to have a law: the exemplar repeats as a whole, its extent serving as both periods.
     Tile([DVec2; 2]),
     /// Many lights without a period: patches go anywhere.
     Free,
@@ -30,7 +30,7 @@ impl Continuation {
         }
     }
 
-    /// The same with its lattice stretched so that a whole number of periods, one at least, fits a size.
+    /// The same law with its lattice stretched so that a whole number of periods, at least one, fits a size.
     ///
     /// Errors: `Degenerate` where that leaves no lattice.
     pub fn fitted(self, size: DVec2) -> Result<Self> {
@@ -56,8 +56,8 @@ impl Continuation {
         })
     }
 
-    /// The period along x and along y, in unwarped pixels, where the lattice has one there; that of a copy is
-    /// infinite.
+    /// The periods along x and along y, in unwarped pixels, where the lattice has a period along that axis. Both
+    /// periods of a copy are infinite.
     pub fn periods(&self) -> [Option<f64>; 2] {
         if *self == Self::Copy {
             return [Some(f64::INFINITY); 2];

@@ -1,4 +1,4 @@
-//! How alike a masked image is to itself at every shift.
+//! The correlation of a masked image with itself at every shift.
 
 use crate::error::Result;
 use crate::exec;
@@ -48,7 +48,8 @@ impl Autocorrelation {
         let s = spectrum(&|i| (f64::from(values[i]).powi(2), 0.0))?;
 
         // Cross spectra conj(A) B give the sums of a(p) b(p + shift). Two real results share one transform: v·v + i
-        // m·m, and m·v + i s·v, the sums over the first of each pair; those over the second are at the opposite shift.
+        // m·m, and m·v + i s·v. The latter are sums over the first pixel of each pair; the sums over the second pixel
+        // are found at the opposite shift.
         let cross = |a: &[Complex], b: &[Complex], c: &[Complex], d: &[Complex]| -> Result<Vec<Complex>> {
             let mut grid = try_vec(columns * rows, Complex::default())?;
             for (i, out) in grid.iter_mut().enumerate() {
@@ -77,7 +78,7 @@ impl Autocorrelation {
             overlap[i] = n as f32;
             let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
             let least = 1e-9 * n;
-            // Where nothing varies on either side, the two are alike if their means are.
+            // Where neither side varies, both are alike if their means are equal.
             value[i] = if var1 > least && var2 > least {
                 ((mm - m1 * m2 / n) / (var1 * var2).sqrt()).clamp(-1.0, 1.0) as f32
             } else {
@@ -107,7 +108,7 @@ impl Autocorrelation {
 
 /// Forward transform in two dimensions: rows, transpose, rows, transpose.
 fn transform(mut grid: Vec<Complex>, columns: usize, rows: usize, job: Job) -> Result<Vec<Complex>> {
-    // Fixed fractions of progress are not reported: the transforms take milliseconds.
+    // No progress is reported: the transforms take milliseconds.
     let silent = job.part(0.0, 0.0);
     for (width, height) in [(columns, rows), (rows, columns)] {
         let twiddles: Vec<Complex> = (0..width / 2)

@@ -1,4 +1,4 @@
-//! The extent of the exemplar as a period: of lights that show no other law.
+//! The extent of the exemplar as a period, for lights that show no other law.
 
 use super::continuation::Continuation;
 use crate::emission::agreement::statistics;
@@ -6,15 +6,14 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Unwarped pixels between the lamps of one cell and the lamps of the next, where cells are as small as possible.
-/// [convention]
+/// Smallest gap between the lamps of one cell and the lamps of the next, in unwarped pixels. [convention]
 const CELL_GAP: f64 = 4.0;
 
-/// Fewer lamps than this show no law of their own: the exemplar repeats as a whole. [judged on 5 photos]
+/// An exemplar with fewer lamps than this shows no law of its own and repeats as a whole. [judged on 5 photos]
 const FEW_LAMPS: usize = 6;
 
-/// Room around lamps from which they are a group by themselves, both sides together, in the longest distance from one
-/// of them to the nearest other. [judged on 5 photos]
+/// Lamps form a group by themselves if the room around them, both sides together, is more than this many times the
+/// longest distance from a lamp to its nearest neighbour. [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
 /// Width and height of the usable part of the exemplar, in unwarped pixels.
@@ -29,14 +28,14 @@ pub fn as_period(exemplar: &Exemplar) -> Continuation {
     Continuation::Tile([DVec2::X * cell, DVec2::Y * cell])
 }
 
-/// Whether there are too few lamps for a law of their own, or one group of them.
+/// Whether there are too few lamps for a law of their own, or all lamps form one group.
 pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }
 
-/// The sides at which an exemplar repeats as a whole, so that light covers the share of the plane that it covers of
-/// what is shown: less than its extent where that has dark corners that the photo does not show, or lamps cut off that
-/// are left out.
+/// The sides of the cell with which an exemplar repeats as a whole. They are chosen so that the texture has the same
+/// lit share as the shown part of the plane. So the cell is smaller than the exemplar's extent where the extent
+/// includes corners that the photo does not show, or cut lamps that are left out.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
@@ -45,7 +44,7 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     if share > 1.0 - 1e-6 {
         return extent;
     }
-    // Lamps of one cell keep clear of those of the next.
+    // Lamps of one cell keep clear of the lamps of the next cell.
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
     let (low, high) = exemplar.pieces().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, lamp)| {
         (low.min(point(lamp.min)), high.max(point(lamp.max) + 1.0))
@@ -55,8 +54,8 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
 }
 
-/// Whether the lamps keep together, far from the sides of what is shown along both axes: they are one thing, as a
-/// chandelier is.
+/// Whether the lamps lie close together, far from the sides of the exemplar along both axes, and so are one object,
+/// such as a chandelier.
 fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     let lamps = &exemplar.components.list;
     let centres: Vec<DVec2> = lamps.iter().map(|lamp| lamp.centre).collect();
@@ -67,9 +66,9 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// The period at which a row that ends is repeated along itself: as many of its own as the exemplar shows, with the
-/// room at both ends. `None` where it may go on beyond the exemplar: another lamp would find no room at one of the
-/// ends.
+/// The period at which a row that ends within the exemplar is repeated along itself: the length of the exemplar along
+/// the row, with the room at both ends, in whole periods of the row. `None` where the row may go on beyond the
+/// exemplar, because one of its ends has no room for another lamp.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;
@@ -95,8 +94,8 @@ pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     (ends && times >= 1.0).then(|| period * times)
 }
 
-/// Whether a photo shows the places beyond the first and the last lamp of a row: its plane is no rectangle. Without a photo
-/// all is in view.
+/// Whether the photo shows the places of the next lamp beyond both ends of a row; the shown part of the plane is no
+/// rectangle, so it may not. Without a photo all places count as shown.
 fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
     let is_shown = |p: DVec2| {
         let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;

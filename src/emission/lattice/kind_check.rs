@@ -4,15 +4,15 @@ use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::DVec2;
 
-/// Relative difference up to which both sides of two lamps are of one kind. [judged on 5 photos]
+/// Largest relative difference, in each of both sides, of two lamps of one kind. [judged on 5 photos]
 const KIND: f64 = 0.33;
-/// Share of the lamps that a period may lead to lamps of another kind. [judged on 5 photos]
+/// Largest share of the lamps that a period may lead to lamps of another kind. [judged on 5 photos]
 const MAX_UNLIKE: f64 = 0.4;
-/// Lamps that are looked at. [bench emission:seconds]
+/// Most lamps that are looked at. [bench emission:seconds]
 const MAX_LAMPS: usize = 200;
 
-/// Whether a shift leads from lamps to lamps of their kind, where it leads to any: light correlates with itself where
-/// a row of narrow panes falls onto one of wide ones, but that is no period.
+/// Whether a shift leads from lamps to lamps of their kind; shifts that lead to no lamp do not count. Light also
+/// correlates with itself where a row of narrow panes falls onto a row of wide panes, but such a shift is no period.
 pub fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
     let all: Vec<_> = exemplar.lamps().collect();
     let size = |lamp: &Component| DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);

@@ -1,9 +1,10 @@
 //! Regularity: the lattice the lamps lie on, from the autocorrelation of their mask.
 //!
-//! Where a shift of the mask onto itself is nearly perfect, lamps repeat by it. The two shortest such shifts are the
-//! lattice (rectangular, hexagonal or skewed; missing lamps lower the correlation by their share only), and every
-//! patch is held to its phase. One repeat alone, or a handful of lamps, is continued by taking the exemplar as the
-//! other period: nothing in it says how a design goes on beside itself. Many lamps without any repeat are left free.
+//! Where a shift lays the mask onto itself nearly perfectly, the lamps repeat by that shift. The two shortest such
+//! shifts make the lattice, which may be rectangular, hexagonal or skewed; missing lamps lower the correlation only by
+//! their share. Every patch is held to the phase of the lattice. If there is only one such shift, or only a handful of
+//! lamps, the extent of the exemplar serves as the missing period, because the exemplar does not show how its design
+//! goes on beside itself. Many lamps without any such shift are left free.
 
 pub mod basis;
 pub mod border_sites;
@@ -24,8 +25,8 @@ use continuation::Continuation;
 use correlation::Autocorrelation;
 use glam::DVec2;
 
-/// How far below the best a period's correlation may lie: lower ones match lamps of unequal kind. [bench
-/// emission:patterns]
+/// Smallest correlation of a period, as a share of the best: lower ones match lamps of unequal kind.
+/// [bench emission:patterns]
 const RELATIVE_CORRELATION: f32 = 0.9;
 /// Share of the valid pixels that must overlap for a correlation to count. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
@@ -34,8 +35,9 @@ const SIDE: usize = 160;
 /// Sine of the angle between two shifts below which they are parallel: about 17°. [bench emission:patterns]
 const PARALLEL: f64 = 0.3;
 
-/// How the lights of the exemplar repeat by their correlation, and how well: the lower correlation of its periods, 0
-/// if there are none. From the correlation `least_regularity` on a shift may be a period; at 1 nothing repeats.
+/// How the lights of the exemplar repeat, read from their correlation; and how well: the lower correlation of both
+/// periods, 0 without a period. A shift may be a period if its correlation is at least `least_regularity`; at 1 nothing
+/// repeats.
 pub fn law(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> (Continuation, f64) {
     if least_regularity >= 1.0 {
         return (Continuation::Free, 0.0);
@@ -50,7 +52,7 @@ pub fn law(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) 
     }
 }
 
-/// A row of a period; the extent of the exemplar serves as the other.
+/// A row with a given period; the extent of the exemplar serves as the other period.
 pub fn row(exemplar: &Exemplar, period: DVec2, extent: DVec2) -> Continuation {
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
     let [period, _] = basis::refine(exemplar, [period, across], 1);
@@ -77,7 +79,7 @@ pub struct Correlated {
 }
 
 impl Correlated {
-    /// Correlates the lights of the working pixels that `is_within` names.
+    /// Correlates the lights in the working pixels for which `is_within` returns true.
     pub fn new(exemplar: &Exemplar, is_within: impl Fn(usize) -> bool, job: Job) -> Result<Self> {
         let working = &exemplar.working;
         let longest = working.width.max(working.height);
@@ -113,9 +115,9 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
     a.normalize().perp_dot(b.normalize()).abs() < PARALLEL
 }
 
-/// The shortest shifts at which the lights fall onto themselves, and their correlations: axes along which nothing
-/// changes, then shifts with a correlation of at least `least`, and `relative` to the best, that lead from lamps to
-/// lamps of their kind.
+/// The shortest shifts at which the lights fall onto themselves, and their correlations: first the axes along which
+/// nothing changes, as shifts of one pixel; then the shifts that lead from lamps to lamps of their kind, with a
+/// correlation of at least `least`, and of at least `relative` times the best.
 pub fn shifts(
     exemplar: &Exemplar,
     correlated: &Correlated,

@@ -1,14 +1,14 @@
 //! Periods along the axes, from the distances between lamps and their neighbours.
 //!
-//! Correlation needs lamps of equal shape at equal distances; lamps that stand side by side in rows and columns tell
-//! their periods also where the far ones are blurred. Where wide and narrow bars alternate, so do the distances of the
-//! lamps, and the second neighbour tells the period.
+//! Correlation needs lamps of equal shape at equal distances. Lamps in rows and columns tell their periods by the
+//! distances between neighbours, even where the far lamps are blurred. Where wide and narrow bars alternate, these
+//! distances alternate too, and the second neighbour tells the period.
 
 use crate::emission::exemplar::evidence::Evidence;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
-/// Neighbours that tell a period: the next, and the one after it. [convention]
+/// Number of neighbours that may tell a period: the next lamp, and the lamp after it. [convention]
 const ORDERS: usize = 2;
 
 /// The lattices along the axes that the neighbours propose.
@@ -28,7 +28,8 @@ fn periods(lamps: &[Evidence]) -> [Vec<f64>; 2] {
     })
 }
 
-/// Distance along an axis to the neighbour of a given order on that side, among the lamps that stand beside this one.
+/// Distance along an axis from a lamp to its neighbour of a given order, in the axis's positive direction, among the
+/// lamps in the same row or column.
 fn distance(lamps: &[Evidence], lamp: &Evidence, axis: usize, order: usize) -> Option<f64> {
     let offset = |other: &Evidence| other.centre - lamp.centre;
     let is_beside = |other: &&Evidence| {

@@ -3,14 +3,15 @@
 use super::correlation::Autocorrelation;
 use glam::DVec2;
 
-/// Standard errors by which the best may be the best by chance, as one of the many shifts that compare few lamps.
+/// Number of standard errors by which chance may raise the best correlation: it is the best of many shifts, some of
+/// which compare few lamps.
 const CHANCE: f32 = 2.0;
 
-/// Correlation at all shifts along an axis from which the pattern does not change along it.
+/// The pattern counts as unchanging along an axis if the correlation at all shifts along the axis is at least this.
 const UNCHANGING: f32 = 0.95;
 
-/// Shifts beside a period, in pixels of that image, over which its correlation must fall by so much: where it does
-/// not, nothing that repeats is in sight, only what goes on along the shift.
+/// Pixels beside a period over which the correlation must fall, and the fall. Where the correlation stays higher, the
+/// lights do not repeat but only go on along the shift.
 const FLAT: (isize, f32) = (8, 0.02);
 
 /// A shift at which lights fall onto lights.
@@ -22,13 +23,13 @@ pub struct Repeat {
 }
 
 impl Repeat {
-    /// The correlation less what chance may have added to it, where so many lights are compared.
+    /// The correlation minus the part that chance may have added, when `lights` lights are compared.
     pub fn lower_bound(&self, lights: f32) -> f32 {
         self.value - CHANCE * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
     }
 }
 
-/// Whether the lights stay the same under any shift along an axis, up to half of the image.
+/// Whether the lights stay the same under any shift along an axis that leaves at least half of the pixels overlapping.
 pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);
     let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
@@ -36,7 +37,7 @@ pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> 
 }
 
 /// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel. Along a direction in which
-/// nothing changes they are ridges: there only the shifts across it are looked at.
+/// nothing changes the maxima are ridges: then only shifts across that direction are looked at.
 pub fn peaks(
     correlation: &Autocorrelation,
     (width, height): (usize, usize),
@@ -89,8 +90,8 @@ pub fn peaks(
     found
 }
 
-/// Measures every shift again by the farthest peak that is a multiple of it: an error there counts by its fraction
-/// only.
+/// Measures every shift again by the farthest peak that is a multiple of it: the error of that peak is divided by the
+/// multiple.
 pub fn sharpen(peaks: &mut [Repeat]) {
     let all: Vec<DVec2> = peaks.iter().map(|p| p.shift).collect();
     for Repeat { shift, .. } in peaks {

@@ -1,27 +1,28 @@
-//! How much light a texture has, against what it should have.
+//! Keeps the amount of light in a texture at its due share.
 //!
-//! Parts of the exemplar that fit more often than others would decide how much light there is, and where lamps are
-//! missing how many. So what a block has too much or too little of it passes on to those beside and below that come
-//! after it, as in error diffusion (Floyd and Steinberg 1976): not only the whole has its share of light, but any part
-//! of it.
+//! Without balance, the parts of the exemplar that fit most often would decide how much light the texture has and, in a
+//! pattern with missing lamps, how many are missing. So a block passes its excess or lack of light on to the blocks
+//! beside and below it that are still to come, as in error diffusion (Floyd and Steinberg 1976). Then not only the
+//! whole texture has its share of light, but also any part of it.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// What a lamp too many or too few counts for, in differences of its pixels: on a lattice as many as one in the wrong
-/// place makes in colour, confidence and distances. Elsewhere light is not all there is to keep: from a third of a
-/// pixel's difference on patches that bring it would be chosen which do not keep the distances between lamps.
+/// Weight of one lamp too many or too few, as a squared difference for each of its pixels. On a lattice a surplus lamp
+/// counts as much as a lamp in the wrong place differs in colour, confidence and distances. Elsewhere the weight must
+/// stay below a third: with more, patches would be chosen that bring the right light but do not keep the distances
+/// between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 
-/// The light of the blocks of a texture, in pixels, as they follow one another row by row.
+/// The excess light of the blocks of a texture, in pixels. Blocks follow one another row by row.
 pub struct Balance {
-    /// By how much those before have too much, for each block of this row and of the next to make up for.
+    /// Excess light passed on by earlier blocks, for each block of this row and of the next row to make up for.
     row: Vec<f64>,
     below: Vec<f64>,
-    /// The block at work.
+    /// The column of the block at work.
     column: usize,
-    /// Mean area of a lamp, and what one counts for.
+    /// Mean area of a lamp, and the weight of one lamp too many or too few.
     lamp: f64,
     weight: f64,
 }
@@ -39,17 +40,18 @@ impl Balance {
         self.column = 0;
     }
 
-    /// Notes that the block at work has so much more light than its share.
+    /// Notes that the block at work has `excess` more light than its share.
     pub fn add(&mut self, excess: f64) {
         self.row[self.column] += excess;
     }
 
-    /// What so much more light would count for, in squared differences of pixels.
+    /// The penalty for `excess` more light in the block at work, in squared differences of pixels.
     pub fn penalty(&self, excess: f64) -> f64 {
         self.weight * (self.row[self.column] + excess).powi(2) / self.lamp
     }
 
-    /// Passes on what the block at work has too much, and goes on with the next. Nothing is lost at the sides.
+    /// Passes on the excess of the block at work, and goes on with the next block. At the sides of the texture the
+    /// shares of missing neighbours go to the block below, so nothing is lost.
     pub fn pass_on(&mut self) {
         let (column, excess) = (self.column, self.row[self.column] / 16.0);
         let (has_left, has_right) = (column > 0, column + 1 < self.row.len());

@@ -1,4 +1,4 @@
-//! A block of the texture: the pixels that show nothing yet, and those that patches fill already.
+//! A block of the texture: its empty pixels, and the pixels that patches have already filled.
 
 use super::patch_map::NONE;
 
@@ -11,7 +11,8 @@ pub struct Rect {
     pub h: usize,
 }
 
-/// Pixels of a row of a block, and where in the exemplar the first of them is taken from, one after the other.
+/// Adjacent pixels in a row of a block, and the pixel of the exemplar that the first of them shows; the others show the
+/// pixels that follow it.
 #[derive(Clone, Copy)]
 pub struct Run {
     pub x: usize,
@@ -20,10 +21,10 @@ pub struct Run {
     pub source: usize,
 }
 
-/// A block: its pixels that show nothing yet, and those that show pixels of the exemplar.
+/// A block: its empty pixels, and its filled pixels, which show pixels of the exemplar.
 pub struct Block {
     pub rect: Rect,
-    /// The pixel of the exemplar that each shows, row by row; or [`NONE`].
+    /// For each pixel of the block, row by row, the pixel of the exemplar that it shows; or [`NONE`].
     pub known: Vec<u32>,
     pub empty: Vec<Run>,
     pub filled: Vec<Run>,

@@ -10,16 +10,18 @@ use crate::exec;
 use crate::job::Job;
 use glam::Vec4;
 
-/// Patches within this factor of the best (0.1 in the original), or this close to it, are equally good.
+/// Patches whose error is within this factor of the best (within 10 % in the original), or within this difference, are
+/// equally good.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
-/// Parts of a pixel in which its light is counted.
+/// Number of steps in which the lit share of a pixel is counted.
 const LIGHT_STEPS: f32 = 255.0;
 
-/// Patches that cover at least this share of what the best would cover compete by their error.
+/// Patches compete by their error if they cover at least this share of the pixels that the best-covering patch covers.
 const ENOUGH_COVERAGE: f64 = 0.95;
 
-/// Of more patches than this, only those that agree best in one of so many rows are compared in all.
+/// If there are more patches than this, they are first compared in every `ROW_STEP`-th row, and only this many of the
+/// best are compared in all rows.
 const FINALISTS: usize = 16;
 
 const ROW_STEP: usize = 4;
@@ -27,8 +29,8 @@ const ROW_STEP: usize = 4;
 /// Pixels compared by one thread before another is worth waking.
 const TASK: usize = 1 << 16;
 
-/// A shift, how many empty pixels of a block it fills, by how many pixels of light more than their share, and its mean
-/// squared difference from the known ones, with what that light counts for.
+/// A shift; how many empty pixels of a block it fills; by how many pixels of light these exceed their share; and its
+/// error: the mean squared difference from the known pixels, plus the penalty for that excess.
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,
@@ -37,7 +39,7 @@ pub struct Scored {
     pub error: f32,
 }
 
-/// What shifts are compared by.
+/// The data by which shifts are compared.
 pub struct Comparison<'a> {
     pub guide: &'a Guide<'a>,
     pub features: Vec<Feature>,
@@ -45,10 +47,10 @@ pub struct Comparison<'a> {
     /// Sums of the usable pixels, and of their light.
     pub usable: AreaSums,
     light: AreaSums,
-    /// Share of what the exemplar shows that is light.
+    /// Share of the shown part of the exemplar that is light.
     lit_share: f64,
     is_lattice: bool,
-    /// Difference in error that says nothing.
+    /// Difference in error that is too small to prefer one shift to another.
     slack: f32,
 }
 
@@ -57,8 +59,7 @@ impl<'a> Comparison<'a> {
         let working = guide.working;
         let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
         let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
-        // Lattice shifts are rounded to whole pixels, which alone makes both distances differ by the root of a sixth
-        // of one.
+        // Lattice shifts are rounded to whole pixels. Rounding alone makes both distances differ by √(1/6) of a pixel.
         let slack = match is_lattice {
             true => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
             false => 0.0,
@@ -75,8 +76,8 @@ impl<'a> Comparison<'a> {
         })
     }
 
-    /// The part of a run that a shift takes from within the exemplar: how many of its pixels come before, how many
-    /// there are, and the place of the first in the exemplar.
+    /// The part of a run that a shift takes from within the exemplar: how many pixels of the run come before that part,
+    /// how many pixels it has, and where the first of them lies in the exemplar.
     pub fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
         let working = self.guide.working;
         let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
@@ -86,8 +87,8 @@ impl<'a> Comparison<'a> {
         inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
     }
 
-    /// How many empty pixels of a block each shift fills, or 0 if far less than the best; and whether it shows
-    /// something usable in all of the block.
+    /// For each shift, how many empty pixels of a block it fills, or 0 if the best fills far more; and whether all of
+    /// the block would show usable pixels.
     pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
@@ -97,7 +98,7 @@ impl<'a> Comparison<'a> {
                 .map(|(_, length, [x, y])| self.usable.count(x, y, length, 1))
                 .sum()
         };
-        // All of the block at once: the most that a shift can fill.
+        // Usable pixels in all of the block: an upper bound for the number of pixels that a shift can fill.
         let most_of = |shift: &Shift| {
             let working = self.guide.working;
             let side = |at: usize, by: i32, length: usize, side: usize| {
@@ -125,9 +126,9 @@ impl<'a> Comparison<'a> {
         shifts.iter().zip(bounds).map(exact).collect()
     }
 
-    /// The shifts that fill `least` or more of the empty pixels, or without it nearly as many as the best does, and
-    /// how well they agree with the known ones. The error of those that are no match for the best, or for one of error
-    /// `limit`, is infinite.
+    /// Scores the shifts that fill at least `least` empty pixels or, without `least`, nearly as many as the best shift
+    /// fills: how well they agree with the known pixels. A shift that is clearly worse than the best so far, or than an
+    /// error of `limit`, gets an infinite error.
     pub fn score(
         &self,
         block: &Block,
@@ -154,7 +155,7 @@ impl<'a> Comparison<'a> {
                 |&n: &usize| (penalty(n) + self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
             let mut ranked: Vec<(f32, usize)> = covering.iter().map(error).collect();
             ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            // What nothing known tells apart all stays.
+            // Without known pixels nothing tells the shifts apart, so all of them stay.
             ranked.truncate(if compared > 0 { FINALISTS } else { usize::MAX });
             covering = ranked.into_iter().map(|r| r.1).collect();
         }
@@ -175,8 +176,8 @@ impl<'a> Comparison<'a> {
         Ok(scored.into_iter().flatten().collect())
     }
 
-    /// Mean squared difference of a shift, which may show something usable everywhere, from known pixels, of which
-    /// there are `filled`; infinite as soon as it exceeds `limit`.
+    /// Mean squared difference of a shift from the known pixels, of which there are `filled`; infinite as soon as it
+    /// exceeds `limit`. `is_whole` says that the shift shows usable pixels in all of the block.
     pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
         let most = f64::from(limit) * filled as f64;
@@ -200,7 +201,7 @@ impl<'a> Comparison<'a> {
                     at += part.len();
                 }
             }
-            // No mean over fewer pixels is less.
+            // A mean over fewer than `filled` pixels would only be larger.
             if sum > most {
                 return f32::INFINITY;
             }
@@ -208,9 +209,9 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// By how many pixels of light more than their share each of some shifts fills the empty pixels of a block. On a
-    /// lattice their share is what all of them show on average, since its lamps are always at the same places of a
-    /// block; elsewhere that of the exemplar.
+    /// For each shift, by how many pixels of light it exceeds the due share when it fills the empty pixels of a block.
+    /// On a lattice the due share is the average of all given shifts, because lamps always lie at the same places of a
+    /// block; elsewhere it is the lit share of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));
@@ -228,7 +229,7 @@ impl<'a> Comparison<'a> {
         lights.into_iter().map(|[light, all]| light - share * all).collect()
     }
 
-    /// The largest error that is as good as another.
+    /// The largest error that counts as equally good as `error`.
     pub fn equally_good(&self, error: f32) -> f32 {
         error * TOLERANCE.0 + self.slack
     }

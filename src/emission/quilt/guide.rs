@@ -1,11 +1,12 @@
-//! What patches are compared by: colour and metadata, each with its weight ("Lighting Style Transfer", §6).
+//! The pixel features by which patches are compared: colour and metadata, each with its weight ("Lighting Style
+//! Transfer", §6).
 
 use crate::emission::exemplar::working::Working;
 use crate::image::Image;
 use glam::{Vec3, Vec4};
 
-/// What is compared of a pixel, colour and metadata: scaled by the roots of their weights, so that squares add up as
-/// they are.
+/// The features of a pixel: colour and metadata, scaled by the square roots of their weights, so that plain squared
+/// differences add up to the weighted error.
 pub type Feature = [Vec4; 2];
 
 /// Colour and metadata of the exemplar, their weights, and how many patches are compared by them.
@@ -16,7 +17,7 @@ pub struct Guide<'a> {
     /// Distance to a lamp that the metadata give as 1, and the mean area of a lamp, in working pixels.
     pub cap: f64,
     pub lamp: f64,
-    /// Per patch where any shift is allowed.
+    /// Number of candidates per patch where any shift is allowed.
     pub candidates: usize,
 }
 
@@ -29,27 +30,27 @@ impl Guide<'_> {
             .collect()
     }
 
-    /// Of colours and of metadata.
+    /// The factors of colours and of metadata in a feature.
     fn scales(&self) -> (f32, f32) {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// After which difference each channel of the metadata is the same again. Distances wrap: one cap to the left of a
-    /// lamp is as far as one cap to its right.
+    /// The period of each metadata channel: values that differ by it mean the same. Distances wrap around: one cap to
+    /// the left of a lamp means the same as one cap to its right.
     pub fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
         Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
     }
 }
 
-/// Sum over two rows of pixels of the squared differences of their channels; metadata come again after `turns`.
+/// Sum of the squared differences of the channels of two rows of pixels; metadata wrap around with the periods `turns`.
 pub fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
     let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
         let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());
         let apart = apart.min(turns - apart);
         [colour + off * off, metadata + apart * apart]
     };
-    // Two pixels at once, for chains of additions that run side by side.
+    // Add two pixels at once, so that two chains of additions run in parallel.
     let (mut even, mut odd) = ([Vec4::ZERO; 2], [Vec4::ZERO; 2]);
     let (a, b) = (a.chunks_exact(2), b.chunks_exact(2));
     if let ([a], [b]) = (a.remainder(), b.remainder()) {

@@ -1,17 +1,17 @@
 //! The three metadata channels that lead the synthesis through empty space: confidence, and the signed x and y
 //! distance to the nearest feature ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
 //!
-//! The paper does not say what "horizontal and vertical distance" is where the nearest lamp of the row and of the
-//! plane differ. Here the two are the components of the offset from a pixel to its *nearest lit pixel* in the plane,
-//! so that they always speak of one lamp, vary continuously but for the bisectors between lamps, and exist in rows
-//! without light.
+//! The paper does not say what "horizontal and vertical distance" is where the nearest lamp of the row and of the plane
+//! differ. Here the two are the components of the offset from a pixel to its *nearest lit pixel* in the plane, so that
+//! both distances always belong to the same lamp, vary continuously except at the bisectors between lamps, and exist in
+//! rows without light.
 
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
 
-/// No lit pixel anywhere.
+/// The index where there is no lit pixel.
 const NONE: u32 = u32::MAX;
 
 /// Confidence in channel 0; the x and y offset to the nearest lit pixel in channels 1 and 2, divided by `cap` and
@@ -65,7 +65,8 @@ fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, 
         }
     }
 
-    // The nearest of those across columns: parabolas (x - c)² + d(c)² and the points from which each is lowest.
+    // The nearest of these pixels across all columns: parabolas (x - c)² + d(c)² and the points from which each is
+    // lowest.
     let mut nearest = try_vec(width * height, NONE)?;
     exec::for_rows(&mut nearest, width, job, |y, out| {
         let rows = &row_of[y * width..(y + 1) * width];

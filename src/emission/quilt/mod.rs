@@ -2,10 +2,10 @@
 //! Transfer", §6).
 //!
 //! Blocks are filled in scanline order. A patch is a shift of the exemplar; of the shifts that cover a block best, one
-//! is drawn among those that agree best with what is already there. What a patch cannot show, because the photo did
-//! not, is filled by further patches of the same block. On a lattice only shifts by lattice vectors are tried:
-//! whatever is chosen, the lamps stay in phase, and errors do not add up from patch to patch because every shift is
-//! measured from the origin.
+//! is drawn among those that agree best with the pixels already placed. Pixels that a patch cannot show, because the
+//! photo does not show them, are filled by further patches in the same block. On a lattice only shifts by lattice
+//! vectors are tried: whichever is chosen, the lamps stay in phase, and errors do not add up from patch to patch,
+//! because every shift is measured from the origin.
 
 pub mod balance;
 pub mod block;
@@ -38,9 +38,9 @@ const LAMP_COST: f32 = 1e4;
 
 struct Quilt<'a> {
     comparison: Comparison<'a>,
-    /// The rows that no block reaches any more, and all shifts.
+    /// The finished rows, which no further block reaches, and all shifts.
     patch_map: PatchMap,
-    /// The labels of the rows from `first` on that blocks still reach.
+    /// The first row that blocks still reach, and the labels of the rows from there on.
     first: usize,
     open: Vec<u32>,
     /// The label of each shift.
@@ -80,7 +80,7 @@ pub fn place(
         comparison: Comparison::new(guide, usable, is_lattice)?,
         patch_map: PatchMap::new(width, height),
         first: 0,
-        // A row of blocks, and the row of pixels above it.
+        // Room for a row of blocks, and for the row of pixels above it.
         open: try_vec(width * (h + 1), NONE)?,
         labels: BTreeMap::new(),
         continuation,
@@ -105,8 +105,8 @@ pub fn place(
     Ok(quilt.patch_map)
 }
 
-/// The corners at which a whole block of usable pixels can be taken from an exemplar of a width, and the sides of the
-/// block: where patches are free a whole block must be found somewhere, so it shrinks until there is one.
+/// The sides of a block, and the corners at which a whole block of usable pixels can be taken from an exemplar of the
+/// given width. Free patches need at least one such corner, so the block shrinks until there is one.
 fn admissible_corners(
     usable: &AreaSums,
     width: usize,
@@ -131,7 +131,7 @@ impl Quilt<'_> {
         self.open[(y - self.first) * self.patch_map.width + x]
     }
 
-    /// Gives the rows above `y` to the patch_map.
+    /// Moves the finished rows above `y` into the patch map.
     fn close(&mut self, y: usize) {
         let width = self.patch_map.width;
         let done = (y - self.first) * width;
@@ -142,7 +142,7 @@ impl Quilt<'_> {
         self.first = y;
     }
 
-    /// Places patches until nothing of the block is empty that any of them could show.
+    /// Places patches until no patch can fill any of the empty pixels left in the block.
     fn fill(&mut self, rect: &Rect, overlap: [usize; 2], job: Job) -> Result<()> {
         let mut first = true;
         loop {
@@ -162,7 +162,7 @@ impl Quilt<'_> {
         }
     }
 
-    /// What the pixels of a block show already.
+    /// The block at `rect`, with the pixels of the exemplar that it shows already.
     fn block(&self, rect: &Rect) -> Block {
         let mut block =
             Block { rect: *rect, known: Vec::with_capacity(rect.w * rect.h), empty: Vec::new(), filled: Vec::new() };
@@ -170,7 +170,7 @@ impl Quilt<'_> {
             let start = (y - self.first) * self.patch_map.width + rect.x;
             let mut x = rect.x;
             for labels in self.open[start..start + rect.w].chunk_by(|a, b| a == b) {
-                // One shift shows pixels side by side.
+                // Adjacent pixels of one shift show adjacent pixels of the exemplar.
                 let source = self.patch_map.source(x, y, labels[0], self.comparison.guide.working);
                 let run = Run { x, y, length: labels.len(), source: source.unwrap_or(NONE as usize) };
                 match source {
@@ -184,7 +184,7 @@ impl Quilt<'_> {
         block
     }
 
-    /// The shifts of what lies around a block.
+    /// The shifts of the pixels around a block.
     fn neighbours(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts: Vec<Shift> = Vec::new();
         let mut neighbour = |x: usize, y: usize| {
@@ -202,7 +202,8 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// The shifts worth trying: those of the neighbours, which continue what is there, and those the pattern allows.
+    /// The shifts worth trying: the shifts of the neighbours, which continue the patches already placed, and shifts
+    /// that the pattern allows.
     fn candidates(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts = self.neighbours(rect);
         let pitch = self.comparison.guide.working.pitch;
@@ -252,8 +253,8 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Draws one of the shifts that are as good as the best. A row of lamps begins as the exemplar does, and goes on
-    /// with it as far as it goes.
+    /// Draws one of the shifts that are as good as the best. A row of lamps begins with the beginning of the exemplar,
+    /// and keeps the shift of a neighbour as long as that is as good as the best.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.patch_map.shifts.is_empty() {
@@ -290,7 +291,7 @@ impl Quilt<'_> {
         Ok(best)
     }
 
-    /// Shows a shift in the empty pixels of a block and, with an overlap, up to the seams in the known ones.
+    /// Shows a shift in the empty pixels of a block and, given an overlap, also in the known pixels beyond the seams.
     fn paste(&mut self, block: &Block, shift: Shift, overlap: Option<[usize; 2]>) {
         let (working, rect, known) = (self.comparison.guide.working, block.rect, &block.known);
         let source = |x: usize, y: usize| {

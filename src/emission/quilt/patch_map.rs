@@ -1,26 +1,26 @@
-//! Which part of the exemplar each part of the texture shows, in the space that its patches need.
+//! Which part of the exemplar each part of the texture shows, stored compactly by patches.
 
 use crate::emission::exemplar::working::Working;
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// Parts of an unwarped pixel by which shifts are told apart.
+/// Steps per unwarped pixel in which shifts are told apart.
 const SUBPIXELS: f64 = 1e6;
 
 /// The label of a pixel that no patch shows.
 pub const NONE: u32 = u32::MAX;
 
-/// A shift of the exemplar: where it is shown, less where it is taken from.
+/// A shift of the exemplar: place in the texture minus place in the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
     /// In working pixels.
     pub working: [i32; 2],
-    /// The same before rounding, in unwarped pixels.
+    /// The same shift before rounding, in unwarped pixels.
     pub exact: DVec2,
 }
 
-/// Which shift of the exemplar each working pixel of the result shows. Patches are wide, so a row is kept as its runs
-/// of one label: positions only, however large the texture is.
+/// Which shift of the exemplar each working pixel of the result shows. Patches are wide, so a row is stored as runs of
+/// one label.
 #[derive(Clone, Debug, Default)]
 pub struct PatchMap {
     pub width: usize,
@@ -40,7 +40,7 @@ pub struct Shifts {
 }
 
 impl Shifts {
-    /// The label of a shift in unwarped pixels, of which a working pixel has `pitch`.
+    /// The label of a shift, given in unwarped pixels; a working pixel is `pitch` unwarped pixels wide and high.
     pub fn label(&mut self, exact: DVec2, pitch: DVec2) -> u32 {
         let key = (exact * SUBPIXELS).round().to_array().map(|c| c as i64);
         *self.labels.entry(key).or_insert_with(|| {
@@ -56,7 +56,7 @@ impl PatchMap {
         Self { width, height, shifts: Vec::new(), runs: Vec::new(), ends: Vec::new() }
     }
 
-    /// All of it shows one shift.
+    /// A patch map that shows one shift everywhere.
     pub fn single(width: usize, height: usize, shift: Shift) -> Self {
         let runs = vec![(width as u32, 0); height];
         Self { width, height, shifts: vec![shift], runs, ends: (1..=height).collect() }
@@ -72,8 +72,8 @@ impl PatchMap {
         self.ends.push(self.runs.len());
     }
 
-    /// The same again and again over `width` × `height` pixels: every `across`, along one axis, in unwarped pixels. A
-    /// shift that comes from two sides keeps one label.
+    /// Repeats the patch map over `width` × `height` pixels, with the period `across`, in unwarped pixels, along one
+    /// axis. Equal shifts get one label, even from different repetitions.
     pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
         let mut out = Self::new(width, height);
         let mut shifts = Shifts::default();
@@ -82,7 +82,7 @@ impl PatchMap {
             None => NONE,
         };
         let period = across.abs() / pitch;
-        // Which repetition a pixel is in, and the pixel there.
+        // The repetition that a position lies in, and the position within it.
         let place = |at: usize, period: f64, side: usize| {
             let times = if period > 0.0 { (at as f64 / period + 1e-9) as usize } else { 0 };
             (times, (at - (times as f64 * period).round().min(at as f64) as usize).min(side - 1))

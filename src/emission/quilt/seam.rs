@@ -1,7 +1,7 @@
 //! The minimum-error boundary cut of image quilting (Efros and Freeman 2001, §2.1).
 
 /// The path from the top row to the bottom row of a `width` × `height` grid of costs, moving at most one column per
-/// row, with the least sum; the column it takes in each row. The leftmost of equal paths.
+/// row, with the least sum of costs: returns its column in each row. Of equal paths, takes the leftmost.
 pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     if width == 0 || height == 0 {
         return vec![0; height];
@@ -22,7 +22,7 @@ pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
             }
         }
     }
-    // Back up from the cheapest end.
+    // Trace the path back up from its cheapest end.
     let last = &total[(height - 1) * width..];
     let mut x = (1..width).fold(0, |best, c| if last[c] < last[best] { c } else { best });
     let mut path = vec![x; height];
@@ -33,7 +33,7 @@ pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     path
 }
 
-/// The same from left to right: the row the path takes in each column.
+/// The path with the least sum from left to right: returns its row in each column.
 pub fn horizontal_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     let transposed: Vec<f32> = (0..width * height).map(|i| cost[(i % height) * width + i / height]).collect();
     vertical_cut(&transposed, height, width)

@@ -1,9 +1,9 @@
 //! How the exemplar is read: its region, and the law by which its lamps go on.
 //!
 //! One reading is brittle: far lamps, magnified with their blur, spoil the correlation of near ones. So laws are
-//! proposed from the whole exemplar and from its sharper parts, by strict and by free thresholds; each is scored by
-//! how well it predicts the lamps of the whole photo ([`sites`]), and the best is kept. The reading that the settings
-//! ask for stays unless another one scores clearly higher.
+//! proposed from the whole exemplar and from its sharper parts, with strict and with loose thresholds; each is scored
+//! by how well it predicts the lamps of the whole photo ([`sites`]), and the best is kept. The reading that the
+//! settings ask for stays unless another one scores clearly higher.
 
 pub mod sites;
 
@@ -18,29 +18,32 @@ use crate::job::Job;
 use glam::DVec2;
 use sites::Sites;
 
-/// Magnifications up to which parts of the exemplar are read, against its sharpest pixel. [judged on 20 photos]
+/// Largest magnifications, relative to the sharpest pixel, of the parts of the exemplar that are read on their own.
+/// [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
-/// Correlation from which a shift is proposed as a period, alone and against the best; and how many shifts. [judged on
-/// 20 photos]
+/// Smallest correlation of a shift that is proposed as a period, absolute and as a share of the best; and the largest
+/// number of such shifts. [judged on 20 photos]
 const PROPOSED: f32 = 0.35;
 const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score of lights without a law: a lattice must predict more than this. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// Score below which a lattice that the settings ask for is given up for none. [judged on 20 photos]
+/// Score below which the law that the settings ask for is dropped, and the lights count as having no law.
+/// [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
 /// By how much a score must exceed the score of the reading that the settings ask for. [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
-/// Share of the lamps in the light, by photo pixels, from which they judge: other lights run through the photo.
-/// [judged on 20 photos]
+/// Laws are compared only if lamps make up at least this share of the light, by photo pixels; the rest are lights that
+/// run through the photo. [judged on 20 photos]
 const MIN_LAMPS: f64 = 0.5;
-/// Relative difference of periods up to which two laws are one. [judged on 20 photos]
+/// Largest relative difference between the periods of two laws that count as the same law. [judged on 20 photos]
 const SAME_LAW: f64 = 0.08;
 
-/// What a reading is chosen by, and against which rival.
+/// The score by which a law was chosen, and the best other law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN where too few lights are lamps to say.
+    /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN where too few of the lights are lamps to
+    /// tell.
     pub score: f64,
     /// The best other law, and its score; 0 without one.
     pub runner_up: Continuation,
@@ -65,7 +68,7 @@ pub struct Reading {
     pub continuation: Continuation,
     pub regularity: f64,
     pub choice: Choice,
-    /// The settings it was read with.
+    /// The settings that the exemplar was read with.
     working_side: f64,
     least_regularity: f32,
     law: Law,
@@ -158,7 +161,8 @@ impl Reading {
         proposals.retain(|p| p.score.is_finite());
         let lawless = Proposal::lawless(lattice::lawless(exemplar, extent::of(exemplar)));
 
-        // The best, or of equals the first; it must be clearly better than what the settings ask for.
+        // Find the best law, the first among equals. It replaces the law that the settings ask for only if it is
+        // clearly better.
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
@@ -183,8 +187,8 @@ impl Reading {
         Ok(())
     }
 
-    /// Laws of the whole exemplar and of its sharper parts, by strict and by free thresholds; and of each lattice its
-    /// rows.
+    /// Proposes laws from the whole exemplar and from its sharper parts: the law by `least_regularity`, and rows and
+    /// lattices by looser thresholds. A luminous ceiling also gets lattices from the distances of neighbours.
     fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -247,8 +251,8 @@ impl Reading {
     }
 }
 
-/// How well a law predicts the lamps, whole ones and parts; NaN where nothing changes along a period: the correlation
-/// judges that.
+/// How well a law predicts the lamps, whole lamps and parts. NaN where nothing changes along a period: only the
+/// correlation can judge such a law.
 fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),
@@ -259,7 +263,7 @@ fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: C
     }
 }
 
-/// Whether two laws are one but for a small difference of their periods.
+/// Whether two laws are the same except for a small difference of their periods.
 fn is_same(a: Continuation, b: Continuation) -> bool {
     let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         let close = |p: DVec2, q: DVec2| (p - q).length().min((p + q).length()) < SAME_LAW * p.length().max(q.length());

@@ -1,10 +1,9 @@
 //! The sites of a lattice: at which places of a cell lamps lie, and how well they predict each other.
 //!
-//! A law of the pattern is worth as much as it predicts. Each lamp that another lamp of its site leads to, by steps of
-//! the lattice and to a lamp of its size, is predicted; each site in full view without such a lamp is a false
-//! prediction. Both are weighed by the photo pixels of the lamp, so that the blurred far part of a photo counts by
-//! what it shows. A pattern that predicts no lamp from another, as an empty one or one that repeats the photo as a
-//! whole, scores nothing.
+//! A law is scored by how well it predicts the lamps. A lamp is predicted if whole steps of the lattice lead to it from
+//! another lamp of similar size. A place in full view to which the lattice leads, but which has no lamp, is a false
+//! prediction. Both are weighted by the photo pixels of the lamp, so that the blurred far part of a photo counts no
+//! more than it shows. A lattice that predicts no lamp from another scores 0.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::evidence::Evidence;
@@ -13,18 +12,19 @@ use crate::emission::lattice::cells;
 use crate::emission::lattice::continuation::Continuation;
 use glam::{DMat2, DVec2};
 
-/// Lamps of a site are no farther from each other than this share of the shorter period. [judged on 20 photos]
+/// Lamps of a site lie no farther apart, after whole steps of the lattice, than this share of the shorter period, blur
+/// aside. [judged on 20 photos]
 const OFF_SITE: f64 = 0.12;
-/// Contrast against the surroundings, in that of the site's lamps, from which a place shines though no light is
-/// marked; and the lamps that are compared. [judged on 20 photos]
+/// A place without marked light still shines if its contrast with the surroundings is at least this share of the
+/// contrast of the site's lamps; and the largest number of lamps compared. [judged on 20 photos]
 const SHINES: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
-/// Sites in view that are looked at. [bench emission:seconds]
+/// Most places of a site that are looked at. [bench emission:seconds]
 const MAX_SITES: usize = 20_000;
-/// Largest length of the period that is taken for none: nothing changes along it, in unwarped pixels. [rounding]
+/// A vector of at most this many unwarped pixels is no period: nothing changes along it. [rounding]
 const UNCHANGING: f64 = 1.5;
 
-/// A place of the cell at which lamps lie.
+/// A place in the lattice cell at which lamps lie.
 #[derive(Clone, Debug)]
 pub struct Site {
     /// Where it lies in the cell of its first lamp, in unwarped pixels.
@@ -33,15 +33,16 @@ pub struct Site {
     pub lamps: Vec<Evidence>,
     /// Total area of the site's lamps, in photo pixels.
     pub shown: f64,
-    /// Photo pixels of lamps at sites in full view that are marked as none: that shine, and that do not.
+    /// Photo pixels of the places in full view where no light is marked: `unmarked` of those that shine all the same,
+    /// `missing` of those that do not.
     pub unmarked: f64,
     pub missing: f64,
-    /// How many of them do not shine.
+    /// Number of the places that do not shine.
     pub dark: usize,
 }
 
 impl Site {
-    /// Share of the sites in view that have a lamp, weighed by photo pixels.
+    /// Share of the places in view that have a lamp or shine, weighted by photo pixels.
     pub fn occupancy(&self) -> f64 {
         let seen = self.shown + self.unmarked;
         seen / (seen + self.missing).max(f64::MIN_POSITIVE)
@@ -98,7 +99,7 @@ impl Sites {
         Some(sites)
     }
 
-    /// What is left of a step from lamp to lamp after whole steps of the lattice.
+    /// The part of a step from lamp to lamp that whole steps of the lattice do not explain.
     pub fn residual(&self, step: DVec2) -> DVec2 {
         step - self.whole_steps(step)
     }
@@ -122,8 +123,8 @@ impl Sites {
         (site.at, site.shown, site.unmarked, site.missing, site.dark) = (at, shown, unmarked, missing, dark);
     }
 
-    /// Photo pixels of the lamps that are not marked in full view: where the photo shines as lamps of the site do, and
-    /// where it does not.
+    /// Photo pixels of the places in full view without a marked lamp: of places that shine like the lamps of the site,
+    /// and of places that do not; then the number of the latter.
     fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64, usize) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
@@ -161,9 +162,9 @@ impl Sites {
         (unmarked, missing, dark)
     }
 
-    /// How well the lattice predicts the lamps, in [0, 1]: the share of the photo pixels of seen and predicted lamps
-    /// that are both, times the share of the lamps that need no site of their own.
-    /// Lights that the border cuts, `parts`, are predicted where a site has them.
+    /// How well the lattice predicts the lamps, in [0, 1]. The score is a product: of the photo pixels of all lamps,
+    /// seen or predicted, the share that is both; times the share of the lamps beyond the first lamp of each site.
+    /// Lights that the border cuts, `parts`, count as predicted where a site leads to them.
     pub fn score(&self, parts: &[Evidence]) -> f64 {
         let lamps: usize = self.list.iter().map(|s| s.lamps.len()).sum();
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {

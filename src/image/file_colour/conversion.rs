@@ -90,8 +90,8 @@ fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// The converted colour without the negative components that the conversion adds: 0, or the lowest component of the
-/// file if that is negative, is the lower bound. NaN stays NaN.
+/// Limits a converted colour from below, so that the conversion adds no negative components. The lower bound is 0, or
+/// the lowest component of the file's colour if that is negative. NaN stays NaN.
 fn within(colour: Vec3, from: Vec3) -> Vec3 {
     let lowest = Vec3::splat(from.min_element().min(0.0));
     Vec3::select(colour.cmplt(lowest), lowest, colour)

@@ -18,8 +18,8 @@ use std::borrow::Cow;
 
 pub use crate::image::memory::MAX_PROFILE_BYTES as MAX_BYTES;
 
-/// Maximum number of tags that share one piece of data. [convention]: three curves, three intents, and both
-/// directions.
+/// Maximum length of all tags together, relative to the length of the profile: tags may share data. [convention]: three
+/// curves, three intents and both directions may share.
 const MAX_SHARING: usize = 8;
 
 const HEADER_BYTES: usize = 128;

@@ -2,9 +2,9 @@
 //! 10.11, `lut16Type` and `lut8Type`): a curve for each ink, a grid of colours, and a curve for each coordinate of CIELAB or
 //! CIE XYZ.
 //!
-//! The crate `moxcms` samples these tables on a grid of its own, which is off by up to 12 codes of 255; therefore it
-//! only reads them. Between grid points the interpolation is that of LCMS: tetrahedra in magenta, yellow and black
-//! (Kasson, Nin, Plouffe and Hafner 1995), and linear in cyan.
+//! The crate `moxcms` samples these tables on a grid of its own, which causes errors of up to 12 codes of 255.
+//! Therefore that crate only reads the tables, and this file interpolates them. Between grid points the interpolation
+//! is that of LCMS: tetrahedra in magenta, yellow and black (Kasson, Nin, Plouffe and Hafner 1995), and linear in cyan.
 //!
 //! Not modelled: profiles whose tables are `lutAToBType`. They are unusable.
 
@@ -104,8 +104,8 @@ impl Inks {
         self.to_rec709 * if self.is_lab { xyz(colour) } else { colour }
     }
 
-    /// Interpolates magenta, yellow and black at the grid points of one amount of cyan: from the low corner of a cell
-    /// along its axes, in descending order of the parts.
+    /// Interpolates between amounts of magenta, yellow and black at one grid point of cyan. The path starts in the low
+    /// corner of the cell and follows the axes in descending order of their fractions `part`.
     fn tetrahedron(&self, cell: [usize; INKS], part: [f32; INKS]) -> Vec3 {
         let mut axes = [1, 2, 3];
         axes.sort_unstable_by(|&a, &b| part[b].total_cmp(&part[a]));

@@ -108,8 +108,8 @@ impl Exif {
     }
 }
 
-/// The colour space. Files in Adobe RGB state "uncalibrated", and the interoperability index of DCF optional files
-/// (CIPA DC-009).
+/// The colour space. A file in Adobe RGB states the space "uncalibrated", and the interoperability index of a DCF
+/// optional file, "R03" (CIPA DC-009).
 fn colour(notes: &Directory) -> ExifColour {
     let offset = notes.integer(tag::INTEROPERABILITY).and_then(|offset| u32::try_from(offset).ok());
     let index = offset.and_then(|offset| notes.ifds().directory(offset)?.bytes(tag::INTEROPERABILITY_INDEX));

@@ -24,18 +24,19 @@ const AGREEMENT: f64 = 0.1;
 /// cropped. Sides are whole numbers, and resizing rounds them. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
-/// Saturation-based speed is 78 lx s over the focal-plane exposure that just saturates [convention: ISO 12232:2019,
-/// 6.2].
+/// The saturation-based speed is 78 lx s divided by the focal-plane exposure that just saturates [convention: ISO
+/// 12232:2019, 6.2].
 const SATURATION: f64 = 78.0;
 
-/// Focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis
+/// The focal-plane exposure is q L t / N², with q = 0.65 for a lens of 90 % transmittance, 10° off its axis
 /// [convention: ISO 12232:2019, annex A].
 const LENS: f64 = 0.65;
 
-/// Range of the luminance of white relative to the saturation-based one. Lower limit: the speed may be a standard
-/// output sensitivity (ISO 12232:2019, 6.4), 10 lx s over the exposure that becomes sRGB code 118, whose linear value
-/// is 0.181, so white is 55 lx s instead of 78. Upper limit: a recommended exposure index leaves the headroom to the
-/// manufacturer; one stop of it is assumed. [convention]
+/// Range of the luminance of white, relative to its value if the speed is saturation-based. Lower limit: the speed may
+/// be a standard output sensitivity (ISO 12232:2019, 6.4), which is 10 lx s divided by the exposure that becomes sRGB
+/// code 118. The linear value of this code is 0.181, so white corresponds to 10 / 0.181 = 55 lx s instead of 78. Upper
+/// limit: with a recommended exposure index, the manufacturer chooses the headroom; one stop of headroom is assumed.
+/// [convention]
 const WHITE_RANGE: [f64; 2] = [10.0 / 0.181 / SATURATION, 2.0];
 
 /// The metadata of a photo, converted to the photo as it was loaded.
@@ -49,7 +50,7 @@ pub struct PhotoMetadata {
     /// Exposure time in seconds.
     pub exposure_time: Option<f64>,
     pub iso: Option<f64>,
-    /// The interpretation of its colours.
+    /// How the colours of the file were interpreted.
     pub colour: FileColour,
 }
 
@@ -80,7 +81,7 @@ impl PhotoMetadata {
         self.focal.map(|focal| [focal, FOCAL_ERROR * focal])
     }
 
-    /// The luminance that became the value 1: L = 78 N² / (q t S), the exposure that just saturates.
+    /// The luminance that became the value 1. It follows from the exposure that just saturates: L = 78 N² / (q t S).
     pub fn white_luminance(&self) -> Option<Luminance> {
         let (n, t, s) = (self.f_number?, self.exposure_time?, self.iso?);
         let expected = SATURATION * n * n / (LENS * t * s);
@@ -102,7 +103,8 @@ fn focal(exif: &Exif, width: f64, height: f64) -> Option<f64> {
     let by_film = exif.focal_35.map(|focal| focal * diagonal / FILM_DIAGONAL);
     let scale = exif.recorded.map_or(1.0, |[w, h]| diagonal / w.hypot(h));
     let by_sensor = exif.focal.zip(exif.density).map(|(focal, density)| focal * density * scale);
-    // The estimate from the sensor is more precise, but wrong in some cameras: use it unless the other contradicts it.
+    // The estimate from the sensor is more precise, but wrong in some cameras: use it unless the estimate from the 35
+    // mm equivalent contradicts it.
     match (by_film, by_sensor) {
         (Some(film), Some(sensor)) if (sensor / film).ln().abs() > AGREEMENT => Some(film),
         (_, Some(sensor)) => Some(sensor),

@@ -32,7 +32,7 @@ mod tag {
 /// Maximum number of stored samples per pixel, including those that are not colours. [convention]: no photo has more.
 const MAX_SAMPLES: u64 = 16;
 
-/// Maximum width of a tile in any picture; wider tiles must not be wider than the picture. [convention]
+/// Tiles up to this width are accepted in any picture; wider tiles must not be wider than the picture. [convention]
 const MAX_TILE: usize = 4096;
 
 /// The format of a sample.

@@ -2,9 +2,9 @@
 //! alpha, in strips or tiles, uncompressed or with LZW, deflate or PackBits, with any predictor. The first picture is
 //! read.
 //!
-//! The crate `tiff` trusts the file when it allocates memory, and prints; therefore this module reads the tags and
-//! checks them before it allocates. Not read, with an error that names it: JPEG and fax compression, YCbCr, CIELAB,
-//! and the raw data of cameras.
+//! The crate `tiff` allocates as much memory as a file demands, and prints to the console. Therefore this module reads
+//! the tags itself and checks them before it allocates. Not read, with an error that names it: JPEG and fax
+//! compression, YCbCr, CIELAB, and the raw data of cameras.
 //!
 //! TIFF revision 6.0 (Adobe, 1992); floating-point predictor: Adobe Photoshop TIFF technical note 3 (2005).
 
@@ -132,7 +132,7 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
     }
 }
 
-/// Decodes the colours after all are in place; divides them by alpha first if they were multiplied by it.
+/// Decodes the colours once all samples are in place. Colours that were multiplied by alpha are divided by it first.
 fn decode_colours(image: &mut Image, layout: &Layout, encoding: Encoding) {
     let is_curved = encoding == Encoding::Srgb && !layout.depth.is_float();
     let is_associated = layout.alpha == Some(Alpha::Associated);

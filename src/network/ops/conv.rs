@@ -57,7 +57,8 @@ impl Conv {
         let shape = vec![batch, out_channels, out_height, out_width];
         let mut out = call.budget.zeros(&shape)?;
 
-        // Output channels of one group that read the same inputs.
+        // Number of output channels that are accumulated together; all belong to one group, so they read the same
+        // inputs.
         let of_group = out_channels / groups;
         let together = [GROUP, 2, 1].into_iter().find(|n| of_group.is_multiple_of(*n)).unwrap_or(1);
         let weights = weights.as_floats()?;
@@ -196,7 +197,7 @@ struct Taps {
     dilations: [usize; 2],
 }
 
-/// Computes a row of `N` output channels.
+/// Computes row `y` of `N` output channels.
 #[inline(always)]
 fn row<const N: usize>(source: &Planes, weights: &Weights, taps: &Taps, y: usize, width: usize, out: &mut [f32]) {
     let plane = out.len() / N;

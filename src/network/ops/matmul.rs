@@ -154,7 +154,7 @@ widest! {
 }
 
 widest! {
-    /// Processes the last rows, fewer than four.
+    /// Processes the remaining rows, of which there are fewer than four.
     fn rest(block: &Block, out: &mut [f32]) {
         for (a, out) in block.a.chunks_exact(block.shared.max(1)).zip(out.chunks_exact_mut(block.columns)) {
             rows_of::<1>(&Block { a, ..*block }, out);

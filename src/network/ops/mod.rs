@@ -96,7 +96,7 @@ impl Op {
             "LayerNormalization" => {
                 Self::LayerNorm { axis: at.integer("axis", -1), epsilon: at.float("epsilon", 1e-5) }
             }
-            // Before opset 13, softmax is over all axes from this one on.
+            // Before opset 13, softmax covers all axes from `axis` on.
             "Softmax" if opset < 13 => Self::Softmax { axis: at.integer("axis", 1), flattens: true },
             "Softmax" => Self::Softmax { axis: at.integer("axis", -1), flattens: false },
             "ReduceMean" | "ReduceSum" | "ReduceMax" | "ReduceMin" => {

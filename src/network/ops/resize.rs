@@ -128,7 +128,7 @@ impl Resize {
     }
 }
 
-/// Resamples consecutive images, given by rows and columns.
+/// Resamples `planes` images, stored one after the other, along their rows and columns.
 pub fn resample(
     values: &[f32],
     planes: usize,

@@ -1,4 +1,4 @@
-//! How much alike shapes of a plane are, once it is seen straight on.
+//! Measures how similar the shapes on a plane are to each other when the plane is seen straight on.
 
 use crate::geometry::robust::weighted_median;
 use crate::image::Image;
@@ -6,60 +6,63 @@ use crate::image::regions::Regions;
 use crate::{error::Result, image::try_vec};
 use glam::{DMat2, DVec2, DVec3};
 
-/// Uncertainty of the border of a region in photo pixels, by blur and bloom [bench photos:tune].
+/// Uncertainty in photo pixels of the border of a region, caused by blur and bloom [bench photos:tune].
 const BORDER_ERROR: f64 = 0.7;
-/// Relative differences of lamps of one kind, of length or of width [bench photos:tune].
+/// Relative differences in length or width among lamps of one kind [bench photos:tune].
 const VARIETY: f64 = 0.08;
-/// Minimum number of pixels of a region: the form of smaller ones is that of the pixels [bench photos:tune].
+/// Minimum number of pixels of a region: the pixel grid dominates the form of smaller regions [bench photos:tune].
 const MIN_PIXELS: f64 = 12.0;
-/// Maximum number of regions: more add time, not certainty [bench photos:tune].
+/// Maximum number of regions: more regions take time and add no certainty [bench photos:tune].
 const MAX_SHAPES: usize = 32;
 /// Minimum sine of the angle between a plane and the ray through a shape's centre [bench photos:tune].
 const MIN_INCIDENCE: f64 = 0.05;
-/// Cost of a common stretch: two more parameters explain it, and most lamps have none [bench photos:tune].
+/// Cost of the assumption that all shapes are stretched alike: it adds two parameters, and most lamps are not stretched
+/// [bench photos:tune].
 const STRETCH_COST: f64 = 6.0;
-/// Squared deviation, in variances, from which a shape counts as one of another kind [convention].
+/// Squared deviation, in variances, from which the cost of a shape grows more slowly, because the shape is probably of
+/// another kind [convention].
 const OUTLIER: f64 = 4.0;
 /// Variance of a position within a pixel [convention].
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
-/// Widths by which bloom may have widened all regions, in units of [`BLOOM_UNIT`], and the standard deviation of this
-/// width [bench photos:tune].
+/// Widths of bloom that are tried, in units of [`BLOOM_UNIT`], and the prior standard deviation of the width. Bloom
+/// lengthens the semi-axes of all regions by its width [bench photos:tune].
 const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 const BLOOM_SPREAD: f64 = 1.5;
-/// Unit of bloom as a share of the photo's longer side: a pixel of 640 [convention].
+/// Unit of bloom as a share of the photo's longer side: one pixel in a photo of 640 pixels [convention].
 const BLOOM_UNIT: f64 = 1.0 / 640.0;
-/// Minimum semi-axis of a region without its bloom, in photo pixels [convention].
+/// Minimum semi-axis of a region after its bloom is removed, in photo pixels [convention].
 const MIN_SEMIAXIS: f64 = 0.5;
 
-/// A region of the photo that shows one of the shapes whole.
+/// A region of the photo that shows a complete shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape {
-    /// Relative to the principal point.
+    /// Centre of the region in photo pixels, relative to the principal point.
     centre: DVec2,
-    /// Covariance of its pixels, without each of the [`BLOOMS`].
+    /// Covariance of the region's pixel positions after removal of each of the [`BLOOMS`] in turn.
     covariances: [DMat2; BLOOMS.len()],
-    /// Standard deviations of its size and of its stretch, as of [`Form`].
+    /// Standard deviations of the `size` and of the `stretch` of the region's [`Form`].
     size_error: f64,
     stretch_error: f64,
 }
 
-/// Size and form of an ellipse: the logarithm of the geometric mean of its axes, squared; and half the logarithm of
-/// the squared ratio of its axes, as a vector at twice the angle of the long axis.
+/// Size and stretch of an ellipse, from the standard deviations along its axes: `size` is the logarithm of their
+/// product; `stretch` is the logarithm of their ratio, as a vector at twice the angle of the long axis.
 #[derive(Clone, Copy, Debug)]
 struct Form {
     size: f64,
     stretch: DVec2,
 }
 
-/// The variances along the axes of a covariance, and twice the angle of the first.
+/// The variances along the principal axes of a covariance, largest first, and the unit vector at twice the angle of the
+/// first axis.
 fn axes(c: DMat2) -> ([f64; 2], DVec2) {
     let (mean, half, cross) = (0.5 * (c.x_axis.x + c.y_axis.y), 0.5 * (c.x_axis.x - c.y_axis.y), c.x_axis.y);
     let spread = half.hypot(cross);
     ([mean + spread, (mean - spread).max(f64::EPSILON * mean)], DVec2::new(half, cross).normalize_or_zero())
 }
 
-/// The covariance of a uniform ellipse whose semi-axes are shorter by a width.
+/// The covariance of a uniform ellipse after its semi-axes are shortened by `width`.
 fn without_border(covariance: DMat2, width: f64) -> DMat2 {
     let (variances, double_angle) = axes(covariance);
     let [a, b] = variances.map(|variance| ((2.0 * variance.sqrt() - width).max(MIN_SEMIAXIS) / 2.0).powi(2));
@@ -70,13 +73,14 @@ fn without_border(covariance: DMat2, width: f64) -> DMat2 {
 impl Shape {
     fn new(centre: DVec2, covariance: DMat2, bloom_unit: f64) -> Self {
         let covariances = BLOOMS.map(|bloom| without_border(covariance, bloom * bloom_unit));
-        // A uniform ellipse has a quarter of its squared axes as variances.
+        // The variances of a uniform ellipse are a quarter of its squared semi-axes.
         let [a, b] = axes(covariance).0.map(|variance| BORDER_ERROR / (2.0 * variance.sqrt()));
         let (size_error, stretch_error) = ((a + b).hypot(VARIETY), (0.5 * a.hypot(b)).hypot(VARIETY));
         Self { centre, covariances, size_error, stretch_error }
     }
 
-    /// The form on the plane at distance 1; `None` beyond its horizon.
+    /// The form of the shape on the plane at distance 1 from the camera. `None` if the ray to the shape misses the
+    /// plane or meets it at too small an angle.
     fn on_plane(&self, normal: DVec3, focal: f64, bloom: usize) -> Option<Form> {
         let ray = (self.centre / focal).extend(1.0);
         let depth = normal.dot(ray);
@@ -92,7 +96,7 @@ impl Shape {
     }
 }
 
-/// The largest regions of a mask that lie whole in the photo, at most [`MAX_SHAPES`].
+/// The largest regions of a mask that do not touch the border of the photo; at most [`MAX_SHAPES`] of them.
 pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
     #[derive(Clone, Copy, Default)]
     struct Sums {
@@ -127,13 +131,13 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
     Ok(whole.iter().map(shape).collect())
 }
 
-/// Deviation of the shapes on a plane from shapes that are alike: twice a negative logarithm of their likelihood.
-/// Infinite if one of them lies beyond the plane's horizon.
+/// How much the shapes on a plane differ from each other: minus twice the logarithm of the likelihood that they are
+/// alike. Infinite if a shape lies beyond the plane's horizon.
 pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
     least_cost(shapes, normal, focal, 1)
 }
 
-/// As [`cost`], faster: with every third width of bloom.
+/// Like [`cost`], but faster: tries only every third width of bloom.
 pub fn rough_cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
     least_cost(shapes, normal, focal, 3)
 }
@@ -143,7 +147,7 @@ fn least_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
     (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
 }
 
-/// The cost without one of the [`BLOOMS`].
+/// The cost after removal of one of the [`BLOOMS`] from the shapes.
 fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f64 {
     let mut forms = Vec::with_capacity(shapes.len());
     for shape in shapes {
@@ -165,7 +169,8 @@ fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f6
     by_size + by_stretch(DVec2::ZERO).min(by_stretch(stretch) + STRETCH_COST)
 }
 
-/// A squared deviation in variances whose growth slows down from [`OUTLIER`] on (Cauchy's function).
+/// The cost of a squared deviation in variances. It grows more slowly than the squared deviation from about [`OUTLIER`]
+/// on (Cauchy's function).
 fn robust(square: f64) -> f64 {
     OUTLIER * (square / OUTLIER).ln_1p()
 }

@@ -1,6 +1,7 @@
-//! The camera from lamps that are alike, where the lines of a photo do not determine it. Seen straight on, shapes of one
-//! kind have one size and one form (Chum and Matas, "Planar Affine Rectification from Change of Scale", ACCV 2010). Most
-//! lamps are as long as they are wide. Oblong lamps of one kind are equally long, and parallel.
+//! Estimates the camera from lamps that are alike, for photos whose lines do not determine the camera. Seen straight
+//! on, lamps of one kind have the same size and form (Chum and Matas, "Planar Affine Rectification from Change of
+//! Scale", ACCV 2010), so the search looks for the tilt of their plane at which the lamps become alike. Most lamps are
+//! as long as they are wide. Oblong lamps of one kind are assumed to be equally long and parallel.
 //!
 //! ```text
 //! mask of lamps ─▶ likeness ─▶ tilt of their plane, focal length ─▶ retilt: rotation about the normal ─▶ View
@@ -22,18 +23,21 @@ use crate::job::Job;
 use likeness::Shape;
 use tilt::{Found, Tilt};
 
-/// Minimum number of shapes: two of one kind have six figures for the five unknowns [convention].
+/// Minimum number of shapes: two shapes of one kind give six measurements (the size and the two components of the
+/// stretch of each) for the five unknowns [convention].
 const MIN_SHAPES: usize = 2;
-/// Minimum gain of cost, as of a chi-square, over the view by lines [bench photos:tune].
-const MIN_GAIN: f64 = 15.0;
-/// Maximum cost as a share of that by lines, and per shape: shapes of several kinds agree with no tilt
+/// Minimum decrease of the cost relative to the view from lines. The cost is on the scale of a chi-square
 /// [bench photos:tune].
+const MIN_GAIN: f64 = 15.0;
+/// Maximum cost of the tilt found: as a share of the cost of the tilt from lines, and per shape. These limits reject
+/// shapes of several kinds, whose cost is high at every tilt [bench photos:tune].
 const MAX_SHARE: f64 = 0.3;
 const MAX_COST: f64 = 1.5;
 
 impl View {
-    /// The view in which the lamps of the second mask, on the plane of the first, are alike; `None` where the lines
-    /// determine the view, and where the lamps agree with it or contradict each other.
+    /// The view in which the lamps marked by `lamps`, on the plane marked by `plane`, are alike. `None` if the lines
+    /// determine the view, if there are too few lamps, if the lamps already agree with the view, or if the lamps
+    /// contradict each other.
     pub fn with_lamps_alike(&self, plane: &Image, lamps: &Image, job: Job) -> Result<Option<View>> {
         let Some((by_lines, error)) = self.uncertain_tilt(plane) else { return Ok(None) };
         let shapes = likeness::of_mask(lamps, self.perspective.principal)?;
@@ -45,8 +49,8 @@ impl View {
         Ok(better.map(|found: Found| self.retilted(&found, &shapes, [plane.width, plane.height])))
     }
 
-    /// The tilt of a plane by the lines, and the standard deviation of its normal in radians; `None` where the lines or
-    /// the caller determine it.
+    /// The tilt of the plane according to the lines, and the standard deviation of the plane's normal in radians.
+    /// `None` if the lines determine the normal well, or if the caller gave the focal length.
     fn uncertain_tilt(&self, mask: &Image) -> Option<(Tilt, f64)> {
         let camera = &self.perspective;
         if camera.focal_source == FocalSource::Given {
@@ -61,7 +65,7 @@ impl View {
     }
 }
 
-/// Whether the shapes are alike by one tilt, and are not by the other.
+/// Whether the shapes are alike at `tilt` and differ at `than`.
 fn is_better(shapes: &[Shape], tilt: &Tilt, than: &Tilt) -> bool {
     let [cost, before] = [tilt, than].map(|tilt| likeness::cost(shapes, tilt.normal, tilt.focal));
     before - cost > MIN_GAIN && cost < MAX_SHARE * before && cost < MAX_COST * shapes.len() as f64

@@ -1,4 +1,4 @@
-//! The view with another tilt of its plane.
+//! Computes the view for another tilt of the plane.
 
 use super::likeness::{self, Shape};
 use super::tilt::{Found, Tilt};
@@ -8,13 +8,13 @@ use crate::rectify::{VanishingPoint, View, camera, manhattan};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// How much worse the shapes may fit after the lines have corrected the tilt, and the minimum share of the lines that
-/// then run along the axes [bench photos:tune].
+/// Maximum increase of the shapes' cost when the lines correct the tilt, and the minimum share of the lines that run
+/// along the corrected axes [bench photos:tune].
 const MAX_LOSS: f64 = 2.0;
 const MIN_EXPLAINED: f64 = 0.5;
-/// Steps of the rotation about the normal, in a right angle [convention].
+/// Number of rotations about the normal that are tried within a right angle [convention].
 const ROTATIONS: usize = 360;
-/// Minimum number of segments that tell a direction [convention].
+/// Minimum number of segments that determine a direction [convention].
 const MIN_SUPPORT: usize = 3;
 
 impl View {
@@ -25,7 +25,8 @@ impl View {
         let indexed = frame.weighted_lines(&segments);
         let lines: Vec<WeightedLine> = indexed.iter().map(|(_, line)| *line).collect();
 
-        // Turn the axes along the lines, and let the lines correct them if they all agree.
+        // Turn the axes to run along the lines. Then let the lines correct the axes and the focal length, and keep the
+        // correction only if enough lines and the shapes agree with it.
         let start = turned(&lines, found.tilt.normal, found.tilt.focal / frame.scale);
         let corrected = manhattan::polished(&lines, start, found.tilt.focal / frame.scale);
         let tilt = Tilt { normal: corrected.axes.col(0), focal: corrected.focal * frame.scale };
@@ -43,7 +44,8 @@ impl View {
             let support = members.iter().filter(|member| **member == Some(axis)).count();
             let mut covariance = found.covariance;
             if direction.dot(normal).abs() < FRAC_1_SQRT_2 {
-                // The direction in the plane is as certain as its normal and the lines along it.
+                // The uncertainty of a direction within the plane is that of the normal plus that of the lines along
+                // the direction.
                 let own = (support >= MIN_SUPPORT).then(|| refine(&lines, direction, focal / frame.scale)).flatten();
                 covariance += round_covariance(direction, own.map_or(camera::FREE_ERROR, |r| deviation(&r.covariance)));
             }
@@ -84,8 +86,8 @@ fn turned(lines: &[WeightedLine], normal: DVec3, focal: f64) -> DMat3 {
     DMat3::from_cols(normal, right, down)
 }
 
-/// Orthogonal directions as room axes: the one nearest the image's vertical points down, and of the two others the one
-/// nearest the viewing direction ahead.
+/// Orders and orients orthogonal directions as room axes. The direction nearest the image's vertical becomes the
+/// vertical axis and points down. Of the two others, the direction nearest the viewing direction points ahead.
 fn named(directions: DMat3) -> DMat3 {
     let mut directions = [0, 1, 2].map(|k| directions.col(k));
     directions.sort_by(|a, b| b.y.abs().total_cmp(&a.y.abs()));

@@ -1,4 +1,4 @@
-//! The search for the tilt of a plane on which shapes are alike.
+//! Searches for the tilt of a plane at which the shapes on the plane are alike.
 
 use super::likeness::{self, Shape};
 use crate::error::Result;
@@ -12,38 +12,39 @@ use glam::{DMat3, DVec3};
 
 /// Number of directions tried over the sphere: 6 degrees apart [convention].
 const DIRECTIONS: usize = 1000;
-/// Focal lengths tried on either side of the expected one, and the logarithm of their ratio [convention].
+/// Number of focal lengths tried on either side of the expected focal length, and the logarithm of the ratio between
+/// neighbours [convention].
 const FOCALS: i32 = 2;
 const FOCAL_STEP: f64 = 0.4;
 /// Standard deviation of the logarithm of a focal length below which it counts as known [bench photos:tune].
 const KNOWN_FOCAL: f64 = 0.1;
-/// Width of the differences that give the curvature at the least cost: wide ones smooth the kinks of medians and limits
-/// [bench photos:tune].
+/// Step of the finite differences that measure the curvature of the cost at its minimum. Medians and limits make kinks
+/// in the cost, which a wide step smooths [bench photos:tune].
 const WIDTH: f64 = 0.02;
 /// Number of tilts that are refined [bench photos:tune].
 const STARTS: usize = 12;
 /// First and last step of the refinement, in radians [convention].
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-4;
-/// The most that a contradiction to the lines costs, in variances: the lines may be wrong altogether
-/// [bench photos:tune].
+/// Maximum cost of a contradiction to the lines, in variances. The cost is limited because the lines may be entirely
+/// wrong [bench photos:tune].
 const MAX_LINES_COST: f64 = 9.0;
-/// Standard deviation of the camera's roll, and the maximum cost of a roll: photographers hold most cameras upright
-/// [bench photos:tune].
+/// Standard deviation of the camera's roll in radians, and the maximum cost of a roll. Most photographers hold the
+/// camera upright [bench photos:tune].
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
-/// Minimum cosine of the angle between the normal and that of the lines: the plane lies on the same side of the camera
-/// [bench photos:tune].
+/// Minimum cosine of the angle between the normal and the normal from the lines: both must put the plane on the same
+/// side of the camera [bench photos:tune].
 const MIN_COSINE: f64 = 0.2;
 
-/// A plane by its normal, which points away from the camera, and the focal length in pixels.
+/// The normal of a plane, which points away from the camera, and the focal length in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Tilt {
     pub normal: DVec3,
     pub focal: f64,
 }
 
-/// A tilt with what is known of it.
+/// A tilt and its uncertainty.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
     pub tilt: Tilt,
@@ -52,16 +53,17 @@ pub struct Found {
     pub focal_spread: f64,
 }
 
-/// Cost of a tilt by its shapes and by what is expected of it.
+/// The total cost of a tilt: the differences between the shapes, plus the deviations from the lines, from the expected
+/// focal length and from an upright camera.
 struct Total<'a> {
     shapes: &'a [Shape],
-    /// The normal that the lines show, and its standard deviation in radians.
+    /// The normal that the lines imply, and its standard deviation in radians.
     lines: DVec3,
     lines_error: f64,
     expected: Expected,
 }
 
-/// Cost of shapes on the plane of a normal at a focal length.
+/// A function that computes the cost of the shapes from the normal of their plane and the focal length.
 type Cost = fn(&[Shape], DVec3, f64) -> f64;
 
 impl Total<'_> {
@@ -76,7 +78,7 @@ impl Total<'_> {
         }
         let by_focal = ((tilt.focal / self.expected.focal).ln() / self.expected.spread).powi(2);
         let by_lines = (cosine.min(1.0).acos() / self.lines_error).powi(2).min(MAX_LINES_COST);
-        // The roll shows in planes above and below the camera, not in those ahead.
+        // The camera's roll shows only in planes above and below the camera, not in planes ahead.
         let roll = tilt.normal.x.atan2(tilt.normal.y.abs());
         let is_level = self.lines.y.abs() > self.lines.x.abs().max(self.lines.z.abs());
         let by_roll = if is_level { (roll / ROLL_ERROR).powi(2).min(MAX_ROLL_COST) } else { 0.0 };
@@ -84,8 +86,8 @@ impl Total<'_> {
     }
 }
 
-/// The tilt with the least cost, from the normal and focal length that the lines show; `None` if no tilt has all
-/// shapes before its horizon.
+/// The tilt with the least cost, given the normal and focal length that the lines imply. `None` if the cost of every
+/// tilt tried is infinite.
 pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected, job: Job) -> Result<Option<Found>> {
     let total = Total { shapes, lines: by_lines.normal, lines_error: error, expected };
     let is_known = expected.spread < KNOWN_FOCAL;
@@ -93,7 +95,8 @@ pub fn find(shapes: &[Shape], (by_lines, error): (Tilt, f64), expected: Expected
     let focals = (-steps..=steps).map(|k| expected.focal * (FOCAL_STEP * f64::from(k)).exp());
     let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
 
-    // The best tilt of every direction; refine the best of these, since shapes stretched alike make minima of their own.
+    // Find the best focal length for every direction, then refine the best of these tilts. Refining only one is not
+    // enough: if all shapes are stretched alike, the cost has several minima.
     let rough = exec::map(DIRECTIONS, job.part(0.0, 0.8), |k| {
         let normal = direction(k);
         let tilts = focals.iter().map(|&focal| Tilt { normal, focal });
@@ -117,13 +120,14 @@ fn direction(k: usize) -> DVec3 {
     DVec3::new(radius * cos, radius * sin, z)
 }
 
-/// The tilt moved along two tangents of its normal and along the logarithm of its focal length.
+/// The tilt after a step of the normal along two tangents and a step of the logarithm of the focal length.
 fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
     let (a, b) = tilt.normal.any_orthonormal_pair();
     Tilt { normal: (tilt.normal + a * right + b * down).normalize(), focal: tilt.focal * focal.exp() }
 }
 
-/// Descends by steps along all axes and diagonals, which shrink where none of them helps; with the cost that is left.
+/// Pattern search: takes the best step along an axis or a diagonal, and halves the step if none decreases the cost.
+/// Returns the final cost and tilt.
 fn refine(total: &Total, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
     let mut least = total.of(&tilt);
     let focal_moves: &[f64] = if is_known { &[0.0] } else { &[0.0, 2.0, -2.0] };

@@ -75,7 +75,7 @@ impl Emitter {
         self.corners[0] * (1.0 - b.x - b.y) + self.corners[1] * b.x + self.corners[2] * b.y
     }
 
-    /// Whether the side that a ray along `direction` hits emits.
+    /// Whether the triangle emits on the side that a ray along `direction` hits.
     pub fn faces(&self, direction: Vec3) -> bool {
         self.double_sided || self.normal.dot(direction) < 0.0
     }
@@ -87,7 +87,7 @@ impl Emitter {
     }
 }
 
-/// Mean of the channels: the brightness for sampling, positive wherever any channel is.
+/// Mean of the channels: the brightness for sampling, which is positive wherever any channel is positive.
 pub fn mean_channel(v: Vec3) -> f32 {
     v.element_sum() / 3.0
 }

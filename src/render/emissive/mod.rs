@@ -1,11 +1,11 @@
 //! Emissive triangles, whose textures are sampled in proportion to their emission.
 //!
 //! Emitters are divided into pieces, which [`super::light`] selects: a triangle of uniform emission is one piece, and
-//! so is every emissive tile of 8 × 8 texels of a textured triangle. Within a piece a point is sampled in proportion
-//! to its emission, texel by texel; its area pdf is its emission divided by the intensity of the piece. Thousands of
-//! small lamps in one texture cost as much as one lamp, and no sample falls on a dark texel. For this, emission
-//! textures are looked up without interpolation. A triangle whose texture coordinates have no area (or span too many
-//! texels) is one piece, sampled uniformly.
+//! so is every emissive tile of 8 × 8 texels of a textured triangle. Within a piece a point is sampled in proportion to
+//! its emission, texel by texel; its area pdf is its emission divided by the intensity of the piece. Thousands of small
+//! lamps in one texture cost as much as one lamp, and no sample falls on a dark texel. Emission textures are therefore
+//! looked up without interpolation. A triangle whose texture coordinates have no area (or span too many texels) is one
+//! piece, sampled uniformly.
 
 mod emitter;
 mod polygon;

@@ -13,7 +13,7 @@ pub struct Rectangle {
 #[derive(Clone, Copy, PartialEq)]
 pub enum Overlap {
     None,
-    /// Partly inside, or so nearly all inside that only clipping can decide.
+    /// Partly inside, or so close to an edge of the triangle that only clipping can decide.
     Part,
     Whole,
 }

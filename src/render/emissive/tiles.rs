@@ -13,8 +13,8 @@ use glam::{DMat2, DVec2, Vec2};
 /// Side of a tile in texels.
 pub const SIDE: usize = 8;
 
-/// Largest number of texels (or four times that of the texture, if more) of a triangle that is divided. [convention]:
-/// bounds memory.
+/// A triangle is divided into tiles only if it spans at most this many texels, or four times the texels of the texture
+/// if that is more. The limit bounds memory. [convention]
 const MAX_TEXELS: f64 = (1 << 26) as f64;
 /// Texture coordinates beyond this many texels cannot separate neighbouring texels in single precision. [rounding]
 const MAX_TEXEL_COORDINATE: f64 = 8e6;
@@ -23,13 +23,13 @@ const MAX_TEXEL_COORDINATE: f64 = 8e6;
 pub struct Tiling {
     /// The triangle's corners in texel coordinates.
     triangle: [DVec2; 3],
-    /// From the offset to the first corner in texels to barycentric coordinates.
+    /// Converts an offset from the first corner, in texels, to barycentric coordinates.
     to_barycentric: DMat2,
     /// The first texel, and the number of tiles along u and v.
     start: [i64; 2],
     pub columns: usize,
     pub rows: usize,
-    /// Size of the texture in texels, in the precision of its look-up.
+    /// Size of the texture in texels, in f32 as in texture look-ups.
     size: Vec2,
 }
 
@@ -102,7 +102,7 @@ impl Tiling {
         is_inside.then_some([first.x as usize, first.y as usize])
     }
 
-    /// A tile of emitter number `index` with the bounds of its light; of zero intensity if it is dark.
+    /// A tile of emitter number `index`, and the bounds of the light of the tile. A dark tile has zero intensity.
     pub fn tile(&self, index: u32, emitter: &Emitter, texture: &Texture, [column, row]: [usize; 2]) -> (Tile, Bounds) {
         let first = self.first_texel(column, row);
         let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
@@ -139,7 +139,7 @@ impl Tiling {
         (Tile { emitter: index, intensity, column: column as u32, row: row as u32, whole, shares }, bounds)
     }
 
-    /// Area of the triangle's part of a rectangle, in texels.
+    /// Area of the part of a rectangle that the triangle covers, in texels.
     fn covered(&self, rectangle: &Rectangle) -> f64 {
         match rectangle.overlap(&self.triangle) {
             Overlap::None => 0.0,
@@ -182,7 +182,7 @@ impl Tiling {
         (b / b.element_sum().max(1.0)).as_vec2()
     }
 
-    /// Mean emission of the texels around the triangle: positive if any of it emits.
+    /// Mean emission of the texels around the triangle: positive if any part of the triangle emits.
     pub fn mean_around(emitter: &Emitter, texture: &Texture) -> f64 {
         let [a, b, c] = emitter.texels(texture);
         let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).floor());

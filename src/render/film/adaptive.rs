@@ -4,8 +4,8 @@
 //! stratified best at powers of two. With an error target, each tile gets a count of its own after
 //! [`MIN_UNIFORM_PATHS`] paths. For a target on the error of the whole image, the number of paths is proportional to
 //! the standard deviation of a tile's paths (Neyman 1934), absolute or relative to its radiance; for a target on the
-//! error of each pixel, it follows from the tile's own error. Each pass doubles the paths of the tiles that lack most
-//! of theirs.
+//! error of each pixel, it follows from the tile's own error. Each adaptive pass doubles the paths of the tiles whose
+//! required number of paths is largest relative to the paths they have.
 //!
 //! A small variance by chance must not stop the sampling of a tile: it is small where no bright path has been found
 //! yet, and the image would become too dark. Decisions are therefore made for whole tiles, with regard to their
@@ -29,8 +29,8 @@ pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Largest number of paths per pixel in a tile, relative to `samples`. Without a limit, light that few paths find (a
 /// caustic, the glossy reflection of a small lamp) would take all paths. [origin not recorded]
 const MAX_TILE_RATIO: u32 = 64;
-/// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [convention: the
-/// target error is defined with it]
+/// The error of a pixel is relative to its luminance, or to this share of the image's mean if the pixel is darker.
+/// [convention: the target error is defined with it]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
 
 /// Chooses the passes of a render.
@@ -152,7 +152,8 @@ impl<'p> AdaptiveSampler<'p> {
         let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
         let deviations: Vec<f64> =
             canvas.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
-        // With n = k d paths, the mean square error is mean(s / (k d)), where s is the variance of single paths.
+        // With n = k d paths per pixel, where d is the deviation of the tile and k is a constant, the mean square error
+        // is mean(s / (k d)), where s is the variance of single paths.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)

@@ -1,7 +1,7 @@
 //! Blocks of pixels whose paths share secondary vertices (`shared`).
 //!
-//! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its
-//! pixels do not show as blocks. The blocks depend on the position in the image alone.
+//! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its pixels
+//! do not show as blocks. The division into blocks depends only on the replication and the position in the image.
 
 use super::eye::Eye;
 use super::grid::{AREA, TILE};

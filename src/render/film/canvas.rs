@@ -43,7 +43,7 @@ impl<'a> Canvas<'a> {
         Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
-    /// A canvas of the pixels of given sums alone.
+    /// A canvas that consists of the pixels of a part, with the given sums.
     pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
         let part = sums.part();
         let mut canvas = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
@@ -71,7 +71,7 @@ impl<'a> Canvas<'a> {
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
         let context = TileContext { world, eye, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
-            // Skip tiles without pixels of a coarse pass.
+            // Skip tiles in which a coarse pass covers no pixel.
             if !pass.passes_over(grid.corner(tile)) {
                 Tile::new(context, tile, pixels, layers).extend(pass, is_over);
             }

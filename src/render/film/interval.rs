@@ -1,11 +1,11 @@
 //! Confidence intervals of pixels, which contain the true radiance of 95 % of the pixels.
 //!
 //! The variance among a pixel's own four replications is a poor estimate. It has three degrees of freedom, and it is
-//! correlated with the mean: both are too small where no bright path has been found yet. In rooms, mean ± 1.96
-//! standard errors contains the truth for 66 to 83 % of the pixels, and with Student's factor for 78 to 93 %. The
-//! variances of the neighbours are almost independent of the pixel's mean; only pixels of its own block (`block`)
-//! share some paths. Their means with binomial weights over 7 × 7 pixels give a coverage of 93 to 97 % from 8 paths
-//! on; `benches/error_control.rs` measures it.
+//! correlated with the mean: both are too small where no bright path has been found yet. In rooms, mean ± 1.96 standard
+//! errors contains the truth for 66 to 83 % of the pixels, and with Student's factor for 78 to 93 %. The variances of
+//! the neighbours are almost independent of the pixel's mean; only pixels of its own block (`block`) share some paths.
+//! If the variances are averaged with binomial weights over 7 × 7 pixels, the intervals cover 93 to 97 % from 8 paths
+//! on; `benches/error_control.rs` measures this coverage.
 
 use super::pooling::pooled;
 use crate::error::Result;

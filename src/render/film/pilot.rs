@@ -1,17 +1,17 @@
 //! Pilot sampling: predicts the cost and the error of an image from a few of its tiles.
 //!
-//! The cost and the variance of paths depend on the scene more than on any static count. So a sample of tiles is
-//! rendered as in the image itself: at full resolution and with the same path sharing. A few tiles, such as those at
-//! the edge of a lamp, may have most of an image's error. Tiles are therefore selected with a probability proportional
-//! to the standard deviation of their light in a first look, and weighted by its reciprocal (Horvitz and Thompson
-//! 1952). The first look may miss the sliver of a lamp that a neighbouring tile shows, so the deviations are spread to
-//! neighbours. The interior of a lamp has no variance and is hardly ever selected, although it may have most of the
-//! image's light. The image's mean is therefore taken from the first look at all tiles, and the selected tiles correct
-//! it by their differences (the difference estimator of Särndal, Swensson and Wretman 1992).
+//! No count that is known before rendering predicts the cost and the variance of paths well. A sample of tiles is
+//! therefore rendered as in the image itself: at full resolution and with the same path sharing. A few tiles, such as
+//! those at the edge of a lamp, may have most of an image's error. Tiles are therefore selected with a probability
+//! proportional to the standard deviation of their light in a first look, and weighted by its reciprocal (Horvitz and
+//! Thompson 1952). The first look may miss the sliver of a lamp that a neighbouring tile shows, so the deviations are
+//! spread to neighbours. The interior of a lamp has no variance and is hardly ever selected, although it may have most
+//! of the image's light. The image's mean is therefore taken from the first look at all tiles, and the selected tiles
+//! correct it by their differences (the difference estimator of Särndal, Swensson and Wretman 1992).
 //!
-//! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. It is
-//! therefore measured at three numbers of paths; at the largest of them only for some of the tiles, selected in
-//! proportion to their part of the variance at the second.
+//! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. The
+//! variance is therefore measured at three numbers of paths. The largest number is traced only in some of the tiles,
+//! which are selected in proportion to their share of the variance at the second number.
 
 pub use super::adaptive::MIN_UNIFORM_PATHS;
 use super::eye::Eye;
@@ -39,7 +39,8 @@ const MAX_TILES: usize = 128;
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
 /// Largest number of tiles with the last number of paths. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Selection weight of a tile without variance, relative to the mean. [origin not recorded]
+/// Selection weight of a tile without variance, relative to the mean standard deviation of all tiles. [origin not
+/// recorded]
 const MIN_CHANCE: f64 = 0.5;
 /// Separates the random numbers of the pilot from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
@@ -58,8 +59,8 @@ pub struct Pilot {
     pub contrast: f64,
 }
 
-/// The numbers of points of the nets that `paths` paths of a pixel consist of: for each replication the powers of two
-/// that add up to its paths.
+/// The nets of points that make up `paths` paths of a pixel: for each replication, the powers of two that add up to its
+/// number of paths.
 pub fn nets(paths: u32) -> impl Iterator<Item = u32> {
     let nets = |points: u32| (0..u32::BITS).map(move |bit| points & 1 << bit).filter(|&points| points > 0);
     (0..REPLICATIONS).flat_map(move |replication| nets(paths_of_replication(paths, replication)))
@@ -75,7 +76,7 @@ struct PilotTile {
     /// Its mean radiance in the first look.
     expected: f64,
     pixels: [Pixel; AREA],
-    /// Paths of each pixel, and the time they took in seconds.
+    /// Number of paths of each pixel, and the time in seconds that all paths of the tile took.
     paths: f64,
     seconds: f64,
 }
@@ -228,7 +229,7 @@ impl SystematicSampler {
     }
 
     /// The weight of the next item, which has this chance: the number of items it represents; 0 if it is not selected.
-    /// An item with a chance longer than a step is selected more than once.
+    /// An item with a chance larger than a step may be selected more than once.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
         let mut marks = 0.0;
@@ -257,8 +258,8 @@ fn total(tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64) -> f64 {
     tile_sums.iter().map(|t| t.weight * of(t)).sum()
 }
 
-/// Number of uniform paths over the number of paths in proportion to the standard deviation of each tile, for equal
-/// error (Neyman 1934).
+/// Ratio of the numbers of paths that uniform and adaptive sampling need for equal error. Adaptive sampling allocates
+/// paths in proportion to the standard deviation of each tile (Neyman 1934).
 fn adaptive_gain(tile_sums: &[TileSums], area: f64) -> f64 {
     let deviation = total(tile_sums, &|t| (t.variance * t.pixels).sqrt());
     if deviation > 0.0 { (total(tile_sums, &|t| t.variance) * area / (deviation * deviation)).max(1.0) } else { 1.0 }

@@ -14,7 +14,7 @@ pub const REPLICATIONS: u32 = 4;
 /// Sums of the paths so far.
 #[derive(Clone, Copy, Default)]
 pub struct Pixel {
-    /// Sum of each replication: in f32, but added to in slices summed in f64.
+    /// Sum of each replication, in f32. New paths are first summed in f64, and their sum is then added.
     sums: [Vec3; REPLICATIONS as usize],
     /// Number of paths of all replications.
     count: u32,
@@ -96,7 +96,7 @@ impl Pixel {
             let paths = paths_of_replication(self.count, replication);
             if paths > 0 {
                 // Weight by the number of paths, as if the variance of a replication were inversely proportional to
-                // it.
+                // that number.
                 let distance = sum.as_dvec3() / f64::from(paths) - mean;
                 squares += distance * distance * f64::from(paths);
                 used += 1;

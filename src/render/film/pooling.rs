@@ -9,7 +9,7 @@ use crate::job::Job;
 const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 
 /// Weighted means of the finite variances over the 7 × 7 pixels around each pixel; infinite where the pixel's own
-/// variance is.
+/// variance is infinite.
 pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
     let (width, height, channels) = (variance.width, variance.height, variance.channels);
     let mut along = Image::new(width, height, channels)?;

@@ -1,8 +1,8 @@
-//! Weights for Russian roulette: errors matter relative to the radiance of the pixel.
+//! Weights for Russian roulette. Errors matter relative to the radiance of the pixel.
 //!
-//! The same light changes a pixel in the shade more than one under a lamp, and a black surface more than a white one;
-//! their paths are traced further. The weights come from earlier paths. Survival probabilities may depend on them
-//! without bias ([`super::super::sampler::Sampler::chance`]).
+//! In relative terms, the same light changes a pixel in the shade more than a pixel under a lamp, and a black surface
+//! more than a white surface. Paths of dark pixels are therefore traced further. The weights come from earlier paths.
+//! Survival probabilities may depend on them without bias ([`super::super::sampler::Sampler::chance`]).
 
 use super::grid::AREA;
 use super::pixel::Pixel;
@@ -12,9 +12,11 @@ use crate::image::try_collect;
 use crate::job::Job;
 use glam::{DVec3, Vec3};
 
-/// Number of paths that the prior, the mean of the tile, is worth. [origin not recorded]
+/// Number of paths as which a prior counts: the mean of the tile for a pixel, the median of the image for a tile.
+/// [origin not recorded]
 const PRIOR_PATHS: f64 = 8.0;
-/// Largest ratio of the median radiance to a pixel's radiance, and reciprocal of the smallest. [origin not recorded]
+/// Largest ratio of the median radiance to a pixel's radiance that is used; the smallest ratio is its reciprocal.
+/// [origin not recorded]
 const MAX_WEIGHT: f64 = 50.0;
 
 /// Median over the tiles of their mean radiance, per channel; `None` without any paths.
@@ -43,12 +45,12 @@ pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f
     (count > 0.0).then(|| (sum / count, paths))
 }
 
-/// Shrinkage factor in `[0, 1)` of a mean of `paths` paths, beside a prior worth [`PRIOR_PATHS`].
+/// Weight in `[0, 1)` of a mean of `paths` paths against a prior that counts as [`PRIOR_PATHS`] paths.
 pub fn shrinkage(paths: f64) -> f64 {
     paths / (paths + PRIOR_PATHS)
 }
 
-/// The radiance of a tile relative to its image.
+/// The radiances that give the roulette weights of a tile: the median of the image, and the mean of the tile.
 pub struct RouletteWeights {
     median_radiance: DVec3,
     tile: DVec3,

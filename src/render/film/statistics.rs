@@ -12,9 +12,9 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::DVec3;
 
-/// Smallest radiance, relative to the mean of the image, to which the error of a pixel is related in the error of the
-/// whole image. It may be lower than for errors of single pixels: a dark pixel does not hold up the others.
-/// [convention: the relative error is defined with it]
+/// In the error of the whole image, the error of a pixel is relative to its radiance, or to this share of the image's
+/// mean if the pixel is darker. The share may be lower than for targets on single pixels, where a dark pixel would hold
+/// up all others. [convention: the relative error is defined with it]
 const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
 /// Sums over the pixels of a tile or of the image.
@@ -67,7 +67,8 @@ impl Canvas<'_> {
     }
 
     /// Statistics with relative errors. A pixel with a rare bright path has a large variance and a large mean; its
-    /// error is related to the mean without that path. With few paths, the mean of the tile counts instead.
+    /// error is therefore taken relative to the mean without that path. With few paths, the mean of the tile is used
+    /// instead.
     pub fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
         let weight = |pixel: &Pixel, tile: f64| {
             let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
@@ -94,13 +95,14 @@ impl Canvas<'_> {
         })
     }
 
-    /// The mean square of the pixels' relative intervals, per tile.
+    /// For each tile, the mean square over its pixels of the half-width of the 95 % interval, relative to the luminance
+    /// of the pixel or to `floor` if the pixel is darker.
     pub fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
         let variance = pooled(&self.variance(job)?, job)?;
         exec::map(self.grid.tiles(), job, |tile| {
             let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
             let square = |(x, y): (usize, usize)| {
-                // Add the standard errors of the channels: they are correlated within a path.
+                // Add standard errors instead of variances, because the channels are correlated within a path.
                 let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
                 let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
                 if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }

@@ -1,8 +1,8 @@
 //! Sums over some paths of some pixels, which add up with the sums of other paths and pixels to an image.
 //!
-//! The path of a given index in a pixel is the same in every part, as are its replication and its position in the
-//! point sequence. The sums are in f64: for an f32 image, the order and the partition of the additions hardly ever
-//! show.
+//! The path of a given index in a pixel is the same in every part, as are its replication and its position in the point
+//! sequence. The sums are in f64, so that the order and the partition of the additions hardly ever change the f32
+//! image.
 
 use super::block::{BlockPixel, BlockTracer, blocks};
 use super::eye::Eye;

@@ -6,7 +6,8 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// Largest number of paths of all tiles together, for tiles of more than the minimum. [origin not recorded]
+/// The paths of a tile are reduced, down to their minimum, until all tiles together have at most this number of paths.
+/// [origin not recorded]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
 /// Largest and smallest number of paths along each side of a tile: powers of two, as its side is.
 const MAX_ALONG: usize = TILE;

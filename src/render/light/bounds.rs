@@ -22,8 +22,9 @@ pub struct Bounds {
     pub low: Vec3,
     pub high: Vec3,
     /// Unit axis of the emission, or 0 if `cone_angle` covers all directions. The intensity vanishes beyond
-    /// `cone_angle` (radians) from the axis. At an angle θ it is at most cos(θ + 90° - cone_angle), and full within
-    /// cone_angle - 90°: with a cone angle of 90° it falls with the cosine.
+    /// `cone_angle` (radians) from the axis. Within cone_angle - 90° of the axis, the intensity may be full. At a
+    /// larger angle θ from the axis, it is at most cos(θ + 90° - cone_angle) times full intensity: with a cone angle of
+    /// 90° it falls with the cosine.
     pub axis: Vec3,
     pub cone_angle: f32,
     /// Whether every light also emits backwards.
@@ -32,7 +33,7 @@ pub struct Bounds {
     pub intensity: f32,
 }
 
-/// The cone angle of full intensity in all directions. [convention]
+/// The cone angle of a light with full intensity in all directions. [convention]
 const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
 impl Bounds {
@@ -54,7 +55,7 @@ impl Bounds {
         Self { axis, cone_angle: angle, ..Self::of_point(position, intensity) }
     }
 
-    /// Bounds of the union of at least one bounds.
+    /// Bounds of all `parts` together; there must be at least one part.
     pub fn union(parts: &[Self]) -> Self {
         let mut whole = parts[0];
         // Average the axes by intensity; the axes of two-sided lights have an arbitrary sign.
@@ -114,7 +115,7 @@ pub struct BoundsLanes {
     /// Reciprocal of the squared distance from the centre to a corner.
     inverse_square: Lanes,
     axis: [Lanes; 3],
-    /// Half-extent of the box along the axis; its radius if the cone angle is not 90°.
+    /// Half-extent of the box along the axis; the radius of the box if the cone angle is not 90°.
     box_extent: Lanes,
     /// -1 for two-sided lights, else 1.
     back_sign: Lanes,
@@ -124,7 +125,7 @@ pub struct BoundsLanes {
     intensity: Lanes,
 }
 
-/// Margin of rounding within which a cosine may be 0. [rounding]
+/// A cosine may be positive if its bound is above minus this margin, because of rounding. [rounding]
 const MARGIN: f32 = 1e-4;
 
 impl BoundsLanes {

@@ -1,9 +1,9 @@
 //! Light sampling: the distribution over all lights of a scene, the points on them, and their pdf.
 //!
 //! A [`LightTree`] selects among lights at finite distance (pieces of surfaces, points and spots) by their importance
-//! for the receiver. Directional lights and the environment, infinitely far away, are groups of their own. The
-//! selection probability of a group is half by its power and half uniform: power ignores occlusion by walls, and no
-//! group may starve.
+//! for the receiver. Directional lights and the environment, infinitely far away, are groups of their own. Half of the
+//! selection probability of a group is proportional to its power, and half is uniform. Power alone ignores occlusion by
+//! walls and could leave a group with too few samples.
 
 pub(super) mod bounds;
 mod punctual;
@@ -47,9 +47,9 @@ pub struct LightSample {
     pub end: Option<LightEnd>,
     /// Radiance in cd/m², intensity in cd, or illuminance in lux, depending on the light.
     pub emission: Vec3,
-    /// Emission / pdf estimates the illuminance of a surface perpendicular to the light: the solid-angle pdf for
-    /// surfaces and the environment, pmf × squared distance for punctual lights at a finite distance, the pmf for
-    /// directional lights.
+    /// `emission / pdf` estimates the illuminance of a surface perpendicular to the light. `pdf` is the solid-angle pdf
+    /// for surfaces and the environment, the pmf × squared distance for punctual lights at a finite distance, and the
+    /// pmf for directional lights.
     pub pdf: f32,
     /// Solid-angle pdf for MIS against BSDF samples; `None` for punctual lights, which no BSDF sample can hit.
     pub mis_pdf: Option<f32>,
@@ -196,8 +196,8 @@ impl Lights {
         })
     }
 
-    /// Solid-angle pdf with which [`Lights::sample`] draws a point of an emitter along a unit direction. Its emission
-    /// and texture coordinates are those of [`super::emissive::Emitter::emission`].
+    /// Solid-angle pdf with which [`Lights::sample`] draws a point of an emitter along a unit direction. The emission
+    /// and the texture coordinates of the point are those that [`super::emissive::Emitter::emission`] returns.
     pub fn surface_pdf(
         &self,
         receiver: &Receiver,

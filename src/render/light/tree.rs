@@ -12,7 +12,7 @@ use glam::{Vec3, Vec3A};
 
 /// Candidate splits per axis are the borders of this many bins. [convention]
 const BINS: usize = 12;
-/// Below this depth, splits halve the number of lights, regardless of the heuristic. [convention]
+/// From this depth on, splits halve the number of lights, regardless of the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
 /// Smallest cluster that is split in parallel. [origin not recorded]
 const PARALLEL_FROM: usize = 1024;
@@ -22,9 +22,9 @@ const NONE: u32 = u32::MAX;
 const LIGHT: u32 = 1 << 31;
 
 pub struct LightTree {
-    /// Pmf of few lights whose importance does not depend on the receiver: a single light, or lights in one box such
-    /// as the two triangles of a rectangle. All positive; at most as many as a node has children. The tree then has no
-    /// nodes.
+    /// Selection probabilities of the lights, if they are few and their relative importance does not depend on the
+    /// receiver: a single light, or lights in one box such as the two triangles of a rectangle. All probabilities are
+    /// positive, and there are at most as many as a node has children. The tree then has no nodes.
     fixed: Vec<f64>,
     nodes: Vec<Node>,
     /// For every light its slot: eight times the node plus the lane.
@@ -199,7 +199,7 @@ fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32
 struct Extent {
     low: Vec3A,
     high: Vec3A,
-    /// Intensity-weighted sum of the axes; those of two-sided lights are flipped to one half-space.
+    /// Intensity-weighted sum of the axes; the axes of two-sided lights are flipped into one half-space.
     direction: Vec3A,
     intensity: f32,
     count: u32,
@@ -283,7 +283,7 @@ fn split(items: &mut [Item]) -> usize {
     items.len() / 2
 }
 
-/// Equal bins over an interval; a single bin if it is empty.
+/// Equal bins over an interval; a single bin if the interval is empty.
 struct Binning {
     low: f32,
     scale: f32,

@@ -35,7 +35,7 @@ pub struct Alphabet {
 /// The lamps of an emission texture: each connected patch has a light event of its own.
 struct Lamps {
     texture: Arc<LampTexture>,
-    /// The light event of texels outside any patch, then that of each patch.
+    /// The light event of texels outside all patches, then the light event of each patch.
     lights: Vec<u32>,
 }
 
@@ -209,7 +209,7 @@ fn environment_kinds(emitter_as: EmitterAs) -> u8 {
     }
 }
 
-/// The labels that expressions name. Labels that an event must have need to exist in the scene.
+/// The labels that expressions name. Fails if a label that an event must have does not exist in the scene.
 fn named_labels(expressions: &[&Expression], existing: &BTreeSet<String>) -> Result<BTreeSet<String>> {
     let mut named_labels = BTreeSet::new();
     for expression in expressions {

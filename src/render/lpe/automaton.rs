@@ -1,9 +1,10 @@
 //! All expressions of a render as one deterministic finite automaton (Thompson 1968; subset construction by Rabin and
 //! Scott 1959; minimised by partition refinement, Moore 1956).
 //!
-//! A path of camera, scattering events and a light moves through it with one look-up per event. All states from which
-//! no light can complete an expression are merged into [`DEAD`]; a share of a path in that state is dropped.
-//! Equivalent states are merged, so that a path has as few components as the expressions allow.
+//! A path consists of the camera, scattering events and a light. It moves through the automaton with one look-up per
+//! event. All states from which no light can complete an expression are merged into [`DEAD`]; the share of a path that
+//! reaches this state is dropped. Equivalent states are merged, so that a path has as few components as the expressions
+//! allow.
 
 use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, Node, kind};
@@ -28,7 +29,7 @@ pub struct Automaton {
     start: u16,
     /// The next states by state, class of meshes and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// By state and light, the index in `lists` of the accepting expressions.
+    /// For each state and light, the index in `lists` of the expressions that accept a path which ends there.
     ends: Vec<u16>,
     /// Lists of expressions that accept the same paths; the first list is empty.
     lists: Vec<Vec<u16>>,
@@ -186,7 +187,7 @@ impl<'a> Nfa<'a> {
         self.epsilon[from as usize].push(to);
     }
 
-    /// Adds what a node matches after state `from`; returns the end state.
+    /// Adds states and transitions that match a node, starting from state `from`; returns the end state.
     fn build(&mut self, node: &'a Node, from: u32) -> Result<u32> {
         match node {
             Node::Event(set) => {
@@ -240,7 +241,7 @@ struct SubsetConstruction<'a> {
     next: Vec<u16>,
     ends: Vec<u16>,
     lists: Vec<Vec<u16>>,
-    /// The last round that visited each NFA state, and the number of rounds.
+    /// For each NFA state, the number of the last call of `closure` that visited it; and the number of calls so far.
     visited: Vec<u32>,
     rounds: u32,
     transitions_left: usize,
@@ -263,7 +264,7 @@ impl<'a> SubsetConstruction<'a> {
         }
     }
 
-    /// Visits all states reachable behind the camera; returns the state after it.
+    /// Visits all states that a path can reach after the camera event; returns the state right after that event.
     fn explore(&mut self, start: u32) -> Result<u16> {
         let camera = Event { kinds: kind::CAMERA, modes: 0, labels: Vec::new() };
         let mut sets = vec![Vec::new()];
@@ -315,7 +316,7 @@ impl<'a> SubsetConstruction<'a> {
         self.closure(&reached)
     }
 
-    /// Epsilon closure of some NFA states, without states that only have epsilon transitions.
+    /// Epsilon closure of some NFA states. It omits states that have only epsilon transitions and accept no expression.
     fn closure(&mut self, from: &[u32]) -> Result<Vec<u32>> {
         self.rounds += 1;
         let matters = |p: usize| self.nfa.transitions[p].is_some() || !self.nfa.accepts[p].is_empty();

@@ -1,4 +1,4 @@
-//! Parses the text of an expression into a tree of events, camera first for either order of the text.
+//! Parses the text of an expression into a tree of events. The tree is camera first, whatever the order of the text.
 
 use crate::error::{Error, Result};
 
@@ -101,7 +101,7 @@ impl EventSet {
 }
 
 impl Node {
-    /// Calls `see` for every label with whether an event must have it.
+    /// Calls `see` for every label, with a flag that says whether an event must have the label.
     pub fn labels(&self, see: &mut impl FnMut(&str, bool)) {
         match self {
             Node::Event(set) => {

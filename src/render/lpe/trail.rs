@@ -20,7 +20,7 @@ use glam::{Vec3, Vec3A};
 /// A state with its share of the path.
 #[derive(Clone, Copy)]
 struct Component {
-    /// Offset of its sums: for each initial state of the path, there is one sum per list of expressions.
+    /// Index of the first sum of the component. Each initial state of the path has one sum per list of expressions.
     offset: u32,
     state: u16,
     share: Vec3A,
@@ -45,8 +45,8 @@ pub struct Trail<'a> {
     panes: Vec<Pane>,
     /// Light of the path so far, by initial state and list.
     sums: SparseSums,
-    /// Light since all states became absorbing, from the light event `rest_light`; it is distributed to the components
-    /// later.
+    /// Light that has arrived from the light event `rest_light` since all states became absorbing. This light is
+    /// distributed to the components later.
     rest: Vec3A,
     rest_light: usize,
 }
@@ -153,7 +153,8 @@ impl<'a> Trail<'a> {
         self.absorbing = components.iter().all(|component| automaton.is_absorbing(component.state));
     }
 
-    /// Adds the contribution of a light that the path or a connection has reached, by the list of each component.
+    /// Adds the contribution of a light that the path or a light sample has reached to the list of expressions that
+    /// each component ends in.
     #[inline(always)]
     pub fn add(&mut self, world: &World, contribution: Vec3A, source: LightSource, strategy: Strategy) {
         let light = self.automaton.light(source);
@@ -324,7 +325,7 @@ fn split_component(to: &mut Vec<Component>, component: &Component, one: u16, oth
     add(to, component, other, component.share - first);
 }
 
-/// Adds a component, merged with one of equal offset and state.
+/// Adds a component, or merges it with an existing component of equal offset and state.
 #[inline(always)]
 fn add(components: &mut Vec<Component>, from: &Component, state: u16, share: Vec3A) {
     if state == DEAD {

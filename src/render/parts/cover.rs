@@ -44,7 +44,7 @@ fn overlap(a: &Part, b: &Part) -> bool {
         && meet(paths(a).0, paths(a).1, paths(b).0, paths(b).1)
 }
 
-/// Counts the paths of each pixel: without overlaps, a pixel of too few paths has a hole.
+/// Counts the paths of each pixel: since parts do not overlap, a pixel with too few paths has a hole.
 fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
     let (width, height) = (params.width, params.height);
     let mut counts = try_vec(width * height, 0u32)?;

@@ -1,4 +1,5 @@
-//! Files of parts (`image::numbers`): the sums, their place in the image, and the identity of the render.
+//! Files of parts, in the format of `image::numbers`. A file holds the sums, their place in the image, and the identity
+//! of the render.
 
 use super::identity::Identity;
 use super::part::Part;

@@ -22,7 +22,7 @@ impl Identity {
             EmitterAs::Light => "light",
             EmitterAs::Object => "object",
         };
-        // Include the version: it may change the paths.
+        // Include the version, because a new version may change the paths.
         let texts = vec![
             ("version", env!("CARGO_PKG_VERSION").to_string()),
             ("scene", format!("{:016x}", scene.fingerprint())),

@@ -5,10 +5,11 @@
 //! single part up to the rounding of sums in f64 (`film::sums`), for any partition and order.
 //!
 //! If the border of a part cuts a block of pixels that share vertices, the part also traces the pixels of the block
-//! outside of it, for their secondary vertices; borders at multiples of 8 pixels avoid this cost. A part does not
-//! depend on the results of other parts. All parts therefore have a fixed number of paths, without error targets or a
-//! time budget. The roulette weights come from a prepass (`film::prepass`) instead of the previous passes of
-//! [`super::run`]. Both are unbiased, but their images differ within their errors.
+//! that lie outside the part, because it needs their secondary vertices; borders at multiples of 8 pixels avoid this
+//! cost. A part does not depend on the results of other parts. All parts therefore have a fixed number of paths,
+//! without error targets or a time budget. The roulette weights come from a prepass (`film::prepass`) instead of the
+//! previous passes of [`super::run`]. Both kinds of weights give unbiased images, but these images differ within their
+//! errors.
 //!
 //! `cover` checks that the parts are complete; `identity` checks that they belong to one render.
 

@@ -68,7 +68,8 @@ impl fmt::Display for Part {
     }
 }
 
-/// Start of one of `count` pieces, rounded to multiples of `unit` if the pieces are large enough.
+/// Start of piece number `piece`, if `size` is divided into `count` about equal pieces. It is rounded down to a
+/// multiple of `unit` if the pieces are large enough.
 fn bound(size: usize, count: u32, piece: u32, unit: usize) -> usize {
     let exact = (size as u64 * u64::from(piece) / u64::from(count)) as usize;
     if exact == size || size / (count as usize) < 4 * unit { exact } else { exact / unit * unit }

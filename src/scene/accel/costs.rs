@@ -135,7 +135,7 @@ impl Binary {
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
     }
 
-    /// Whether a branch represented by a single wide subtree is best a packet.
+    /// Whether a branch that is to be a single wide subtree costs least as a packet.
     pub fn is_packet(&self, at: usize) -> bool {
         let branch = &self.branches[at];
         branch.count <= WIDTH as u32

@@ -16,10 +16,10 @@ pub const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compress
 /// Textures in WebP files.
 pub const WEBP: &str = "EXT_texture_webp";
 
-/// Materials of another workflow.
+/// Materials of the specular-glossiness workflow.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Extensions that a file may require. Of variants of materials the default ones are shown.
+/// Extensions that a file may require. Of a material with variants, the default variant is shown.
 pub const READ: [&str; 15] = [
     DRACO,
     IES,
@@ -41,7 +41,7 @@ pub const READ: [&str; 15] = [
 /// Extensions without an effect on the picture, or whose files also contain the picture in a form that is read.
 const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds"];
 
-/// A property of an extension, and its default value, with which the extension has no effect.
+/// A property of an extension, and its default value. With the default value the extension has no effect.
 type Neutral = (&'static str, f64);
 
 /// Extensions of materials that are not rendered, with the missing effect and their neutral settings.
@@ -60,7 +60,7 @@ const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_volume", "light is neither refracted nor absorbed inside", &[("thicknessFactor", 0.0)]),
 ];
 
-/// Lists of objects, and the name of one of them.
+/// The lists of objects in the JSON, and the word for one object of each list.
 const LISTS: [(&str, &str); 10] = [
     ("materials", "material"),
     ("meshes", "mesh"),
@@ -139,7 +139,7 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
         && !(is_factor && has_texture())
 }
 
-/// Notes a material of the other workflow that cannot be converted.
+/// Notes a specular-glossiness material that cannot be converted.
 fn glossiness(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> String) {
     let settings = material.get("extensions").and_then(|e| e.get(GLOSSINESS));
     let settings = settings.and_then(|s| serde_json::from_value::<PbrSpecularGlossiness>(s.clone()).ok());

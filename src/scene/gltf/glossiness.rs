@@ -1,11 +1,13 @@
 //! Materials of `KHR_materials_pbrSpecularGlossiness`, which older files have, as metallic-roughness.
 //!
-//! The conversion is the one that Khronos published with the extension ("convert-between-workflows", Gary Hsu): the
-//! metalness that gives the brightness of the diffuse and of the specular colour, and the base colour between the
-//! colours that each of them asks for. Textures are converted texel by texel, at the size of the larger one.
+//! The conversion is the one that Khronos published with the extension ("convert-between-workflows", Gary Hsu). It
+//! solves for the metalness that gives the brightness of both the diffuse and the specular colour. The base colour is a
+//! mixture of the two base colours that follow from the diffuse and from the specular colour. Textures are converted
+//! texel by texel, at the size of the larger texture.
 //!
-//! Not modelled: textures of one material with different texture coordinates; its metallic-roughness values are used,
-//! and it is named. Where the textures are wrapped differently, the diffuse one counts.
+//! Not modelled: textures of one material with different texture coordinates. Such a material keeps its
+//! metallic-roughness values, and is listed as not rendered. If the textures are wrapped differently, the wrapping of
+//! the diffuse texture counts.
 
 use crate::error::Result;
 use crate::image::Image;

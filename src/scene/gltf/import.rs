@@ -329,7 +329,8 @@ impl Importer<'_> {
         })
     }
 
-    /// The material and the colours of vertices with such colours: one colour of all is part of the material.
+    /// The material and the vertex colours of a primitive. A colour that all vertices share becomes part of the
+    /// material.
     fn tint(&mut self, material: usize, colours: Vec<[f32; 4]>) -> Result<(usize, Vec<Vec4>)> {
         let clamped = |colour: [f32; 4]| Vec4::from(colour).clamp(Vec4::ZERO, Vec4::ONE);
         let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };

@@ -109,7 +109,7 @@ impl<'a> Materials<'a> {
         })
     }
 
-    /// The metallic-roughness of `KHR_materials_pbrSpecularGlossiness`, with textures of its own.
+    /// Converts `KHR_materials_pbrSpecularGlossiness` to metallic-roughness, with textures of its own.
     fn glossiness(&mut self, settings: &PbrSpecularGlossiness) -> Result<Surface> {
         let [r, g, b, alpha] = settings.diffuse_factor.0;
         let infos = [&settings.diffuse_texture, &settings.specular_glossiness_texture].map(Option::as_ref);

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::image::{try_collect, try_vec};
 use gltf::json::Root;
 
-/// The root nodes: those of the default or first scene, or else all nodes without a parent.
+/// The root nodes: the nodes of the default scene, else of the first scene, else all nodes without a parent.
 pub fn roots(file: &File) -> Result<Vec<usize>> {
     let root = &file.root;
     let number = root.scene.map_or(0, |s| s.value());

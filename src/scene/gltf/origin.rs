@@ -21,10 +21,11 @@ pub const GRID: f64 = 256.0;
 /// A scene is far from the origin beyond this multiple of its own extent. [convention]
 const FAR: f64 = 4.0;
 
-/// Number of corners of bounding boxes after which the others change little. [convention]
+/// Number of corners of bounding boxes after which further objects are not looked at: they would change the origin
+/// little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
-/// Number of corners, or twice as many, that tell where the scene lies: few enough for the reserve of memory.
-/// [convention]
+/// Number of corners from which the place of the scene is computed; sampling may take up to twice as many. They are few
+/// enough for the reserve of memory. [convention]
 const SAMPLES: usize = 4096;
 
 /// Where the coordinates of a file's scene should start, in the metres of `world`; zero for scenes near the origin.

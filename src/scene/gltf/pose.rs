@@ -88,8 +88,8 @@ impl Skinning {
         is_possible && (0..count).map(|i| self.transform(i).determinant().signum()).sum::<f64>() < 0.0
     }
 
-    /// The transform of a vertex: the mean of its joints' transforms by their weights, or that of its first joint if
-    /// all weights are 0.
+    /// The transform of a vertex: the mean of its joints' transforms, weighted by the joints' weights; if all weights
+    /// are 0, the transform of its first joint.
     pub fn transform(&self, vertex: usize) -> DMat4 {
         let (mut sum, mut total) = (DMat4::ZERO, 0.0);
         for (joint, weight) in self.influences(vertex) {

@@ -56,7 +56,7 @@ impl<'a> Vertices<'a> {
         colours.map(|colours| try_collect(colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]))).transpose()
     }
 
-    /// The mode in which the indices form triangles, and the indices.
+    /// The indices, and the mode in which they form triangles.
     pub fn indices(&self, mode: Mode, count: usize) -> Result<(Mode, Vec<u32>)> {
         match (&self.decoded, self.primitive.indices) {
             // A stream has whole triangles, whatever the mode.

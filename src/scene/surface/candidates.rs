@@ -15,7 +15,8 @@ use glam::{DVec2, DVec3};
 /// Cosine of 15 degrees: triangles that are inclined less are level. [convention]
 const LEVEL: f64 = 0.965_925_826;
 
-/// Share of the distance to 1 by which a name that contains "ceiling" raises a score. [convention]
+/// A name that contains a word for a ceiling raises a score by this share of the distance from the score to 1.
+/// [convention]
 const NAMED: f64 = 0.5;
 
 /// Words for a ceiling, in lower case, in the languages of modelling programs.
@@ -44,9 +45,9 @@ pub struct Candidate {
     /// Lowest and highest point, in metres.
     pub low: f64,
     pub high: f64,
-    /// Mean height of the level triangles, of all if none is level, in metres.
+    /// Mean height in metres of the level triangles, or of all triangles if none is level.
     pub height: f64,
-    /// Mean direction of the fronts by area; 0 if they cancel.
+    /// Mean normal of the front sides, weighted by area; 0 if the normals cancel.
     pub normal: DVec3,
     /// Resemblance to a ceiling, in `[0, 1]`.
     pub score: f64,
@@ -97,10 +98,10 @@ struct Sums {
     triangles: usize,
     area: f64,
     level_area: f64,
-    /// Heights of centres times areas.
+    /// Heights of the centres of triangles, times their areas.
     moment: f64,
     level_moment: f64,
-    /// Half of the cross products of sides.
+    /// Half of the cross products of the sides of triangles: their normals, as long as their areas.
     area_vector: DVec3,
     low: DVec3,
     high: DVec3,

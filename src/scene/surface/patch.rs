@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// Maximum angle between a triangle and its plane: 2° [origin not recorded].
 const COS_ANGLE: f64 = 0.999_390_827;
-/// Maximum distance of its corners from the plane, relative to the diagonal of the object [origin not recorded].
+/// Maximum distance of the corners from the plane, relative to the diagonal of the object [origin not recorded].
 const OFFSET: f64 = 5e-4;
 /// Side of a cell in the grid of directions: the angle of [`COS_ANGLE`] [convention].
 const DIRECTION_CELL: f64 = 0.035;

@@ -1,5 +1,5 @@
-//! The part of the room's surface that each pixel shows: lamps of one kind cover equal areas of it, in equal shapes, at
-//! any distance.
+//! The area of the room's surface that each pixel shows. On this surface, lamps of one kind have the same area and the
+//! same shape at any distance.
 
 use crate::error::Result;
 use crate::exec;
@@ -16,16 +16,16 @@ pub struct Footprint {
     pub area: Vec<f32>,
     /// Coordinates along the face.
     pub at: Vec<[f32; 2]>,
-    /// Whether a pixel shows the face itself, as the room was laid out: its normal lies within half a right angle.
+    /// Whether a pixel shows the face itself: its normal is within half a right angle of the face's normal.
     pub is_on_face: Vec<bool>,
 }
 
-/// Least sine of the angle between a ray and the face that it meets. [rounding]
+/// Minimum sine of the angle between a ray and the face that it meets. [rounding]
 const MIN_SINE: f32 = 1e-3;
 
 impl Footprint {
-    /// Areas by the cross product of the differences of positions along rows and columns; coordinates along the two
-    /// room axes that are farthest from the normal of the face, which lies at `offset` along its normal.
+    /// Computes areas by the cross product of the differences of positions along rows and columns. Coordinates run
+    /// along the two room axes that are farthest from the normal of the face, which lies at `offset` along its normal.
     pub fn new(features: &Image, (normal, offset): (Vec3, f32), job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);
         // The point where the ray through a pixel meets the face.

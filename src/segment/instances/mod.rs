@@ -1,5 +1,6 @@
-//! Lamps as things: compact regions of a photo with a sharp contour, brighter than the plane around them. A classifier of single
-//! pixels, the paper's (§4.2), cannot tell a lamp from a bright wall; a region can be told by its contour, size and surroundings.
+//! Finds lamps as compact regions of the photo with a sharp contour, brighter than the plane around them. The paper's
+//! classifier of single pixels (§4.2) cannot tell a lamp from a bright wall. A region can be told by its contour, size
+//! and surroundings.
 //!
 //! ```text
 //! features ─▶ brightness ─▶ component tree ─▶ regions ─▶ painted ─▶ similar ─▶ mask, confidence, doubtful places
@@ -13,7 +14,8 @@
 //! 4. [`similar`]: regions without a stroke that look like the painted ones and lie on the plane.
 //! 5. [`soft`]: confidence that falls to one half on each region's contour, between pixels.
 //!
-//! Not modelled: lamps darker than the plane they light, such as the body of a lamp that shines upwards; lamps behind a grid.
+//! Not modelled: lamps darker than the plane they light, such as the body of a lamp that shines upwards; lamps behind a
+//! grid.
 
 mod footprint;
 mod painted;
@@ -41,24 +43,25 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// Share of the strokes' pixels that are darker than the darkest level looked at: hurried strokes run over a lamp's edge. [judged
-/// on 28 photos]
+/// Share of the strokes' pixels that are ignored as too dark when the lamps' least brightness is taken: hurried strokes
+/// run over a lamp's edge. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
 /// Quantile of the strokes' L* that stands for white. [judged on 44 photos]
 const WHITE: f64 = 0.9;
-/// Least L* that may stand for white, that of a luminance of 1e-5: a stroke on black marks no lamp. [convention]
+/// Minimum L* that may stand for white, that of a luminance of 1e-5: a stroke on black marks no lamp. [convention]
 const MIN_WHITE: f32 = 0.01;
-/// How far below the strokes' brightness contours are looked for, as a share of it. [judged on 28 photos]
+/// How far below the lamps' least brightness contours are sought, as a share of it. [judged on 28 photos]
 const DEPTH: f32 = 0.4;
 
 /// Smallest contrast in L* between a region and the ring of pixels around it; a region with less is noise on a
 /// surface. [judged on 44 photos]
 const MIN_CONTRAST: f64 = 3.0;
 
-/// Expected share of wrong pixels of a lamp with a stroke, and of one without. [judged on 28 photos]
+/// Expected share of wrong pixels in a lamp with a stroke, and in a lamp without a stroke. [judged on 28 photos]
 const ERRORS: [f64; 2] = [0.03, 0.1];
 
-/// Finds the lamps that the positive strokes paint and the regions like them. The first three channels of the features are CIELAB.
+/// Finds the lamps that the positive strokes paint, and regions like them. The first three channels of the features are
+/// CIELAB.
 pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let (width, height) = (input.features.width, input.features.height);
     let paint = samples::ownership(input)?;
@@ -79,14 +82,15 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     {
         return Err(Error::argument(format!("features holds a colour of {:?}; all must be finite", &bad[..3])));
     }
-    // The lamps are as bright as the pixels of the strokes, or as the brightest ones of the plane.
+    // Take the brightness of lamps from the pixels of the strokes or, without strokes, from the brightest pixels of the
+    // plane.
     let unpainted = input.region.filter(|_| is_proposed);
     let brightest = unpainted.map(|plane| proposed::brightest(input.features, plane)).transpose()?;
     let examples = brightest.as_ref().map_or(&paint.positive[..], std::slice::from_ref);
     let photo = Brightness::new(input.features, white(input.features, examples)?, job.part(0.0, 0.2))?;
     let floor = floor(&photo, examples);
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
-    // In a room laid out as a box, the features tell how large things are.
+    // In a room laid out as a box, the features tell how large the regions are on its surface.
     let normal = match unpainted {
         Some(plane) => face::laid_out_under(input.features, plane),
         None => face::laid_out(input),
@@ -116,7 +120,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     Ok(Segmentation { is_proposed, ..found })
 }
 
-/// The nodes that stand out from the ring around them: others are noise on a surface.
+/// Keeps the nodes that are brighter than the ring around them; the others are noise on a surface.
 fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     let nobody = try_vec(search.tree.node_of.len(), false)?;
     let mut kept = Vec::new();
@@ -129,7 +133,7 @@ fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     Ok(kept)
 }
 
-/// L* of the strokes' brightest pixels: a quantile, so that no sparkle sets it.
+/// L* of the strokes' brightest pixels: a quantile, so that a few highlights do not set it.
 fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
     let pixels = examples.iter().flatten();
     let mut lightness = try_collect(pixels.map(|&p| features.data[p as usize * features.channels]))?;
@@ -138,7 +142,7 @@ fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
     Ok(white.max(MIN_WHITE))
 }
 
-/// The level below which no contour is looked for.
+/// The level below which no contour is sought.
 fn floor(photo: &Brightness, examples: &[Vec<u32>]) -> u16 {
     let mut lightness: Vec<f32> = Vec::new();
     for stroke in examples {
@@ -168,7 +172,8 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
     let mut mask = Image::new(width, height, 1)?;
     mask.data.iter_mut().zip(&confidence.data).for_each(|(m, &c)| *m = f32::from(c > 0.5));
 
-    // The expected number of wrong pixels, of those looked at.
+    // Compute the expected number of wrong pixels as a share of the pixels of the plane, or of the photo without a
+    // plane.
     let area = |nodes: &[u32]| nodes.iter().map(|&n| regions.area[n as usize]).sum::<f64>();
     let wrong = ERRORS[0] * area(painted) + ERRORS[1] * area(&similar.found) + 0.5 * area(&similar.doubtful);
     let looked_at = plane.map_or(mask.data.len(), |p| p.data.iter().filter(|v| **v > 0.5).count());

@@ -1,4 +1,5 @@
-//! The regions that strokes paint: for each stroke, the disjoint nodes of the tree that cover it with the sharpest contours.
+//! Finds the regions that strokes paint: for each stroke, the disjoint nodes of the tree that cover it with the
+//! sharpest contours.
 
 use super::regions::Regions;
 use super::tree::Tree;
@@ -7,30 +8,32 @@ use crate::image::try_vec;
 
 /// A region of more than this share of the image is a wall or a ceiling, not a lamp. [judged on 28 photos]
 const MAX_AREA: f64 = 0.3;
-/// Pixels that a region has at least: fewer are noise. [judged on 28 photos]
+/// Minimum number of pixels of a region; smaller regions are noise. [judged on 28 photos]
 pub const MIN_AREA: f64 = 6.0;
-/// Share of a stroke that a region covers at least: less is its edge. [judged on 28 photos]
+/// Minimum share of a stroke that a region must cover; a smaller share is the stroke's edge. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
-/// How many times longer than its stroke a lamp may well be. [judged on 28 photos]
+/// Ratio of a region's length to that of its stroke at which the region's gain is halved. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
-/// Power of the share of its stroke in a region's gain: above 1, one region is worth more than its parts of equal contrast. [judged
-/// on 44 photos]
+/// Exponent of the covered share of the stroke in a region's gain. Above 1, one region has a larger gain than its parts
+/// of equal contrast. [judged on 44 photos]
 const COVER_POWER: f64 = 1.1;
-/// Power of the purity in a region's gain: a plane's strokes inside a region rule it out all but for sure. [judged on 28 photos]
+/// Exponent of the purity in a region's gain: negative strokes inside a region all but rule it out.
+/// [judged on 28 photos]
 const PURITY_POWER: i32 = 4;
-/// Contrast of a region, relative to the best one of the same stroke, below which it is a fragment. [judged on 28 photos]
+/// Minimum contrast of a region, relative to the sharpest region of the same stroke; regions below it are fragments.
+/// [judged on 28 photos]
 const MIN_CONTRAST: f64 = 0.4;
 
-/// Which pixels of each class the strokes cover; the later stroke counts.
+/// The pixels that the strokes of each class cover; the later stroke counts.
 pub struct Paint<'a> {
     pub width: usize,
     /// Pixels of each positive stroke.
     pub positive: &'a [Vec<u32>],
-    /// Number of negative pixels of each node.
+    /// Number of pixels under negative strokes in each node.
     pub negatives: &'a [f64],
 }
 
-/// The nodes that the positive strokes paint, without those inside others, in the order of their numbers.
+/// The nodes that the positive strokes paint, in ascending order, without nodes that lie inside others of them.
 pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
     let mut is_chosen = try_vec(tree.len(), false)?;
     let mut covered = try_vec(tree.len(), 0f64)?;
@@ -42,13 +45,13 @@ pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
     Ok((1..tree.len() as u32).filter(|&n| is_chosen[n as usize] && is_outermost(tree, &is_chosen, n)).collect())
 }
 
-/// Whether no node around it is chosen.
+/// Whether no node around the given one is chosen.
 pub fn is_outermost(tree: &Tree, is_chosen: &[bool], node: u32) -> bool {
     !tree.ancestors(node).skip(1).any(|n| is_chosen[n as usize])
 }
 
-/// The disjoint nodes whose gains have the largest sum: the contrast of each, times the share of the stroke that it covers. `covered` is
-/// zero before and after.
+/// The disjoint nodes with the largest sum of gains. The gain of a node is its contrast, times factors for the share of
+/// the stroke that it covers, for its purity and for its length. `covered` is zero before and after.
 fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], covered: &mut [f64]) -> Vec<u32> {
     // The nodes around the stroke's pixels, parents first, with how many of these pixels they hold.
     let mut nodes = Vec::new();
@@ -74,7 +77,7 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
         regions.contrast(n) * cover.powf(COVER_POWER) * purity.powi(PURITY_POWER) / (1.0 + excess * excess)
     };
 
-    // From the leaves to the root: is a node worth more than the best nodes inside it?
+    // From the leaves to the root, find whether a node gains more than the best nodes inside it.
     let mut best = vec![0.0; nodes.len()];
     let mut inside = vec![0.0; nodes.len()];
     let mut is_better = vec![false; nodes.len()];
@@ -88,7 +91,7 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
     }
     nodes.iter().for_each(|&n| covered[n as usize] = 0.0);
 
-    // From the root to the leaves: the first such node on each way.
+    // From the root to the leaves, choose the first such node on each path.
     let mut chosen = Vec::new();
     let mut is_within = vec![false; nodes.len()];
     for (k, &node) in nodes.iter().enumerate() {

@@ -1,7 +1,9 @@
-//! Without a stroke on a lamp: the regions of the plane that are the most like lamps, in place of painted ones.
+//! Proposes lamps if no stroke lies on one: takes the regions of the plane that are most like lamps, in place of
+//! painted ones.
 //!
-//! Lamps are among the brightest things on their plane, compact, and sharp against it. Of all regions that are, the one
-//! with the sharpest contour is a lamp, and others that are nearly as sharp are lamps too.
+//! Lamps are among the brightest regions on their plane, compact, and sharply bounded. Of the regions with these
+//! properties, the one of the highest worth, which is mostly the sharpness of its contour, is a lamp. Regions of nearly
+//! the same worth are lamps too.
 
 use super::painted::MIN_AREA;
 use super::similar::Search;
@@ -10,21 +12,21 @@ use super::tree::Disjoint;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect, try_vec};
 
-/// Share of the plane's pixels that are looked at for its brightest. [bench photos:nostrokes]
+/// Share of the plane's pixels that count as its brightest pixels. [bench photos:nostrokes]
 const BRIGHTEST: f64 = 0.002;
-/// Least mean L* of a lamp, where that of the brightest pixels is 100. [bench photos:nostrokes]
+/// Minimum mean L* of a lamp, if the brightest pixels have an L* of 100. [bench photos:nostrokes]
 const MIN_LIGHTNESS: f64 = 80.0;
-/// Least contrast of a lamp to the ring around it, in L*. [bench photos:nostrokes]
+/// Minimum contrast between a lamp and the ring around it, in L*. [bench photos:nostrokes]
 const MIN_RING: f64 = 10.0;
-/// Least solidity of a lamp. [bench photos:nostrokes]
+/// Minimum solidity of a lamp. [bench photos:nostrokes]
 const MIN_SOLIDITY: f64 = 0.75;
-/// Largest share of the plane that a lamp may cover. [bench photos:nostrokes]
+/// Maximum share of the plane that a lamp may cover. [bench photos:nostrokes]
 const MAX_SHARE: f64 = 0.25;
-/// Share of the ring around a lamp that must be plane. [bench photos:nostrokes]
+/// Minimum share of the ring around a lamp that must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;
-/// Worth of a region, relative to the best, from which it is a lamp as well. [bench photos:nostrokes]
+/// Minimum worth of a lamp, relative to the best one. [bench photos:nostrokes]
 const NEARLY_BEST: f64 = 0.4;
-/// Power of the area in the worth of a region. [bench photos:nostrokes]
+/// Exponent of the area in the worth of a region. [bench photos:nostrokes]
 const AREA_POWER: f64 = 0.25;
 
 /// The brightest pixels of a plane, at least one. Errors: the plane has no pixel (`Degenerate`).
@@ -40,7 +42,7 @@ pub fn brightest(features: &Image, plane: &Image) -> Result<Vec<u32>> {
     Ok(pixels)
 }
 
-/// The regions that are most like lamps, none inside another. Errors: there is none (`Degenerate`).
+/// The regions that are most like lamps, none inside another. Errors: there is no such region (`Degenerate`).
 pub fn find(search: &Search) -> Result<Vec<u32>> {
     let Search { tree, regions, photo, plane, negatives } = *search;
     let plane_area = plane.map_or(tree.node_of.len(), |p| p.data.iter().filter(|v| **v > 0.5).count()) as f64;
@@ -55,7 +57,7 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         (1..tree.len()).filter(is_compact).map(|node| (node as u32, worth(node))).collect();
     candidates.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
 
-    // The best first; regions in or around one that was chosen belong to it.
+    // Take the best region first. Regions inside or around a chosen region belong to it.
     let nobody = try_vec(tree.node_of.len(), false)?;
     let mut chosen = Disjoint::new(tree)?;
     let mut lamps: Vec<u32> = Vec::new();

@@ -1,4 +1,5 @@
-//! What the regions of the tree look like: size and shape by their moments, mean colour, and the contrast along their contour.
+//! The properties of the tree's regions: size and shape by their moments, mean colour, and the contrast along their
+//! contour.
 
 use super::footprint::Footprint;
 use super::tree::Tree;
@@ -7,9 +8,11 @@ use crate::exec;
 use crate::image::{Image, pyramid, try_vec};
 use crate::job::Job;
 
-/// Standard deviation of the blur before regions are formed, in pixels: noise of single pixels makes no region. [convention]
+/// Standard deviation of the blur before regions are formed, in pixels: noise of single pixels then forms no region.
+/// [convention]
 const SMOOTHING: f32 = 0.6;
-/// Standard deviation of the blur before differences are taken for the contrast of contours, in pixels. [convention: Canny]
+/// Standard deviation of the blur before the differences that give the contrast of contours, in pixels.
+/// [convention: Canny]
 const GRADIENT_SMOOTHING: f32 = 1.0;
 /// Levels per unit of L*, up to L* = 100: as many as an 8-bit photo has. [convention]
 const LEVELS_PER_L: f32 = 2.55;
@@ -18,7 +21,7 @@ const LEVELS_PER_DOUBLING: f32 = 32.0;
 /// The highest level. [convention]
 const MAX_LEVEL: f32 = 1023.0;
 
-/// The photo as the tree sees it.
+/// The brightness and colour of the photo, prepared for the tree.
 pub struct Brightness {
     pub width: usize,
     pub height: usize,
@@ -32,7 +35,7 @@ pub struct Brightness {
     pub gradient: Vec<f32>,
 }
 
-/// Where L* turns from linear to a cube root, and its slope below. [convention: CIE 15]
+/// The L* below which it is linear in luminance, and its slope there. [convention: CIE 15]
 const LINEAR_L: f32 = 8.0;
 const SLOPE: f32 = 24389.0 / 27.0;
 
@@ -85,7 +88,7 @@ impl Brightness {
     }
 }
 
-/// Sums over the pixels of each node on the surface of the room, each pixel weighed by the area that it shows.
+/// Sums over the pixels of each node on the surface of the room. Each pixel is weighted by the area that it shows.
 pub struct OnSurface {
     pub area: Vec<f64>,
     /// Number of pixels that show the face itself, not its extension.
@@ -115,7 +118,7 @@ impl OnSurface {
         let shown = footprint.area.iter().zip(&footprint.at).zip(&footprint.is_on_face);
         for (&node, ((&area, at), &is_on_face)) in tree.node_of.iter().zip(shown) {
             let (node, area, [u, v]) = (node as usize, f64::from(area), at.map(f64::from));
-            // The root's shape is of no interest.
+            // The shape of the root is not needed.
             if node != 0 {
                 sums.area[node] += area;
                 sums.on_face[node] += f64::from(is_on_face);
@@ -153,13 +156,14 @@ impl OnSurface {
         let mean = |sums: &[f64]| sums[node] / area;
         let (u, v) = (mean(&self.u), mean(&self.v));
         let moments = [mean(&self.uu) - u * u, mean(&self.vv) - v * v, mean(&self.uv) - u * v];
-        // A pixel has an extent of its own: a twelfth of its area, on average.
+        // Each pixel adds a variance of its own: a twelfth of its area, on average.
         let [long, short] = ellipse(moments, mean(&self.squares) / 12.0);
         long / short.max(f64::MIN_POSITIVE)
     }
 }
 
-/// Lengths of the axes of the ellipse with second moments xx, yy and xy, each widened by `pixel`; the long one first.
+/// Lengths of the axes of the ellipse with second moments xx, yy and xy, the long one first. `pixel` is added to xx and
+/// yy.
 fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
     let (mean, spread) = (0.5 * (xx + yy) + pixel, (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
@@ -169,7 +173,7 @@ fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
 pub struct Regions {
     /// In pixels.
     pub area: Vec<f64>,
-    /// On the surface of a room that was laid out.
+    /// Sums on the surface of the room, if it was laid out.
     pub surface: Option<OnSurface>,
     x: Vec<f64>,
     y: Vec<f64>,
@@ -212,7 +216,7 @@ impl Regions {
         for x in 0..photo.width {
             let i = y * photo.width + x;
             let node = tree.node_of[i] as usize;
-            // The root's shape is of no interest; its contour there ends.
+            // The shape of the root is not needed, but its pixels border on the contours of other nodes.
             if node != 0 {
                 let (u, v) = (x as f64, y as f64);
                 self.area[node] += 1.0;
@@ -232,7 +236,8 @@ impl Regions {
         }
     }
 
-    /// Two neighbours at different levels lie on the contour of every node that holds the brighter, but not the darker.
+    /// Two neighbours at different levels lie on the contour of every node that holds the brighter, but not the darker
+    /// pixel.
     fn add_edge(&mut self, tree: &Tree, photo: &Brightness, i: usize, j: usize) {
         let (a, b) = (tree.node_of[i] as usize, tree.node_of[j] as usize);
         if a == b || photo.levels[i] == photo.levels[j] {
@@ -246,7 +251,7 @@ impl Regions {
         self.contour_length[dark] -= 1.0;
     }
 
-    /// Mean gradient across the contour, in L* per pixel: sharp edges are high, arbitrary level lines low.
+    /// Mean gradient across the contour, in L* per pixel: high at sharp edges, low on arbitrary level lines.
     pub fn contrast(&self, node: usize) -> f64 {
         if self.contour_length[node] > 0.0 { self.contour_gradient[node] / self.contour_length[node] } else { 0.0 }
     }
@@ -264,11 +269,12 @@ impl Regions {
         let area = self.area[node];
         let [u, v] = self.centre(node);
         let [xx, yy, xy] = [self.xx[node] / area - u * u, self.yy[node] / area - v * v, self.xy[node] / area - u * v];
-        // A pixel has an extent of its own: a twelfth of its side squared.
+        // Each pixel adds a variance of its own: a twelfth of the square of its side.
         ellipse([xx, yy, xy], 1.0 / 12.0)
     }
 
-    /// Area over that of the ellipse with the same second moments: 1 of an ellipse, 0.95 of a rectangle, less of a ring or of branches.
+    /// Ratio of the area to that of the ellipse with the same second moments: 1 for an ellipse, 0.95 for a rectangle,
+    /// less for a ring or a branched shape.
     pub fn solidity(&self, node: usize) -> f64 {
         let [long, short] = self.axes(node);
         self.area[node] / (std::f64::consts::FRAC_PI_4 * long * short)

@@ -1,5 +1,5 @@
-//! Regions without a stroke that look like the painted ones: as bright, of their colour, as sharp against the plane around
-//! them, of a like size and shape. Such regions are found; regions that miss little of it are reported as doubtful.
+//! Finds regions without a stroke that look like the painted lamps: as bright, of the same colour, as sharp against the
+//! plane around them, of similar size and shape. Regions that almost meet these criteria are reported as doubtful.
 
 use super::painted::MIN_AREA;
 use super::regions::{Brightness, Regions};
@@ -10,60 +10,63 @@ use crate::image::{Image, try_vec};
 use crate::job::Job;
 use std::ops::RangeInclusive;
 
-/// How far below the dimmest painted lamp another one may be, in L*. [judged on 28 photos]
+/// Maximum difference in L* by which a lamp may be darker than the darkest painted lamp. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
-/// How far off the nearest painted lamp's a* and b* may be. [judged on 28 photos]
+/// Maximum distance in a* and b* from the nearest painted lamp. [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Contrast along the contour, relative to the median of the painted lamps: far lamps are small and blurred. [judged on 28 photos]
+/// Minimum contrast along the contour, relative to the median of the painted lamps: distant lamps are small and
+/// blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Contrast to the ring around, relative to the median of the painted lamps. [judged on 28 photos]
+/// Minimum contrast to the ring around a lamp, relative to the median of the painted lamps. [judged on 28 photos]
 const RING: f64 = 0.5;
-/// Solidity, relative to the least of the painted lamps. [judged on 28 photos]
+/// Minimum solidity, relative to the least solid painted lamp. [judged on 28 photos]
 const SOLIDITY: f64 = 0.85;
-/// Area, relative to the smallest painted lamp: at three times the distance a lamp in a ceiling is a third as wide and, foreshortened,
-/// a ninth as high. [convention]
+/// Minimum area, relative to the smallest painted lamp: at three times the distance, a lamp in a ceiling is a third as
+/// wide and, foreshortened, a ninth as high. [convention]
 const SMALLER: f64 = 1.0 / 27.0;
-/// Area, relative to the largest painted lamp, where the room's size is not known. [judged on 28 photos]
+/// Maximum area, relative to the largest painted lamp, if the room's size is not known. [judged on 28 photos]
 const LARGER: f64 = 1.6;
-/// Factor between its area on the plane and those of the painted lamps: bloom and blur spread far ones. [judged on 44
-/// photos]
+/// Maximum factor between the area of a lamp on the plane and the areas of the painted lamps: bloom and blur enlarge
+/// distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// Factors by which a lamp may be rounder or longer on the plane than the painted lamps: blur widens thin ones, and
-/// lengthens far ones along the view. [bench photos:tune]
+/// Maximum factors by which a lamp may be rounder or longer on the plane than the painted lamps: blur widens thin
+/// lamps, and lengthens distant lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// Share of the pixels of the largest painted lamp from which a painted lamp shows its area on the plane. [judged on 44
-/// photos]
+/// Minimum size of a painted lamp whose area and shape on the plane are used, as a share of the pixels of the largest
+/// painted lamp. [judged on 44 photos]
 const SHOWN: f64 = 0.01;
-/// Breadth, relative to the broadest painted lamp, where the room's size is not known. [judged on 28 photos]
+/// Maximum breadth, relative to the broadest painted lamp, if the room's size is not known. [judged on 28 photos]
 const BROADER: f64 = 1.5;
-/// Share of the smallest area on the plane that the photo's border leaves of a lamp. [bench photos:tune]
+/// Minimum area on the plane of a lamp that the photo's border cuts, as a share of the minimum area of a whole lamp.
+/// [bench photos:tune]
 const CUT: f64 = 0.06;
-/// Share of the ring that must be plane. [judged on 28 photos]
+/// Minimum share of the ring around a lamp that must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
-/// Share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
+/// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// Ratios to the area and to the aspect of a lamp within which a region off the plane is a lamp too: blur spreads far
-/// ones. [bench photos:tune]
+/// Ranges of the ratios of a region's area and aspect to those of a lamp, within which a region off the plane is a lamp
+/// too: blur enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
-/// Share of a lamp's width by which lamps of one row may be off it. [bench photos:tune]
+/// Maximum offset of lamps across their row, as a share of a lamp's width. [bench photos:tune]
 const IN_ROW: f64 = 0.25;
-/// Ratio of its axes below which a lamp counts as round: such lamps are often scattered, others lie in rows.
-/// [bench photos:tune]
+/// Maximum ratio of the axes of a round lamp: round lamps are often scattered, others lie in rows. [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Difference of the colours of rings, in CIELAB, within which a region off the plane is surrounded by more of it.
-/// [bench photos:tune]
+/// Maximum difference in CIELAB between the ring of a region off the plane and the ring of a painted lamp, up to which
+/// the region's surroundings count as plane. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
-/// Power of the area in the order of candidates: of nested regions with contours almost as sharp, the largest. [judged on 44 photos]
+/// Exponent of the area in the order of candidates: of nested regions with almost equally sharp contours, the largest
+/// comes first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
-/// Share of the likeness asked for that makes a region doubtful rather than none. [judged on 28 photos]
+/// Minimum likeness of a doubtful region, where 1 is the likeness that is required of a lamp. [judged on 28 photos]
 const NEARLY: f64 = 0.7;
 
-/// Variance of the blur of a photo and of the gradient's own smoothing, in square pixels. [judged on 44 photos]
+/// Variance of the blur of a photo together with the smoothing of the gradient, in square pixels. [judged on 44 photos]
 const BLUR: f64 = 2.0;
 
-/// Share of a lamp's contrast that is left where blur spreads a disc of its area: the value at the disc's centre under a Gaussian.
+/// Share of a lamp's contrast that blur leaves: the value at the centre of a disc of the lamp's area after a Gaussian
+/// blur.
 fn sharpness(area: f64) -> f64 {
     1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
 }
@@ -72,17 +75,17 @@ fn sharpness(area: f64) -> f64 {
 #[derive(Default)]
 pub struct Similar {
     pub found: Vec<u32>,
-    /// Bright regions on the plane that differ from the painted lamps in one respect.
+    /// Regions on the plane that are somewhat less like the painted lamps than is required of a lamp.
     pub doubtful: Vec<u32>,
-    /// Regions beyond the plane that would be like the painted lamps if the plane went on there.
+    /// Regions beyond the plane that would be like the painted lamps if the plane continued there.
     pub beyond: Vec<u32>,
 }
 
-/// The painted lamps as a measure for others.
+/// The properties required of a lamp, taken from the painted lamps.
 struct Model {
     min_area: f64,
     max_area: f64,
-    /// Where the room was laid out.
+    /// Present if the room was laid out.
     surface: Option<OnSurface>,
     max_breadth: f64,
     min_lightness: f64,
@@ -90,20 +93,20 @@ struct Model {
     colours: Vec<[f64; 3]>,
     /// Colours of the rings around them.
     rings: Vec<[f64; 3]>,
-    /// Least contrast along the contour and to the ring, of a lamp too large for blur to matter.
+    /// Minimum contrast along the contour and to the ring, for a lamp so large that blur does not matter.
     contour: f64,
     ring: f64,
 }
 
 impl Model {
-    /// Whether a ring has the colour of one around a painted lamp.
+    /// Whether a ring has the colour of a ring around a painted lamp.
     fn is_beside(&self, ring: &Surroundings) -> bool {
         let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
     }
 }
 
-/// Ranges of lamps on the surface of the room.
+/// Ranges of the area and the aspect of lamps on the surface of the room.
 struct OnSurface {
     area: [f64; 2],
     aspect: [f64; 2],
@@ -119,7 +122,7 @@ pub struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Finds regions like the `painted` ones, apart from these.
+    /// Finds regions that are like the `painted` ones, without these.
     pub fn run(&self, painted: &[u32], job: Job) -> Result<Similar> {
         let Self { tree, regions, photo, .. } = *self;
         let mut taken = try_vec(tree.node_of.len(), false)?;
@@ -128,7 +131,7 @@ impl Search<'_> {
         }
         let Some(model) = self.model(painted)? else { return Ok(Similar::default()) };
 
-        // Nodes around, in, and beside the painted ones.
+        // Rate all nodes except those around or inside the painted ones.
         let mut chosen = Disjoint::new(tree)?;
         painted.iter().for_each(|&node| chosen.choose(node));
         let mut is_painted = try_vec(tree.len(), false)?;
@@ -145,7 +148,7 @@ impl Search<'_> {
             }
         }
 
-        // The sharpest contour first. Regions in or around a region that was taken belong to it.
+        // Take the sharpest contour first. Regions inside or around a region that was taken belong to it.
         candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
         let mut similar = Similar::default();
         for (k, &(node, likeness, _)) in candidates.iter().enumerate() {
@@ -217,8 +220,8 @@ impl Search<'_> {
         }))
     }
 
-    /// Whether a node has the size of a lamp: on the plane where the room was laid out, else in the photo. A lamp that
-    /// the border of the photo cuts may be much smaller.
+    /// Whether a node has the size of a lamp. The size is measured on the plane if the room was laid out, else in the
+    /// photo. A lamp that the border of the photo cuts may be much smaller.
     fn has_size(&self, model: &Model, node: usize) -> bool {
         let regions = self.regions;
         let area = regions.area[node];
@@ -234,7 +237,7 @@ impl Search<'_> {
         area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
     }
 
-    /// The lamps that have nearly the size and the shape of a node, both measured on the face of a room that was laid
+    /// The lamps whose size and shape are nearly those of a node, both measured on the face of a room that was laid
     /// out.
     fn like_ones<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> impl Iterator<Item = &'a u32> {
         let alike = self.regions.surface.as_ref();
@@ -246,8 +249,8 @@ impl Search<'_> {
         })
     }
 
-    /// Whether a node is round, and as large as one of the lamps, or lies in a row with one that it equals: round lamps
-    /// are often scattered, others lie in rows.
+    /// Whether some lamp has nearly the size and shape of a node, and the node is round or lies in a row with that
+    /// lamp: round lamps are often scattered, others lie in rows.
     fn is_like_one<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         let is_round = self.regions.surface.as_ref().is_some_and(|surface| surface.aspect(node) <= ROUND);
         self.like_ones(lamps, node).any(|&lamp| is_round || self.is_in_row(node, lamp))
@@ -262,14 +265,15 @@ impl Search<'_> {
         self.regions.surface.as_ref().is_some_and(|surface| surface.are_in_row(node, lamp as usize, IN_ROW))
     }
 
-    /// Whether a node lies on the face that holds the lamps, as the room was laid out.
+    /// Whether a node lies on the face of the room that holds the lamps.
     fn is_on_face(&self, node: usize) -> bool {
         let surface = self.regions.surface.as_ref();
         surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }
 
-    /// 1 and more where a node is like the painted lamps in all respects but its surroundings; below it, how far it is from that in
-    /// one of brightness, colour and contrast; 0 where size, shape or strokes speak against it.
+    /// How much a node is like the painted lamps, apart from its surroundings. The likeness is at least 1 if the node
+    /// is like them in all respects. Below 1 it is the least of the likenesses in brightness, colour and contrast. It
+    /// is 0 if size, shape or negative strokes rule the node out.
     fn likeness(&self, model: &Model, node: usize) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
@@ -283,10 +287,10 @@ impl Search<'_> {
         }
         let [l, a, b] = regions.colour(node);
         let chroma = model.colours.iter().map(|c| (c[1] - a).hypot(c[2] - b)).fold(f64::INFINITY, f64::min);
-        // Blur takes light from small lamps.
+        // Blur darkens small lamps.
         let min_lightness = model.min_lightness - (1.0 - sharpness) * model.ring / RING;
         let lightness = l / min_lightness.max(1.0);
-        // A lightness below that of all painted lamps counts tenfold: L* is a narrow scale at its top.
+        // A shortfall below the minimum lightness counts tenfold: L* is a narrow scale at its top.
         let lightness = if lightness < 1.0 { 1.0 - 10.0 * (1.0 - lightness) } else { lightness };
         contour.min(lightness).min(CHROMA / chroma.max(1e-3)).max(0.0)
     }

@@ -1,4 +1,4 @@
-//! The confidence of a region: one half on its contour, which so lies between pixels.
+//! The confidence of a region. It is one half on the region's contour, which therefore lies between pixels.
 
 use super::regions::Brightness;
 use super::similar::Search;
@@ -6,25 +6,27 @@ use super::surroundings::Bounds;
 use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
 
-/// Pixels around a region over which confidence falls to 0. [convention: the reach of bilinear sampling, twice]
+/// Distance from a region over which confidence falls to 0, in pixels.
+/// [convention: the reach of bilinear sampling, twice]
 const REACH: u8 = 2;
-/// Confidence that pixels of a region have at least, and pixels around it at most: the mask is the region. [rounding]
+/// Minimum confidence of pixels in a region, and maximum confidence of pixels around it: above one half is the region
+/// itself. [rounding]
 const INSIDE: f32 = 0.501;
 const OUTSIDE: f32 = 0.499;
 
-/// Holes of up to this share of a region belong to it: bars, screws and leading before a lamp, but not the inside of a ring. [judged
-/// on 44 photos]
+/// Maximum size of a hole that belongs to its region, as a share of the region: bars, screws and leading before a lamp,
+/// but not the inside of a ring. [judged on 44 photos]
 const HOLE: f64 = 0.05;
 
-/// Adds the confidence of a node: it rises across the contour as the brightness does, by about one over a pixel. Around the region
-/// it stays on the plane.
+/// Adds the confidence of a node. It rises across the contour as the brightness does, by about one over a pixel.
+/// Outside the region, only pixels of the plane get a confidence.
 pub fn add(node: u32, search: &Search, confidence: &mut Image) -> Result<()> {
     let Search { tree, regions, photo, plane, .. } = *search;
     let filled = filled(tree.pixels(node), photo)?;
     let pixels = filled.as_slice();
     let bounds = Bounds::of(pixels, photo, REACH.into());
     let distance = bounds.distance(pixels, photo.width)?;
-    // The lightness halfway between the region's dimmest level and the next one below.
+    // The lightness of the region's dimmest pixel.
     let contour = contour_lightness(tree.pixels(node), photo);
     let slope = 1.0 / (regions.contrast(node as usize) as f32).max(1.0);
     for (k, &d) in distance.iter().enumerate().filter(|(_, d)| **d <= REACH) {
@@ -56,7 +58,7 @@ fn filled(pixels: &[u32], photo: &Brightness) -> Result<Vec<u32>> {
         if label[start] != OPEN {
             continue;
         }
-        // Walk over one part of the rest; it is a hole unless it reaches the border.
+        // Flood one connected part outside the region; it is a hole unless it reaches the border of the bounds.
         hole.clear();
         try_push(&mut hole, start as u32)?;
         label[start] = WALKED;

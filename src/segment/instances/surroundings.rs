@@ -10,18 +10,18 @@ const GAP: isize = 1;
 /// Width of the ring in pixels. [convention]
 const RING: isize = 3;
 
-/// A region beside its surroundings.
+/// Comparison of a region with the ring around it.
 pub struct Surroundings {
-    /// Its mean L*, less the median of its ring.
+    /// Mean L* of the region, minus the median L* of its ring.
     pub contrast: f64,
-    /// Share of the ring on the plane; 1 where no plane is given.
+    /// Share of the ring that lies on the plane; 1 if no plane is given.
     pub on_plane: f64,
-    /// Median of the ring's L*, a* and b*, each alone.
+    /// Medians of the ring's L*, a* and b*, each on its own.
     pub colour: [f64; 3],
 }
 
-/// Looks at the ring around a node's pixels. Pixels of other regions, `taken` ones and those as bright as the node itself, do not
-/// count: panes lie side by side. None where nothing else is left.
+/// Compares a node with the ring around its pixels. The ring leaves out `taken` pixels and pixels as bright as the node
+/// itself: they belong to other regions, such as panes side by side. `None` if no pixel is left.
 pub fn around(
     node: u32,
     tree: &Tree,
@@ -92,19 +92,19 @@ impl Bounds {
         [self.x1 - self.x0, self.y1 - self.y0]
     }
 
-    /// The rectangle's index of a pixel of the image within it.
+    /// The index within the rectangle of a pixel of the image.
     pub fn index(&self, pixel: u32, width: usize) -> usize {
         (pixel as usize / width - self.y0) * (self.x1 - self.x0) + pixel as usize % width - self.x0
     }
 
-    /// The image's index of the rectangle's `k`-th pixel.
+    /// The index within the image of the rectangle's `k`-th pixel.
     pub fn pixel(&self, k: usize, width: usize) -> usize {
         let across = self.x1 - self.x0;
         (self.y0 + k / across) * width + self.x0 + k % across
     }
 
-    /// Distance of each pixel of the rectangle from the given ones along rows and columns, up to 255 (two passes, Rosenfeld and
-    /// Pfaltz 1966).
+    /// Distance of each pixel of the rectangle from the given pixels, in steps along rows and columns, up to 255 (two
+    /// passes, Rosenfeld and Pfaltz 1966).
     pub fn distance(&self, pixels: &[u32], width: usize) -> Result<Vec<u8>> {
         let [across, down] = self.size();
         let mut distance = try_vec(across * down, u8::MAX)?;

@@ -1,5 +1,6 @@
-//! The component tree of a photo's brightness: for every level, the connected regions that are at least that bright, each inside
-//! the one it grows into at the next lower level (Salembier et al. 1998; built by union-find, Berger et al. 2007).
+//! The component tree of a photo's brightness: for every level, the connected regions that are at least that bright,
+//! each inside the region that it grows into at the next lower level (Salembier et al. 1998; built by union-find,
+//! Berger et al. 2007).
 //!
 //! Nodes are numbered from the root on, parents before children. The root is the whole image.
 
@@ -12,7 +13,7 @@ pub struct Tree {
     pub parent: Vec<u32>,
     /// The smallest node that holds each pixel.
     pub node_of: Vec<u32>,
-    /// The pixels, those of a node side by side.
+    /// All pixels, ordered so that the pixels of each node stand side by side.
     pixels: Vec<u32>,
     /// Where the pixels of each node begin and end.
     range: Vec<[u32; 2]>,
@@ -54,7 +55,7 @@ impl Tree {
             }
         }
 
-        // From dark to bright, one pixel speaks for the pixels of a node: the first one of its level.
+        // From dark to bright, redirect parents to the pixel that represents a node: its first pixel in this order.
         for &p in &order {
             let up = parent[p as usize] as usize;
             if levels[parent[up] as usize] == levels[up] {
@@ -107,14 +108,14 @@ impl Tree {
         self.parent.len()
     }
 
-    /// Adds what each node has of its own to all nodes around it.
+    /// Adds the value of each node to all nodes around it.
     pub fn accumulate(&self, values: &mut [f64]) {
         for node in (1..self.len()).rev() {
             values[self.parent[node] as usize] += values[node];
         }
     }
 
-    /// The node and all nodes around it, but for the root.
+    /// The node and all nodes around it, except the root.
     pub fn ancestors(&self, node: u32) -> impl Iterator<Item = u32> {
         std::iter::successors(Some(node), |&n| Some(self.parent[n as usize])).take_while(|&n| n != 0)
     }

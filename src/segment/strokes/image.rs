@@ -10,14 +10,15 @@ const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::Light, [1.0, 1.0, 0.0]),
     (Kind::NotLight, [0.0, 0.0, 1.0]),
 ];
-/// Largest difference in any sRGB channel: wide enough for JPEG and soft brushes, and no two colours come near.
+/// Largest difference from a colour in any sRGB channel. It allows for JPEG and soft brushes, and no pixel can match
+/// two colours.
 const TOLERANCE: f32 = 0.3;
 /// Components of fewer pixels are specks of compression, not strokes.
 const SPECK: usize = 4;
 
-/// Strokes from their colours: (0, 255, 0) plane, (255, 0, 0) not plane, (255, 255, 0) light, (0, 0, 255) not light;
-/// everything else, and what is more than half transparent, is unpainted. Connected pixels of one colour are one
-/// stroke. The image holds linear values, as `image::io` decodes them.
+/// Strokes from their colours: (0, 255, 0) plane, (255, 0, 0) not plane, (255, 255, 0) light, (0, 0, 255) not light.
+/// Pixels of other colours, and pixels that are more than half transparent, are unpainted. Connected pixels of one
+/// colour are one stroke. The image holds linear values, as `image::io` decodes them.
 pub fn from_image(image: &Image) -> Result<StrokeSet> {
     if image.channels < 3 {
         return Err(Error::argument(format!(

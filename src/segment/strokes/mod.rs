@@ -1,4 +1,4 @@
-//! What the user paints: pixels with what they are examples of.
+//! The strokes that a user paints: pixels as examples of a class.
 
 mod image;
 mod text;
@@ -10,10 +10,11 @@ use crate::error::{Error, Result, check_range};
 use crate::image::{Image, make_room, try_collect};
 use glam::DVec2;
 
-/// Share of the pixels of light strokes that are darker than a lamp: hurried strokes run over its edge. [judged on 36 photos]
+/// Share of the pixels under light strokes that are taken to be darker than a lamp: hurried strokes run over its edge.
+/// [judged on 36 photos]
 const LIT: f64 = 0.25;
 
-/// One stroke of the brush: the pixels it covers (`y * width + x`) and what they are examples of.
+/// One stroke of the brush: the pixels that it covers (`y * width + x`), and the class of which they are examples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
     pub pixels: Vec<u32>,
@@ -21,8 +22,8 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// The pixels of a `width × height` image whose centres lie within `radius` of a polyline (pixels, > 0, at most 4096).
-    /// One point makes a dot. A stroke entirely off the image has no pixels.
+    /// The pixels of a `width × height` image whose centres lie within `radius` pixels (> 0, at most 4096) of a
+    /// polyline. One point makes a dot. A stroke entirely off the image has no pixels.
     pub fn polyline(points: &[DVec2], radius: f64, positive: bool, width: usize, height: usize) -> Result<Self> {
         check_range("stroke radius", radius, 1e-3, 4096.0)?;
         if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
@@ -40,7 +41,7 @@ impl Stroke {
                     let along = b - a;
                     let t = if along == DVec2::ZERO { 0.0 } else { (p - a).dot(along) / along.length_squared() };
                     if p.distance(a + along * t.clamp(0.0, 1.0)) <= radius {
-                        // Pieces overlap, maybe all of them all over: what is there twice goes before there is more room.
+                        // Pieces may overlap completely: remove duplicates before allocating more memory.
                         if pixels.len() == pixels.capacity() {
                             pixels.sort_unstable();
                             pixels.dedup();
@@ -68,20 +69,21 @@ pub struct StrokeSet {
 }
 
 impl StrokeSet {
-    /// The examples of the first phase: lights lie in the plane, so their strokes are examples of it as well; without
-    /// them bright lamps would be cut out of a dark ceiling. What is no light says nothing of the plane.
+    /// The examples of the first phase. Lights lie in the plane, so their positive strokes are also positive examples
+    /// of the plane; without them, bright lamps would be cut out of a dark ceiling. Negative strokes of the lights are
+    /// left out, because they say nothing about the plane.
     pub fn plane_examples(&self) -> Vec<Stroke> {
         self.plane_strokes().cloned().collect()
     }
 
-    /// The same, one by one.
+    /// The strokes of [`Self::plane_examples`], one by one and not copied.
     pub fn plane_strokes(&self) -> impl Iterator<Item = &Stroke> {
         self.plane.iter().chain(self.lights.iter().filter(|s| s.positive))
     }
 
-    /// The examples of the second phase. A stroke of the plane is a negative one, except where a stroke of the lights
-    /// crosses it, and where it runs over lamps itself: there a positive one is as bright as the strokes of the lights.
-    /// `features` holds L* in its first channel.
+    /// The examples of the second phase. Strokes of the plane become negative examples, but two kinds of their pixels
+    /// are left out: pixels that a stroke of the lights covers, and pixels of positive strokes that are as bright as
+    /// the strokes of the lights, because the stroke runs over a lamp there. `features` holds L* in its first channel.
     pub fn light_examples(&self, features: &Image) -> Result<Vec<Stroke>> {
         let mut of_lights = try_collect(self.lights.iter().flat_map(|s| s.pixels.iter().copied()))?;
         of_lights.sort_unstable();
@@ -102,7 +104,7 @@ impl StrokeSet {
     }
 }
 
-/// What a stroke can be an example of, as the file formats name it.
+/// The classes of strokes, as the file formats name them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Plane,
