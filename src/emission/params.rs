@@ -77,8 +77,8 @@ pub struct Params {
     pub clean_lamps: bool,
     /// Makes a texture that can be repeated: a lamp that leaves it on one side comes in on the opposite side. Lattices
     /// are stretched, by less than half a period over the whole texture, so that a whole number of periods fits. Needs
-    /// `whole_lamps`. Lights that run out of the exemplar are not lamps; they meet at the border only if they lie on a
-    /// lattice.
+    /// `whole_lamps`. Lights that the edge of the exemplar cuts do not count as whole lamps; they join across the
+    /// border of the texture only if they lie on a lattice.
     pub tileable: bool,
     /// Lays a lattice out evenly between the sides of the texture: a lamp, or the middle between two lamps, lies at the
     /// texture's centre, so that the border cuts as few lamps as possible. The offset shifts the lattice from there.

@@ -37,7 +37,7 @@ const OTHERS: [(usize, &[u8], &str); 18] = [
 ];
 
 impl Format {
-    /// The format of a file; an error names formats that are not read.
+    /// The format of a file. The error for a known format that is not read names it.
     pub fn of(bytes: &[u8]) -> Result<Self> {
         let begins = |at: usize, with: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(with));
         if let Some((.., name)) = OTHERS.iter().find(|(at, with, _)| begins(*at, with)) {

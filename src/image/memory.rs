@@ -156,8 +156,8 @@ fn tiles(width: usize, height: usize) -> usize {
     width.div_ceil(TILE) * height.div_ceil(TILE)
 }
 
-/// Checks the memory for writing an OpenEXR file, in addition to the bytes of [`max_file_bytes`]: blocks in
-/// compression, and their list.
+/// Checks that there is memory for the blocks that are being compressed, and for the list of blocks, while an OpenEXR
+/// file is written. The bytes of the file, [`max_file_bytes`], are checked apart.
 pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
 }

@@ -42,7 +42,7 @@ impl QuantisedImage {
     }
 }
 
-/// Converts a value in `[0, 1]` to a weighted integer.
+/// Converts a value in `[0, 1]` of a channel to an integer, scaled by the weight of the channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiser {
     scale: f32,

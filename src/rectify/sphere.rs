@@ -304,7 +304,7 @@ fn covariance(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Option<Co
         return None;
     }
     let inverse = [n[2] / determinant, -n[1] / determinant, n[0] / determinant];
-    // A⁻¹ B A⁻¹.
+    // A⁻¹ B, where A is `n` and B is `m`; the lines below multiply by the second A⁻¹.
     let product = [
         inverse[0] * m[0] + inverse[1] * m[1],
         inverse[0] * m[1] + inverse[1] * m[2],

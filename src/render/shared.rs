@@ -75,7 +75,7 @@ impl<T> Scratch<T> {
 
 /// A path before it leaves the eye.
 pub struct Start {
-    /// Of unit direction.
+    /// The camera ray; its direction has unit length.
     pub ray: Ray,
     /// Uniform in the unit square: selects the light sample at the primary vertex.
     pub light_u: (f64, f32),

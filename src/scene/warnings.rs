@@ -47,8 +47,8 @@ impl Scene {
             .collect()
     }
 
-    /// A warning if positions are relative to an origin of the scene's own, or if they are so large that f32 has
-    /// rounded them.
+    /// Warns if the scene was moved to an origin other than that of its file, or if its coordinates are so large that
+    /// f32 has rounded them.
     fn far_away(&self) -> Option<Warning> {
         if self.origin != DVec3::ZERO {
             let [x, y, z] = self.origin.to_array();

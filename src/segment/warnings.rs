@@ -205,9 +205,9 @@ pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     )
 }
 
-/// Whether lamps are painted that are hardly brighter than the plane. Strokes of the plane may run over lamps, so that
-/// the negative strokes of the lights, which lie beside lamps, are also compared alone. The first channel of the
-/// features is L*.
+/// Warns if the lamps under the strokes are hardly brighter than the plane. Strokes of the plane may run over lamps, so
+/// the lamps are also compared with the negative strokes of the lights alone, which lie beside lamps. The first channel
+/// of the features is L*.
 pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Option<Warning> {
     let lamps: Vec<&Stroke> = lights.iter().filter(|s| s.positive).collect();
     let beside = || lights.iter().filter(|s| !s.positive);

@@ -19,7 +19,8 @@ use crate::rng::Rng;
 const BLOCK: usize = 24;
 
 /// Advects the field of the previous frame into this frame: each patch takes the match of the patch from which its
-/// centre comes. `motion` has the size of the guides; it is halved if the problem was halved.
+/// centre comes. `motion` has the resolution of the guides; this function halves it if the problem has half of that
+/// (`halved` is not 0).
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
     if halved == 0 {
         return advect(before, motion, problem.patch);

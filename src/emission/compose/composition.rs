@@ -40,7 +40,7 @@ impl Composition {
         Self::of(None, input, styles, params, job)
     }
 
-    /// Like [`Self::new`], but takes the reading of the first exemplar if there is one.
+    /// Like [`Self::new`], but uses an earlier [`Reading`] of the first exemplar if one is given and fits the settings.
     pub(in crate::emission) fn of(
         mut reading: Option<Reading>,
         input: &Input,

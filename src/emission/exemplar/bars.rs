@@ -233,7 +233,7 @@ pub fn bluntest(bar: &Bar, stretches: &[Stretch]) -> f64 {
 
 /// For each position of a line, the brightest light among the `count` positions before it; 0 without any.
 fn brightest_before<'a>(light: impl Iterator<Item = f32>, count: usize, brightest: impl Iterator<Item = &'a mut f32>) {
-    // Positions that may still become the brightest of a window, in order of falling light.
+    // Positions that may still become the brightest of a window, the brightest first.
     let mut window: VecDeque<(usize, f32)> = VecDeque::new();
     for (u, (light, brightest)) in light.zip(brightest).enumerate() {
         while window.front().is_some_and(|(first, _)| first + count < u) {

@@ -99,7 +99,8 @@ impl Correlated {
     }
 }
 
-/// At most two shifts at which the lights fall onto themselves, shortest first, and their correlations.
+/// At most two shifts, not parallel, that map the pattern of the lights onto itself, shortest first, and their
+/// correlations.
 fn periods(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
     for (shift, value) in shifts(exemplar, correlated, least_regularity, RELATIVE_CORRELATION, usize::MAX) {

@@ -1,9 +1,9 @@
 //! Iterative patch placement: image quilting (Efros and Freeman 2001) over colour and metadata ("Lighting Style
 //! Transfer", §6).
 //!
-//! Blocks are filled in scanline order. A patch is a shift of the exemplar; of the shifts that cover a block best, one
-//! is drawn among those that agree best with the pixels already placed. Pixels that a patch cannot show, because the
-//! photo does not show them, are filled by further patches in the same block. On a lattice only shifts by lattice
+//! Blocks are filled in scanline order. A patch is a shift of the exemplar. Of the shifts that cover most of a block,
+//! those are kept that agree best with the pixels already placed, and one of them is drawn at random. Pixels that a
+//! patch cannot show, because the photo does not show them, are filled by further patches in the same block. On a lattice only shifts by lattice
 //! vectors are tried: whichever is chosen, the lamps stay in phase, and errors do not add up from patch to patch,
 //! because every shift is measured from the origin.
 

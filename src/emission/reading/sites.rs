@@ -21,7 +21,8 @@ const SHINES: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
 /// Most places of a site that are looked at. [bench emission:seconds]
 const MAX_SITES: usize = 20_000;
-/// A vector of at most this many unwarped pixels is no period: nothing changes along it. [rounding]
+/// Maximum length of a basis vector, in pixels of the unwarped photo, that is no period: the search for a lattice gives
+/// a shift of one pixel for an axis along which the pattern does not change. [rounding]
 const UNCHANGING: f64 = 1.5;
 
 /// A place in the lattice cell at which lamps lie.

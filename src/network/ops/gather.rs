@@ -58,7 +58,7 @@ impl Rows<'_> {
         let outer = self.to.len().saturating_sub(1);
         let length = self.to.last().copied().unwrap_or(1);
         exec::for_rows(out, length, call.job, |row, out| {
-            // Compute the start of the row's source, from the slowest axis on.
+            // Find where this row's source starts, axis by axis up to the slowest; `None` if an index maps to nothing.
             let (mut start, mut rest) = (Some(0), row);
             let mut stride = self.from.last().copied().unwrap_or(1);
             for axis in (0..outer).rev() {

@@ -17,8 +17,9 @@ const CAMERA_WEIGHT: f64 = 4.0;
 ///
 /// A side faces the room if rays leaving it travel far, relative to the size of the plane, and then hit a surface.
 /// Rays from the upper side of a ceiling hit nothing; rays inside a slab end at once. The score of a side is its area
-/// times the mean of `min(1, distance / √area)`, where a ray that hits nothing counts 0, increased by the share of
-/// cameras in front of it. In an otherwise empty scene, the side wins from which the triangles run counter-clockwise.
+/// times the mean of `min(1, distance / √area)`, where a ray that hits nothing counts 0; the share of cameras in front
+/// of the side raises its score. In an otherwise empty scene all scores are 0, and the side is chosen from which the
+/// triangles run counter-clockwise.
 pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     let chunks = chunks(scene);
     let mut best: Option<(f64, usize, DVec3)> = None;

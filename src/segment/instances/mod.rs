@@ -48,7 +48,8 @@ use tree::Tree;
 const STROKE_EDGE: f64 = 0.1;
 /// Quantile of the strokes' L* that stands for white. [judged on 44 photos]
 const WHITE: f64 = 0.9;
-/// Minimum L* that may stand for white, that of a luminance of 1e-5: a stroke on black marks no lamp. [convention]
+/// Lower bound of the L* that stands for white, the L* of a luminance of 1e-5. Strokes that are darker lie on black and
+/// mark no lamp. [convention]
 const MIN_WHITE: f32 = 0.01;
 /// How far below the lamps' least brightness contours are sought, as a share of it. [judged on 28 photos]
 const DEPTH: f32 = 0.4;
