@@ -178,9 +178,9 @@ struct Tile {
 }
 
 widest! {
-    /// Classifies up to [`TILE`] pixels; results beyond the last pixel mean nothing. `likely` is the index of the region
-    /// of feature space that contained an earlier tile. It is tested first, which saves time and does not change the
-    /// result.
+    /// Classifies up to [`TILE`] pixels; results beyond the last pixel mean nothing. `likely` is the index of the
+    /// region of feature space that contained an earlier tile. It is tested first, which saves time and does not
+    /// change the result.
     fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
         judge.standardise(pixels, count, tile);
         let planes = &tile.all[..judge.channels.len()];

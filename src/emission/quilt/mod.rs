@@ -3,9 +3,9 @@
 //!
 //! Blocks are filled in scanline order. A patch is a shift of the exemplar. Of the shifts that cover most of a block,
 //! those are kept that agree best with the pixels already placed, and one of them is drawn at random. Pixels that a
-//! patch cannot show, because the photo does not show them, are filled by further patches in the same block. On a lattice only shifts by lattice
-//! vectors are tried: whichever is chosen, the lamps stay in phase, and errors do not add up from patch to patch,
-//! because every shift is measured from the origin.
+//! patch cannot show, because the photo does not show them, are filled by further patches in the same block. On a
+//! lattice only shifts by lattice vectors are tried: whichever is chosen, the lamps stay in phase, and errors do not
+//! add up from patch to patch, because every shift is measured from the origin.
 
 pub mod balance;
 pub mod block;
