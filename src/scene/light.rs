@@ -5,7 +5,8 @@ use crate::image::Image;
 use glam::Vec3;
 
 /// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. Squares of it, and of
-/// its multiples in pixels near a lamp, stay within the range of `f32` [rounding]. The sun's disc has 1.6e9 cd/m².
+/// its multiples in pixels near a lamp, stay within the range of `f32`. The sun's disc has 1.6e9 cd/m².
+// [rounding]
 pub const MAX_LIGHT: f32 = 1e15;
 
 /// Checks that each channel of a light lies in [0, [`MAX_LIGHT`]].

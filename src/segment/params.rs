@@ -32,7 +32,7 @@ pub enum Subject {
     Auto,
     /// A surface: every pixel is judged by its features, and must lie on the face of the room that the strokes lie on.
     Surface,
-    /// Lamps: compact regions with a sharp contour, brighter than their surroundings ([`instances`]).
+    /// Lamps: compact regions with a sharp contour, brighter than their surroundings ([`super::instances`]).
     Lamps,
 }
 
