@@ -18,8 +18,8 @@ struct Work {
     statuses: Vec<luxfer_status>,
 }
 
-/// Runs `work` as a job with `statuses` for its notes; cancels it `cancel_after` it has begun. Returns the status of the
-/// job, the notes, and the time from the request to the end.
+/// Runs `work` as a job with `statuses` for its notes, and cancels it `cancel_after` it has begun. Returns the status of
+/// the job, its message, the notes, and the time from the request to the end.
 fn run(
     work: unsafe extern "C" fn(*mut c_void) -> luxfer_status,
     cancel_after: Option<Duration>,

@@ -183,24 +183,24 @@ fn source(reading: Option<Reading>, input: &Input, params: &Params, job: Job) ->
     let mut window = if stays { None } else { Window::find(&exemplar, params)? };
     let is_inside = window.as_ref().is_some_and(|w| w.is_shown);
     // The ragged outlines of lamps that the photo shows coarsely are cleaned where a lattice places the lamps.
-    let may_be_cleaned = params.clean_lamps && params.whole_lamps && input.photo.is_some() && is_ragged(&exemplar);
-    let (mut exemplar, (found, regularity, choice)) = match read {
+    let may_be_cleaned =
+        is_inside && params.clean_lamps && params.whole_lamps && input.photo.is_some() && is_ragged(&exemplar);
+    let copied = || (Continuation::Copy, 0.0, Choice::only(Continuation::Copy));
+    let (mut exemplar, (mut found, mut regularity, mut choice)) = match read {
         Some(read) => (exemplar, read),
-        None if is_inside && !may_be_cleaned => (exemplar, (Continuation::Copy, 0.0, Choice::only(Continuation::Copy))),
+        None if is_inside && !may_be_cleaned => (exemplar, copied()),
         None => {
             let reading = Reading::of(exemplar, input, params, job.part(0.15, 0.25))?;
             (reading.exemplar, (reading.continuation, reading.regularity, reading.choice))
         }
     };
-    let is_sure = matches!(found, Continuation::Lattice(_)) && choice.score >= SURE;
-    let (found, regularity, choice) = match window.as_mut().filter(|w| w.is_shown) {
-        Some(window) if may_be_cleaned && is_sure => {
+    if let Some(window) = window.as_mut().filter(|w| w.is_shown) {
+        if may_be_cleaned && matches!(found, Continuation::Lattice(_)) && choice.score >= SURE {
             window.is_shown = false;
-            (found, regularity, choice)
+        } else {
+            (found, regularity, choice) = copied();
         }
-        Some(_) => (Continuation::Copy, 0.0, Choice::only(Continuation::Copy)),
-        None => (found, regularity, choice),
-    };
+    }
     if let Continuation::Lattice(basis) = found {
         border_sites::exclude(&mut exemplar, basis)?;
     }
