@@ -46,9 +46,8 @@ impl Pool {
         }
     }
 
-    /// Like [`run`](Self::run), but gives up if `is_cancelled` becomes true while `work` still waits for a busy
-    /// thread; then drops `work` and returns `None`. `work` must not panic. It is always dropped before this function
-    /// returns.
+    /// Like [`run`](Self::run), but drops `work` and returns `None` if `is_cancelled` becomes true while all threads
+    /// are still busy with other work. `work` must not panic. It is always dropped before this function returns.
     pub fn run_unless<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
@@ -247,7 +246,7 @@ pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     rayon::join(a, b)
 }
 
-/// Up to this number of elements is sorted without a check for cancellation, which takes a few milliseconds.
+/// Largest number of elements to sort without a check for cancellation; sorting them takes a few milliseconds.
 const SERIAL_SORT: usize = 1 << 16;
 
 /// Sorts in parallel and checks for cancellation. After a cancel, the order is unspecified.

@@ -46,7 +46,8 @@ pub fn outside<T>(call: impl FnOnce() -> T) -> T {
     call()
 }
 
-/// Installs the hook once per process. A panicking thread cannot install it; the next call then does.
+/// Installs the hook once per process. A panicking thread cannot install a hook; the next call on another thread then
+/// does.
 fn install() {
     static INSTALLED: Once = Once::new();
     if !INSTALLED.is_completed() && !thread::panicking() {

@@ -61,7 +61,7 @@ pub enum Code {
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: some lights shine from points, so that images do not show them.
+    /// Scene: it has points, spots or luminaires, which have no surface that images could show.
     NotInPicture = 26,
 }
 

@@ -70,16 +70,17 @@ const TAP: f32 = 0.5;
 /// Ratio of the variance of one half to the variance of the mean of both halves. It is exact for independent halves.
 /// [convention]
 const HALF: f32 = 2.0;
-/// Range weight: at strength 1, a squared difference in luminance of `RANGE` times the sum of the two variances lowers
-/// the weight of a neighbour by a factor e. [origin not recorded]
+/// Range weight: at strength 1, the weight of a neighbour falls by a factor e if the squared difference in luminance
+/// is this multiple of the sum of the two variances. [origin not recorded]
 const RANGE: f32 = 12.0;
-/// Plane weight: squared sine of the angle between the direction to the neighbour and the pixel's plane that lowers
-/// the weight by a factor e. [origin not recorded]
+/// Plane weight: the weight falls by a factor e if the squared sine of the angle between the pixel's plane and the
+/// direction to the neighbour has this value. [origin not recorded]
 const PLANE: f32 = 0.01;
-/// Normal weight: 1 - cosine of the angle between the two normals that lowers the weight by a factor e. [origin not
-/// recorded]
+/// Normal weight: the weight falls by a factor e if 1 - cosine of the angle between the two normals has this value.
+/// [origin not recorded]
 const FACING: f32 = 0.02;
-/// Albedo weight: squared difference in albedo that lowers the weight by a factor e. [origin not recorded]
+/// Albedo weight: the weight falls by a factor e if the squared difference in albedo has this value. [origin not
+/// recorded]
 const COLOUR: f32 = 0.02;
 /// Smallest albedo by which colours are divided, so that lamps and black surfaces keep their light. [origin not
 /// recorded]

@@ -35,7 +35,8 @@ impl Lobe {
     /// Returns the BRDF times the cosine of `wi`, without the Fresnel factor, and the solid-angle pdf with which
     /// reflection about [`Lobe::sample_normal`] yields `wi`. `wi` must lie above the surface; `h` is the half vector.
     pub fn eval(&self, wi: Vec3, h: Vec3) -> (f32, f32) {
-        // Evaluate the distribution of microfacet normals, divided by the Jacobian 4 (`wo` · `h`) of reflection.
+        // Evaluate D(h) / (4 cos θo), the common factor of the BRDF and the pdf, with the distribution D of microfacet
+        // normals. In the pdf, `wo` · `h` cancels against the Jacobian of reflection.
         let a2 = self.alpha * self.alpha;
         let d = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
         let facets = 1.0 / (4.0 * PI * a2 * d * d * self.wo.z);
@@ -202,8 +203,8 @@ mod tests {
 
     #[test]
     fn the_concentric_map_preserves_areas() {
-        // Compare the determinant of the Jacobian, by central differences, with the ratio of the areas of disc and
-        // square (side 1): pi.
+        // Compare the determinant of the Jacobian, computed by central differences, with pi, the ratio of the areas of
+        // the disc and the unit square.
         let h = 1.0 / 1024.0;
         for i in 0..64 * 64 {
             // Avoid the diagonals of the square, where the map is not smooth.

@@ -226,7 +226,7 @@ pub struct Recorder<'a> {
     /// Radiance of the current path in the main image, so far.
     pub(super) beauty: Vec3,
     pub(super) trail: Trail<'a>,
-    /// Sums over the paths of a pixel: one sum for each list of expressions that accept the same paths.
+    /// Light of the pixel's paths: one sum for each list in [`Automaton::lists`].
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }

@@ -122,10 +122,6 @@ pub fn irradiance_in_air<S: PathSink>(
 /// get further paths; pixels with rare bright paths then come out too dark by a small part of their standard error
 /// (see `film::adaptive`).
 ///
-/// Without an error target the estimate of each pixel is unbiased. With a target, the paths so far decide where the
-/// next ones go, and pixels with rare bright paths come out too dark by a small part of their standard error (see
-/// `film::adaptive`).
-///
 /// # Errors
 /// Parameters out of range; a degenerate camera; lights so bright that pixels overflow; no memory; cancelled. After a
 /// cancel the last published film is valid.

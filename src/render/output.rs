@@ -24,7 +24,7 @@ pub struct Film {
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// Number of lights that shine from points and that the image therefore cannot show.
+    /// Number of emissive points, spots and luminaires, which have no surface that the image could show.
     pub unseen_lights: usize,
     /// The additional images: first the light path expressions, then the surface attributes, in the order of the
     /// request.

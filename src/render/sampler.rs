@@ -17,7 +17,7 @@ pub struct Sampler {
     block: u64,
 }
 
-/// One point: four random numbers of 32 bits.
+/// Four random numbers of 32 bits: the coordinates of one scrambled Sobol' point.
 #[derive(Clone, Copy)]
 pub struct Block([u32; 4]);
 

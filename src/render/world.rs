@@ -250,8 +250,8 @@ impl World {
         self.any_see_through
     }
 
-    /// Whether no surface lies between the ends of a ray. Transparent surfaces count as surfaces. Points whose opacity
-    /// is 0 and the triangles in `ends`, at the two ends, do not.
+    /// Whether no surface lies between the ends of a ray. Transparent surfaces count; points of a surface whose
+    /// opacity is 0 and the triangles in `ends`, at the two ends, do not count.
     #[inline]
     pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
         let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;

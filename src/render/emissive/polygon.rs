@@ -114,7 +114,7 @@ impl Polygon {
     }
 }
 
-/// Maps a point of the unit square to the barycentric coordinates (of corners 1 and 2) of a point uniform by area.
+/// Maps the unit square to a triangle, uniformly by area. Returns the barycentric coordinates of corners 1 and 2.
 pub fn uniform_in_triangle(v: Vec2) -> Vec2 {
     let root = v.x.sqrt();
     Vec2::new(root * (1.0 - v.y), root * v.y)

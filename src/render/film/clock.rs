@@ -1,4 +1,4 @@
-//! The time budget of a render.
+//! The time budget of a render: when to stop, and when to publish an image.
 
 use crate::error::Result;
 use std::time::{Duration, Instant};

@@ -42,8 +42,8 @@ const MAX_TILES: usize = 128;
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
 /// Largest number of tiles that the third pass renders. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Selection weight of a tile without variance, as a multiple of the mean standard deviation of all tiles. [origin not
-/// recorded]
+/// Constant part of the selection weight of each tile, as a multiple of the mean standard deviation of all tiles, so
+/// that tiles without variance can be selected, too. [origin not recorded]
 const MIN_CHANCE: f64 = 0.5;
 /// Salt of the pilot's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;

@@ -24,7 +24,7 @@ pub struct TileContext<'a> {
     pub eye: &'a Eye,
     pub seed: u64,
     pub grid: Grid,
-    /// Median over the image's tiles of their mean radiance.
+    /// Median of the mean radiances of the image's tiles; `None` before the first path.
     pub median_radiance: Option<DVec3>,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: &'a AtomicU64,

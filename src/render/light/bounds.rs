@@ -88,7 +88,8 @@ impl Bounds {
         whole
     }
 
-    /// Whether the importances of the two lights have the same ratio for every receiver.
+    /// Whether the bounds of two lights are equal except for the intensity. The ratio of the lights' importances is
+    /// then the same for every receiver.
     pub fn differs_only_in_intensity(&self, other: &Self) -> bool {
         Self { intensity: 0.0, ..*self } == Self { intensity: 0.0, ..*other }
     }

@@ -48,9 +48,9 @@ pub struct LightSample {
     /// Radiance in cd/m² of a surface or the environment, intensity in cd of a punctual light at a finite distance, or
     /// illuminance in lux of a directional light.
     pub emission: Vec3,
-    /// Divisor for which `emission / pdf` estimates the illuminance on a surface perpendicular to `direction`. It is
-    /// the solid-angle pdf for surfaces and the environment, pmf × squared distance for punctual lights at a finite
-    /// distance, and the pmf for directional lights.
+    /// The divisor of the light sample: `emission / pdf` estimates the illuminance on a surface perpendicular to
+    /// `direction`. It is the solid-angle pdf for surfaces and the environment, pmf × squared distance for punctual
+    /// lights at a finite distance, and the pmf for directional lights.
     pub pdf: f32,
     /// Solid-angle pdf for MIS against BSDF samples; `None` for punctual lights, which no BSDF sample can hit.
     pub mis_pdf: Option<f32>,

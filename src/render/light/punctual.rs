@@ -127,8 +127,8 @@ pub fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
 }
 
 impl Shape {
-    /// Returns the factor on the intensity in a unit direction: a share in [0, 1], or for a measured luminaire the
-    /// candelas.
+    /// Returns the factor on the intensity in a unit direction: a share in `[0, 1]`, or for a measured luminaire the
+    /// intensity in candela.
     pub fn factor(&self, direction: Vec3) -> f32 {
         match self {
             Self::Isotropic => 1.0,

@@ -24,9 +24,9 @@ const NONE: u32 = u32::MAX;
 const LIGHT: u32 = 1 << 31;
 
 pub struct LightTree {
-    /// Selection probabilities of the lights if the tree has no nodes. This is so for at most eight lights whose
-    /// relative importance does not depend on the receiver: a single light, or lights with the same bounds except for
-    /// the intensity, such as the two triangles of a rectangle. All probabilities are positive.
+    /// Selection probabilities of the lights if the tree has no nodes; all are positive. A tree has no nodes if it has
+    /// at most eight lights and their relative importance does not depend on the receiver. Examples are a single
+    /// light, and lights whose bounds differ only in intensity, such as the two triangles of a rectangle.
     fixed: Vec<f64>,
     nodes: Vec<Node>,
     /// For each light its slot: 8 × the index of its node, plus its lane in the node.

@@ -37,8 +37,7 @@ pub struct Alphabet {
 /// The lamps of an emission texture: each connected patch of emissive texels has its own light event.
 struct Lamps {
     texture: Arc<LampTexture>,
-    /// Index of a light event for each value of the region labels: first for texels outside all patches, then for each
-    /// patch.
+    /// Index of the light event of the texels outside all patches, followed by the index of each patch's light event.
     lights: Vec<u32>,
 }
 

@@ -31,7 +31,7 @@ pub struct Automaton {
     /// For each state and light event, the index in `lists` of the expressions that accept a path which ends at this
     /// light.
     ends: Vec<u16>,
-    /// Each list holds expressions that accept the same paths; the first list is empty.
+    /// Lists of expressions: every path is accepted by exactly the expressions of one list. List 0 is empty.
     lists: Vec<Vec<u16>>,
     /// For each state, whether every scattering event leaves it unchanged.
     absorbing: Vec<bool>,
@@ -100,14 +100,14 @@ impl Automaton {
         self.alphabet.light(source)
     }
 
-    /// Returns the index in [`Automaton::lists`] of the expressions that accept a path which ends at a light. List 0
-    /// is empty.
+    /// Returns the index in [`Automaton::lists`] of the expressions that accept a path which reaches `light` in
+    /// `state`. List 0 is empty.
     #[inline]
     pub fn accepting(&self, state: u16, light: usize) -> u16 {
         self.ends[usize::from(state) * self.alphabet.lights.len() + light]
     }
 
-    /// Returns the lists of expressions that accept the same paths.
+    /// Returns the lists of expressions. Every path is accepted by exactly the expressions of one list.
     pub fn lists(&self) -> &[Vec<u16>] {
         &self.lists
     }

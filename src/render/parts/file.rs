@@ -41,7 +41,7 @@ impl File {
         Ok(Self { path: path.into(), head, part, discarded })
     }
 
-    /// Returns the path of the file for messages.
+    /// Returns the path of the file, for error messages.
     pub fn name(&self) -> impl std::fmt::Display {
         self.path.display()
     }

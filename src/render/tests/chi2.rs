@@ -5,9 +5,9 @@ const MIN_EXPECTED: f64 = 10.0;
 /// Probability that at least one of all tests of a routine fails by chance. [convention]
 const CHANCE: f64 = 1e-3;
 
-/// Asserts that the observed counts of all bins follow the expected counts. The test is one of `tests` tests, of which
-/// any fails by chance with a probability of 1/1000 in total (Šidák 1967). The bins must cover the whole sample space,
-/// so that both sums are equal up to quadrature errors.
+/// Asserts that the observed counts of all bins follow the expected counts. The test is one of `tests` tests; the
+/// probability that any of these fails by chance is 1/1000 (Šidák 1967). The bins must cover the whole sample space,
+/// so that the sums of both counts are equal up to quadrature errors.
 pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], tests: usize, what: &str) {
     let bins = pooled(expected, observed);
     let (total, seen) = bins.iter().fold((0.0, 0.0), |(e, o), bin| (e + bin.0, o + bin.1));

@@ -92,7 +92,8 @@ fn assert_close(world: &World, point: &SurfacePoint, expected: f64) {
     assert!((mean - expected).abs() < 4.0 * error + 1e-5 * expected, "{mean} ± {error}, expected {expected}");
 }
 
-/// A point in the middle of a mesh's first triangle or of one of its sides, on the front side.
+/// The midpoint between corners 0 and 2 of a mesh's first triangle, on its front side. This is the centre of a
+/// parallelogram.
 fn centre_of(mesh: u32) -> SurfacePoint {
     SurfacePoint { mesh, triangle: 0, barycentric: Vec2::new(0.0, 0.5), front: true }
 }

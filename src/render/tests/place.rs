@@ -1,4 +1,4 @@
-//! Tests of scenes far from the origin.
+//! Tests of scenes a million metres from the origin, which must render as at the origin.
 
 use super::*;
 

@@ -63,7 +63,7 @@ fn required_features_are_found_and_unsupported_ones_are_named() {
     };
     assert_eq!(found(&|_| ()), matt_only);
     assert_eq!(matt_only.left_out().len(), 9, "{:?}", matt_only.left_out());
-    // Ignore materials that no mesh uses, and lights that do not emit.
+    // The analysis ignores materials that no mesh uses and lights that do not emit.
     assert_eq!(
         found(&|s| s.materials.extend(everything().materials.into_iter().map(|m| Material {
             base_color_texture: None,
