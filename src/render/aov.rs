@@ -18,7 +18,7 @@ pub enum Aov {
     Depth,
     /// Distance of the surface along the camera ray, in metres; infinite for the background.
     Distance,
-    /// World position in metres.
+    /// Position of the surface in scene coordinates, in metres; 0 for the background.
     Position,
     /// Unit shading normal in world space, facing the viewer; 0 for the background.
     Normal,

@@ -21,7 +21,7 @@ const BLOCKS: usize = AREA / MAX_SHARED;
 /// Longer side of a block in pixels.
 const LONGER_SIDE: usize = 4;
 
-/// A pixel of a block.
+/// A pixel of a block, with the length and the seed of its paths in one replication.
 pub struct BlockPixel {
     /// Index of the pixel in its tile.
     pub pixel: usize,
@@ -32,7 +32,7 @@ pub struct BlockPixel {
 }
 
 impl BlockPixel {
-    /// Describes a pixel for the paths of one replication; `seed` is the seed of the image.
+    /// Derives the seed of the pixel's paths in one replication from `seed`, the seed of the image.
     pub fn new(pixel: usize, at: [usize; 2], length: PathLength, seed: u64, replication: u32) -> Self {
         Self { pixel, at, length, seed: seed_of(seed, at, replication) }
     }
