@@ -1,9 +1,9 @@
 //! Warnings
 //!
-//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect, its
-//! figure and limit, the place in the photo, and the remedy. Each stage that reads the photo has a list, a transfer has
-//! the lists of all its stages, and a scene has one. A list is a copy, which stays as it is when the stage is started
-//! again. An empty list does not prove a result right.
+//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect,
+//! its figure and limit, the place in the photo, and the remedy. Each stage that reads the photo has a list, a
+//! transfer has the lists of all its stages, and a scene has one. A list is a copy, which stays as it is when the
+//! stage is started again. An empty list does not prove a result right.
 
 use super::context::Context;
 use super::emission::luxfer_emission;
@@ -67,8 +67,8 @@ pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
 /// Much of the unwarped plane is strongly magnified from the photo; the severity is the share of the plane that is
 /// strongly magnified. The place is the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
-/// The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle between
-/// the plane and the viewing ray, below the limit. The place is the point with the smallest angle.
+/// The camera sees the plane nearly edge-on; the severity is the median over the plane of the sine of the angle
+/// between the plane and the viewing ray, below the limit. The place is the point with the smallest angle.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
 /// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
