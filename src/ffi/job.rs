@@ -1,10 +1,10 @@
 //! Job
 //!
-//! Functions with _start in their names start long work and return a job at once; the job runs on threads of the
-//! library. It works on the inputs as they are at the start: changing or releasing them later does not affect the job.
-//! While a job runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the
-//! object after the job has succeeded. Releasing the last reference to a running job cancels the job and waits until
-//! it has ended.
+//! Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
+//! runs on threads of the library. It works on the inputs as they are at the start: changing or releasing them later
+//! does not affect the job. While a job runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION).
+//! Read the results from the object after the job has succeeded. Releasing the last reference to a running job cancels
+//! the job and waits until it has ended.
 //!
 //! Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
 //! waiting job at once. All other calls run at once, even while jobs run, and even from a progress function.
