@@ -54,8 +54,8 @@ fn main() {
     pool.run(|| layouts(&pairs));
 }
 
-/// Compares the built-in depth, from lines and strokes, from lines, and from neither, with the measured depth up to
-/// scale.
+/// Compares the library's own depth with the measured depth, up to scale: depth from lines and strokes, from lines
+/// alone, and from neither.
 fn layouts(pairs: &[&Case]) {
     if pairs.is_empty() {
         return absent("features.layout.depth_error", "the RGB-D pairs are not there");

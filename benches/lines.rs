@@ -18,11 +18,13 @@ use luxfer::rng::Rng;
 use std::path::{Path, PathBuf};
 use truth::labelled_photos;
 
-/// A drawing: its size in pixels (one megapixel), the side in pixels of its cells, each of which has a rectangle, and
-/// the contrasts and noise levels of the drawings in grey levels of 255.
+/// Width and height of a drawing in pixels: one megapixel.
 const SIZE: [usize; 2] = [1152, 864];
+/// Side in pixels of the cells of a drawing; each cell has a rectangle.
 const CELL: usize = 96;
+/// Contrasts of the drawings between rectangles and background, in grey levels of 255.
 const STEPS: [f64; 4] = [15.0, 20.0, 30.0, 60.0];
+/// Standard deviations of the noise of the drawings, in grey levels of 255.
 const NOISES: [f64; 3] = [0.0, 3.0, 8.0];
 
 /// Maximum distance in pixels of a found segment from its edge, and maximum angle between them in radians.
@@ -31,7 +33,8 @@ const TURNED: f64 = 0.09;
 
 const ROUNDS: usize = 5;
 
-/// Offset from OpenCV's coordinates to ours: OpenCV has pixel centres at whole numbers.
+/// Offset from OpenCV's coordinates, in which pixel centres are at whole numbers, to luxfer's, in which they are at
+/// halves.
 const HALF: DVec2 = DVec2::splat(0.5);
 
 fn main() {

@@ -28,7 +28,7 @@
 //!   of the camera's distance from the plane, so that errors of the focal length and of the unwarping count too. The
 //!   statistics are the median area of whole lamps, the median aspect ratio, the median distance to the nearest lamp,
 //!   and the lit share of the plane. Lamps longer than six times their width are lines: for lines the width and the
-//!   distance across are compared instead.
+//!   distance between neighbouring lines are compared instead.
 //! - *Right*: precision above 0.8, found at least 90 %, and the texture's area and aspect within a factor of 1.25, its
 //!   spacing within 1.1, its lit share within 1.35.
 //! - *Usable*: precision above 0.5, found at least 70 %, and factors of 2, 1.6, 1.3 and 2.

@@ -216,7 +216,8 @@ fn table_of_real() -> Table {
     ])
 }
 
-/// Continues an exemplar to twice its size, and adds a row that compares the result with the exemplar to the table.
+/// Synthesises a texture of twice the width and height of its exemplar, and adds a row to the table that compares the
+/// texture with the exemplar.
 fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
     let (width, height) = (2 * input.light.width, 2 * input.light.height);
     let params = Params { width, height, ..Params::default() };

@@ -107,7 +107,7 @@ struct Ewa {
 
 impl Ewa {
     const STEPS: usize = 1024;
-    /// Squared distance, in standard deviations, at which the filter ends.
+    /// Squared distance from the centre at which the filter is cut off, in squared standard deviations.
     const END: f64 = 9.0;
     /// Maximum length in pixels of the derivative of the map along a side of a texel.
     const MAX_PIXELS: f64 = 64.0;

@@ -17,7 +17,7 @@ pub struct Judged {
     /// Energy (Eq. 3) of the picture, per patch and pixel, with channels in `[0, 1]`: colour has weight 1, all guides
     /// together 2. PatchMatch finds the nearest patches from a random start, with equal settings for every picture.
     pub energy: f64,
-    /// Share of the picture's patches in % that also occur in the exemplar, equal at 8 bits per channel.
+    /// Share in % of the picture's patches that also occur in the exemplar, compared at 8 bits per channel.
     pub verbatim: f64,
     /// Mean squared difference per channel, in squared 8-bit steps, between [`SAMPLES`] patches of the picture and the
     /// most similar patch of the exemplar at any offset; 0 for a copy.

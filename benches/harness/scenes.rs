@@ -98,13 +98,13 @@ pub fn demo_room() -> Result<Setting, Absent> {
     with_own_camera("demo", scene, [640, 360])
 }
 
-/// The library's office under its grid of luminaires.
+/// The library's demonstration office under its grid of luminaires.
 pub fn demo_office() -> Result<Setting, Absent> {
     let exemplar = demo::exemplar_room().map_err(|e| e.to_string())?;
     with_own_camera("office", exemplar.scene, [640, 360])
 }
 
-/// Takes a photo of the library's office, all of it.
+/// Takes a photo of the library's demonstration office with the camera of its scene.
 pub fn office_photo(params: &demo::photo::Params) -> Image {
     let room = demo::exemplar_room().expect("a room");
     let camera = room.scene.cameras[room.camera].clone();

@@ -67,8 +67,8 @@ impl Look {
         }
     }
 
-    /// Factor by which the undistorted picture is reduced to the photo, so that barrel distortion leaves no corner
-    /// empty.
+    /// Factor for positions in the undistorted picture, relative to its centre. Under barrel distortion it is below 1:
+    /// the photo then shows the picture enlarged, so that no corner of the photo is empty.
     pub fn magnification(&self) -> f64 {
         1.0 / f64::from(self.distortion.max(0.0) + 1.0)
     }

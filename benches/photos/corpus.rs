@@ -227,7 +227,8 @@ fn shown_layout(parts: &[Vec<u32>], to_photo: &Homography, photo: &Image) -> Opt
     (!whole.is_empty()).then(|| Lamps { whole, ..Lamps::default() })
 }
 
-/// Lit share of the lattice: the area of a lamp over the area of a cell; as lower and upper bound.
+/// Lit share of the lattice: the area of a lamp divided by the area of a cell. It serves as the lower and as the upper
+/// bound of the lit share.
 fn lit(measured: &Value) -> Option<[f64; 2]> {
     let number = |value: &Value| value.as_f64();
     let size = number(&measured["size_uv_median"][0])? * number(&measured["size_uv_median"][1])?;

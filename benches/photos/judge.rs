@@ -60,7 +60,7 @@ pub struct Agreement {
     pub area: Option<f64>,
     /// Median aspect ratio of the lamps; `None` for lines.
     pub aspect: Option<f64>,
-    /// Median distance from a lamp to the nearest lamp; for lines, their distance across.
+    /// Median distance from a lamp to the nearest lamp; for lines, the median distance between neighbouring lines.
     pub spacing: Option<f64>,
     /// Lit share of the plane.
     pub lit: Option<f64>,

@@ -52,7 +52,7 @@ pub struct Made {
     pub strokes: String,
 }
 
-/// Returns the photo of a seed; makes it if it is not kept.
+/// Returns the generated photo of a seed; makes it if no earlier run has stored it.
 pub fn made(seed: u64) -> Made {
     let mut seconds = [0.0; 4];
     let (room_seconds, (room, surfaces, shot, own)) = time(Clock::Process, || room_of(seed));

@@ -5,7 +5,7 @@ use luxfer::geometry::polygon;
 use std::f64::consts::PI;
 
 /// Aspect ratio above which lamps count as lines. The photo or a joint cuts the ends of lines, so lines are described
-/// by their width and their distance across. [convention]
+/// by their width and the distance between neighbouring lines. [convention]
 const LINE_ASPECT: f64 = 6.0;
 
 /// Minimum aspect ratio of a lamp whose long side has a meaningful direction. [convention]
@@ -136,7 +136,7 @@ impl Lamps {
         }))
     }
 
-    /// Median distance, across, from a line to the nearest line beside it.
+    /// Median distance between neighbouring lines, measured perpendicular to them.
     pub fn spacing_across(&self) -> Option<f64> {
         let beside = |a: &Shape, b: &Shape| {
             let apart = b.centre - a.centre;

@@ -13,7 +13,7 @@ pub struct Line {
     /// Logarithm of the ratio between the estimated and the true distance of the camera from the plane, and the stated
     /// error of the estimate.
     pub distance: Option<[f64; 2]>,
-    /// Error that the texture states for itself.
+    /// Error that the library states for the texture.
     pub error: Option<f64>,
     pub seconds: f64,
     pub cpu_seconds: f64,

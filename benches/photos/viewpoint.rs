@@ -174,7 +174,8 @@ impl Shot {
         let (forward, up) = (camera.forward.as_dvec3(), camera.up.as_dvec3());
         let right = forward.cross(up);
         let distance = f64::from(self.distance);
-        // A point of the ceiling relative to the camera: x and z times the distance, and the distance upwards.
+        // Row of a matrix that takes a point (x, z, 1) of the ceiling, in units of `distance`, to the coordinate along
+        // `axis` of the vector from the camera to this point.
         let from = camera.position.as_dvec3();
         let rows = |axis: DVec3| {
             DVec3::new(axis.x * distance, axis.z * distance, axis.y * distance - axis.x * from.x - axis.z * from.z)

@@ -86,10 +86,11 @@ pub const LUXFER_DEPTH_FROM_NETWORK: luxfer_depth_source = 3;
 pub struct luxfer_features_params {
     /// sizeof(luxfer_features_params), set by luxfer_features_params_init.
     pub struct_size: u32,
-    /// Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in a unit of its own, in [1e-3,
-    /// 1e3]; default 1.
+    /// Distance of the near plane, where the depth channel is 0 (Eq. 1 of the paper), in [1e-3, 1e3]; default 1. Its
+    /// unit is arbitrary: depths are scaled so that the nearest part of the photo lies on this plane.
     pub near_plane: f32,
-    /// Distance of the far plane, where the depth channel is 1, in [1.001, 1e6] times near_plane; default 10.
+    /// Distance of the far plane, where the depth channel is 1, in the unit of near_plane and in [1.001, 1e6] times
+    /// near_plane; default 10.
     pub far_plane: f32,
     /// Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the photo's
     /// size.

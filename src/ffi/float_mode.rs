@@ -77,7 +77,7 @@ mod register {
     }
 }
 
-/// On other processors the mode is left as it is. Miri does not support the registers.
+/// On other processors, and under Miri, which does not support the registers, the mode stays as it is.
 #[cfg(any(miri, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 mod register {
     pub type Mode = u32;

@@ -83,7 +83,7 @@ versioned!(luxfer_illuminance_grid, [56], {
 });
 
 impl luxfer_illuminance_grid {
-    /// Returns origin, across, down and normal.
+    /// Returns origin, across, down and normal as vectors; an error if reserved is not 0.
     pub(super) fn vectors(&self) -> Result<[Vec3; 4]> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("grid.reserved is {}; it must be 0", self.reserved)));

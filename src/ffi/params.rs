@@ -13,7 +13,7 @@ const LARGEST: usize = 4096;
 /// A versioned C struct.
 ///
 /// # Safety
-/// `repr(C)`, any bits are valid, and the first field is `struct_size: u32`.
+/// `repr(C)`, every bit pattern is valid, and the first field is `struct_size: u32`.
 pub(super) unsafe trait Versioned: Copy {
     /// Name of the C type.
     const NAME: &'static str;
@@ -28,7 +28,7 @@ macro_rules! versioned {
     ($type:ident, $sizes:expr, { $($defaults:tt)* }) => {
         const _: () = assert!(std::mem::offset_of!($type, struct_size) == 0);
 
-        // SAFETY: `struct_size` is the first field, and any bits are valid in numbers and pointers.
+        // SAFETY: `struct_size` is the first field, and every bit pattern is valid in numbers and pointers.
         unsafe impl $crate::ffi::params::Versioned for $type {
             const NAME: &'static str = stringify!($type);
             const SIZES: &'static [usize] = &$sizes;

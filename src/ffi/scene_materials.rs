@@ -360,7 +360,7 @@ fn material_mut(scene: &mut Scene, index: u32) -> Result<&mut Material> {
     scene.materials.get_mut(index as usize).ok_or_else(|| missing("material", index, count))
 }
 
-/// Returns the field of a material that holds its texture for a purpose.
+/// Returns the field of a material that holds the texture of a role, which is a LUXFER_TEXTURE_ value.
 fn slot(material: &mut Material, role: luxfer_texture_role) -> Result<&mut Option<TextureRef>> {
     match role {
         LUXFER_TEXTURE_BASE_COLOR => Ok(&mut material.base_color_texture),
@@ -388,7 +388,7 @@ fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     Ok(Some(floats(bytes(pointer.cast(), size_of::<[f32; 6]>(), "transform")?)))
 }
 
-/// Returns the C struct that describes how a material uses a texture.
+/// Returns the `luxfer_texture_use` that describes how a material uses a texture.
 fn told(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
     let wrap = scene.textures.get(used.texture).map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
         Wrap::Repeat => LUXFER_WRAP_REPEAT,

@@ -75,7 +75,7 @@ impl Pair {
     }
 }
 
-/// The part of the target to paint.
+/// The part of the target to paint: all pixels, or the pixels of a mask; an optional image gives the other pixels.
 #[derive(Clone, Default)]
 enum Target {
     #[default]
