@@ -106,8 +106,9 @@ fn coverage(ready: &[Ready]) {
         let truth = shoot(world, camera, &Params { samples: REFERENCE, seed: 1 << 40, ..size.clone() }).beauty;
         for samples in [8, 16, 64] {
             let (mut squares, mut stated) = (0.0, 0.0);
-            // For each pixel and channel, count the renders whose interval contains the true value: for the stated
-            // interval, and for an interval from the pixel's own variance. For each render, count the pixels too.
+            // For each pixel and channel, count the renders whose interval contains the true value, once for the
+            // interval that the renderer states and once for 1.96 standard errors of the pixel. For each render,
+            // compute the share of the pixels whose stated interval contains the true value.
             let mut inside = vec![[0u32; 2]; truth.data.len()];
             let mut random = vec![false; truth.data.len()];
             let mut renders = Vec::new();

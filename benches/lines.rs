@@ -52,22 +52,22 @@ fn main() {
     }
 }
 
-/// The detectors: ours with two threads and with one thread, and OpenCV's, which has one thread.
+/// The detectors: luxfer's with two threads and with one thread, and OpenCV's, which has one thread.
 struct Detectors {
     pools: [Pool; 2],
     peer: Peer,
     folder: PathBuf,
 }
 
-/// Milliseconds of each round, of our detector with two threads, of ours with one, and of OpenCV's; and the segments
-/// that ours and OpenCV's have found.
+/// Milliseconds of each round, for luxfer's detector with two threads, for luxfer's with one thread, and for OpenCV's;
+/// and the segments that luxfer's and OpenCV's detector have found.
 struct Found {
     ms: [Vec<f64>; 3],
     segments: [Vec<Segment>; 2],
 }
 
 impl Found {
-    /// Median ratio between OpenCV's time and ours, with two threads and with one.
+    /// Median ratios between OpenCV's time and luxfer's, with two threads and with one thread.
     fn ratios(&self) -> [f64; 2] {
         [0, 1].map(|k| median(&self.ms[2].iter().zip(&self.ms[k]).map(|(t, o)| t / o).collect::<Vec<_>>()))
     }

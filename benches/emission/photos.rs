@@ -19,7 +19,7 @@ use luxfer::transfer::{self, Stage, Transfer};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Standard deviation in photo pixels of the blur of the light mask; equal to that of a transfer.
+/// Standard deviation in photo pixels of the blur of the light mask, as in a transfer.
 const EDGE_BLUR: f32 = 0.9;
 /// Side of the part of the plane that the photo shows, in unwarped pixels.
 const PLANE: usize = 480;

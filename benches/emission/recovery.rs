@@ -1,5 +1,5 @@
-//! Detail that texels recover from a photo. Compares texels, and those of an elliptical weighted average (EWA), with
-//! the true mean of the plane over each texel.
+//! Detail that texels recover from a photo. Compares luxfer's texels, and the texels of an elliptical weighted average
+//! (EWA), with the true mean of the plane over each texel.
 
 use crate::harness::{Clock, Table, figure, time};
 use glam::{DMat3, DVec2, Vec3};

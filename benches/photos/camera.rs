@@ -245,7 +245,7 @@ fn median_luminance(image: &Image) -> f32 {
     *levels.select_nth_unstable_by(half, f32::total_cmp).1
 }
 
-/// Luminance that a two-hundredth of the pixels exceed.
+/// Luminance that 0.5 % of the pixels exceed.
 fn brightest(image: &Image) -> f32 {
     let mut levels: Vec<f32> = image.data.chunks_exact(3).map(|p| luminance(Vec3::from_slice(p))).collect();
     let at = levels.len() - 1 - levels.len() / 200;

@@ -23,9 +23,9 @@ pub struct luxfer_distribution {
 
 /// A file format of distributions: a LUXFER_DISTRIBUTION_ value.
 pub type luxfer_distribution_format = i32;
-/// IES LM-63, type C.
+/// IES LM-63 (.ies), with type C photometry.
 pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
-/// EULUMDAT.
+/// EULUMDAT (.ldt).
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 
 /// Summary of a luminous intensity distribution.

@@ -42,7 +42,7 @@ mod register {
     #[inline]
     pub fn read() -> Mode {
         let mut mode = 0u32;
-        // SAFETY: stores the control register into a word of ours.
+        // SAFETY: stores the control register into the local variable `mode`.
         unsafe { asm!("stmxcsr [{}]", in(reg) &mut mode, options(nostack, preserves_flags)) };
         mode
     }

@@ -178,7 +178,8 @@ impl Pixels {
         (self.image().width, self.image().height)
     }
 
-    /// Returns the image apart from the result of a stage: an image that is part of such a result is copied.
+    /// Returns the image without the result of a stage that it may belong to: an image that is part of a stage's
+    /// result is copied.
     pub(super) fn shared(&self) -> Result<Arc<Image>> {
         match &self.source {
             Source::Own(image, _) => Ok(image.clone()),

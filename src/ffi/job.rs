@@ -126,7 +126,8 @@ impl Drop for Job {
 /// call reports to progress, which may be NULL, and passes user to it. Any thread; several threads may wait for one
 /// job.
 ///
-/// Returns LUXFER_OK if the job has succeeded, else the job's error status, and makes its message that of this call.
+/// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the
+/// message of this call.
 /// LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY only if the wait timed out: the job continues;
 /// LUXFER_INVALID_OPERATION if the function of the job waits for its own job. If the function of another job
 /// (luxfer_job_start) waits for this job, a cancel request to the other job also cancels this job.

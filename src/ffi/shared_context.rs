@@ -120,7 +120,7 @@ impl Context {
     }
 }
 
-/// A guard for a thread that runs a function of the caller as a job.
+/// Guard of a thread that runs a function of the caller as a job: its drop ends the effect of `watch_thread`.
 pub(super) struct WatchedThread<'a>(&'a Context);
 
 impl Drop for WatchedThread<'_> {

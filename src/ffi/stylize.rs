@@ -91,7 +91,7 @@ impl Inputs {
         Ok(())
     }
 
-    /// Calls `work` with the input of a run that has no previous frame.
+    /// Calls `work` with the current inputs in the form that the stylisation takes, without a previous frame.
     pub(super) fn with_input<T>(&self, work: impl FnOnce(&stylize::Input) -> Result<T>) -> Result<T> {
         let guides: Vec<Guide> = self.guides.iter().map(Pair::guide).collect();
         let artwork = need(&self.artwork, "luxfer_stylize_set_artwork")?.image();
