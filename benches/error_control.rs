@@ -214,8 +214,8 @@ fn targets(ready: &[Ready]) {
     figure("render.adaptive.bias", most, "%");
 }
 
-/// Squared error of renders with `paths` paths in every pixel. Numbers of paths between powers of two are interpolated
-/// in logarithms, because points are stratified best at powers of two.
+/// Squared error of renders with `paths` paths in every pixel. Between powers of two the error is interpolated in
+/// logarithms, because points are stratified best at powers of two.
 fn even_error((world, camera): (&World, &Camera), size: &Params, paths: f64, distance: &dyn Fn(&Film) -> f64) -> f64 {
     let below = 1u32 << (paths as u32).max(1).ilog2();
     let [low, high] = [below, 2 * below].map(|samples| {

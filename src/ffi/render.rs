@@ -54,8 +54,8 @@ pub struct luxfer_render_params {
     pub width: u32,
     /// Height of the image in pixels, in [1, 65536]; default 720.
     pub height: u32,
-    /// Paths per pixel, in [1, 1048576]; default 64. With a target error this is the maximum, as a mean over the
-    /// image.
+    /// Paths per pixel, in [1, 1048576]; default 64. With a target error this is the maximum of the mean number of
+    /// paths over all pixels.
     pub samples: u32,
     /// Stop when the field error of luxfer_render_report falls to this value, >= 0; paths then go to the pixels where
     /// they reduce the error most. Default 0: no target.

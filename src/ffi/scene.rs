@@ -34,7 +34,7 @@ pub struct luxfer_scene {
 /// value to stop: the export then returns LUXFER_IO. It must not throw an exception or leave by longjmp.
 pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
-/// Numbers of the objects in a scene.
+/// Number of objects of each kind in a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_scene_counts {
@@ -277,7 +277,7 @@ pub unsafe extern "C" fn luxfer_scene_export_memory(
     })
 }
 
-/// Gets the numbers of the objects in a scene. size is sizeof *counts. Any thread.
+/// Gets the number of objects of each kind in a scene. size is sizeof *counts. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_counts(
     scene: *mut luxfer_scene,
