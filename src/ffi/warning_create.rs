@@ -1,6 +1,6 @@
 //! Warnings of an object
 //!
-//! Stages, transfers and scenes have warnings.
+//! Gets the warnings of stages, transfers and scenes.
 
 use super::guard::guard;
 use super::kinds::Kind;
