@@ -33,8 +33,8 @@ const OTHER: f64 = 0.5;
 const SIDES: [f64; 2] = [0.05, 3.0];
 /// Luminous share of a lamp's side; the rest is its frame. [convention]
 const SHINES: f64 = 0.96;
-/// Standard deviation of the logarithm of a measured side, from frames, blur, and errors of the view. [bench
-/// photos:real]
+/// Standard deviation of the logarithm of a measured side, from frames, blur, and errors of the view.
+/// [bench photos:real]
 const SIDE_ERROR: f64 = 0.07;
 
 /// A distance with its standard error.

@@ -152,8 +152,8 @@ impl Layer {
     }
 }
 
-/// Minimum score of a lattice on which clean lamps replace a copy of the photo with its ragged outlines. [bench
-/// photos:tune]
+/// Minimum score of a lattice on which clean lamps replace a copy of the photo with its ragged outlines.
+/// [bench photos:tune]
 const SURE: f64 = 0.6;
 
 /// Outlines are ragged if a photo pixel is at least this many unwarped pixels long, so that its steps are visible.

@@ -25,11 +25,11 @@ const STRETCHES: usize = 24;
 /// A crossing bar hides at most this many consecutive stretches of a bar, even if it has the maximum width.
 /// [convention]
 const CROSSING: usize = 2;
-/// A stretch that the photo shows sharply has no bar if its depth is below this share of the whole bar's depth. [bench
-/// photos:tune]
+/// A stretch that the photo shows sharply has no bar if its depth is below this share of the whole bar's depth.
+/// [bench photos:tune]
 const ABSENT: f32 = 0.25;
-/// Maximum relative deviation of the distances between bars from their mean, for bars with a period. [bench
-/// photos:tune]
+/// Maximum relative deviation of the distances between bars from their mean, for bars with a period.
+/// [bench photos:tune]
 const SAME_PERIOD: f64 = 0.12;
 
 /// A plane with lights in the unwarped image, and the map into the photo.

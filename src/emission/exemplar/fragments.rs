@@ -12,8 +12,8 @@ use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// A group of alike pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels. [judged
-/// on 20 photos]
+/// A group of alike pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels.
+/// [judged on 20 photos]
 const MIN_KIND: f64 = 0.15;
 /// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
 const MAX_FRAGMENT: f64 = 0.2;

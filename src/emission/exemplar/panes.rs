@@ -14,8 +14,8 @@ use std::ops::Range;
 
 /// Minimum lit share of a cell between bars that counts as a pane. [bench photos:real]
 const PANE: f64 = 0.35;
-/// Minimum luminance, relative to the pane's median, of a pixel outside the mask that is added to its pane. [bench
-/// photos:real]
+/// Minimum luminance, relative to the pane's median, of a pixel outside the mask that is added to its pane.
+/// [bench photos:real]
 const BRIGHT: f32 = 0.5;
 /// Maximum width of a dark line inside a pane that counts as leading and is filled, as a share of the cell's side.
 /// [bench photos:real]

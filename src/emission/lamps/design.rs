@@ -38,8 +38,8 @@ const SAME_WAY: f64 = 0.93;
 const MIN_AGREEMENT: f64 = 0.72;
 /// A side of a rectangle is measured within the middle part of the other side, this share of it. [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
-/// Maximum angle, in radians, between lamps and the axes of the plane at which the lamps count as aligned. [judged on
-/// 20 photos]
+/// Maximum angle, in radians, between lamps and the axes of the plane at which the lamps count as aligned.
+/// [judged on 20 photos]
 const ALIGNED: f64 = 0.07;
 /// Standard deviation of a measured side, and prior standard deviation of the bloom at each edge, both in photo
 /// pixels. [judged on 20 photos]
@@ -47,8 +47,8 @@ const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
 /// Prior standard deviation of the bloom, in photo pixels, if the lamps show bloom. They do if bloom explains at least
 /// the share `EXPLAINED` of the variation of their sides, and there are at least `MIN_JUDGES` lamps. Lamps of several
-/// lengths, or partly hidden ones, do not show it: their sides do not grow with magnification. [bench photos:tune,
-/// photos:real]
+/// lengths, or partly hidden ones, do not show it: their sides do not grow with magnification.
+/// [bench photos:tune, photos:real]
 const SHOWN_BLOOM: f64 = 1.5;
 const EXPLAINED: f64 = 0.5;
 const MIN_JUDGES: usize = 4;

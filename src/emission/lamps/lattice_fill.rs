@@ -15,15 +15,15 @@ use crate::emission::reading::sites::{Site, Sites};
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// A site gets a lamp in every cell if at least this share of its visible positions, by photo pixels, shine. [bench
-/// emission:perspective]
+/// A site gets a lamp in every cell if at least this share of its visible positions, by photo pixels, shine.
+/// [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
-/// Minimum share for a site with at most `FEW_DARK` dark positions: something may hide the lamps there. [judged on 20
-/// photos]
+/// Minimum share for a site with at most `FEW_DARK` dark positions: something may hide the lamps there.
+/// [judged on 20 photos]
 const MOSTLY: f64 = 0.5;
 const FEW_DARK: usize = 2;
-/// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp. [judged on 5
-/// photos]
+/// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
+/// [judged on 5 photos]
 const SHARP: f64 = 0.4;
 /// Maximum distance between two positions that count as one site, along each axis, as a share of a lamp's side.
 /// [judged on 20 photos]

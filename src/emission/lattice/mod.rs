@@ -32,8 +32,8 @@ const RELATIVE_CORRELATION: f32 = 0.9;
 const MIN_OVERLAP: f32 = 0.2;
 /// Maximum side of the image that is correlated, in pixels. [bench emission:seconds]
 const SIDE: usize = 160;
-/// Two shifts count as parallel if the sine of the angle between them is below this: about 17°. [bench
-/// emission:patterns]
+/// Two shifts count as parallel if the sine of the angle between them is below this: about 17°.
+/// [bench emission:patterns]
 const PARALLEL: f64 = 0.3;
 
 /// Finds the law of the exemplar's lights from their autocorrelation, and its regularity: the lower correlation of the

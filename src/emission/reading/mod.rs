@@ -28,11 +28,11 @@ const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
 /// Score that lights without a law get: a lattice must score higher. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// Minimum score of the law that the settings ask for. Below it, the lights count as having no law. [judged on 20
-/// photos]
+/// Minimum score of the law that the settings ask for. Below it, the lights count as having no law.
+/// [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
-/// Another law replaces the one that the settings ask for if its score is higher by more than this. [judged on 20
-/// photos]
+/// Another law replaces the one that the settings ask for if its score is higher by more than this.
+/// [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
 /// Laws are compared only if lamps have at least this share of the lights' photo pixels; the rest are lights that run
 /// through the photo. [judged on 20 photos]

@@ -13,8 +13,8 @@ use crate::image::{Image, try_collect, try_vec};
 
 /// Share of the plane's pixels that count as the brightest ones. [bench photos:nostrokes]
 const BRIGHTEST: f64 = 0.002;
-/// Minimum mean L* of a lamp, on a scale where the plane's brightest pixels have an L* of 100. [bench
-/// photos:nostrokes]
+/// Minimum mean L* of a lamp, on a scale where the plane's brightest pixels have an L* of 100.
+/// [bench photos:nostrokes]
 const MIN_LIGHTNESS: f64 = 80.0;
 /// Minimum contrast between a lamp and the ring around it, in L*. [bench photos:nostrokes]
 const MIN_RING: f64 = 10.0;

@@ -30,15 +30,15 @@ const LARGER: f64 = 1.6;
 /// blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
 /// The aspect of a lamp on the plane may be `ROUNDER` times below the least and `LONGER` times above the largest
-/// aspect of the painted lamps. Blur widens thin lamps, and lengthens distant lamps along the line of sight. [bench
-/// photos:tune]
+/// aspect of the painted lamps. Blur widens thin lamps, and lengthens distant lamps along the line of sight.
+/// [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
 /// Area and shape on the plane are taken from painted lamps with at least this share of the pixels of the largest one.
 /// [judged on 44 photos]
 const SHOWN: f64 = 0.01;
-/// Maximum breadth in pixels, relative to the broadest painted lamp, if the room was not laid out. [judged on 28
-/// photos]
+/// Maximum breadth in pixels, relative to the broadest painted lamp, if the room was not laid out.
+/// [judged on 28 photos]
 const BROADER: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]

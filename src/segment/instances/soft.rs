@@ -6,8 +6,8 @@ use super::surroundings::Bounds;
 use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
 
-/// Distance from a region beyond which its confidence is 0, in pixels. [convention: the reach of bilinear sampling,
-/// twice]
+/// Distance from a region beyond which its confidence is 0, in pixels.
+/// [convention: the reach of bilinear sampling, twice]
 const REACH: u8 = 2;
 /// Minimum confidence of pixels in a region, and maximum confidence of pixels around it, so that a threshold of one
 /// half gives exactly the region. [rounding]

@@ -11,8 +11,8 @@ use crate::image::{Image, make_room, try_collect};
 use glam::DVec2;
 
 /// Quantile of L* under the positive light strokes. Pixels of plane strokes that are at least as bright count as lamp.
-/// The quantile ignores the darkest quarter, because hurried strokes run over the edges of lamps. [judged on 36
-/// photos]
+/// The quantile ignores the darkest quarter, because hurried strokes run over the edges of lamps.
+/// [judged on 36 photos]
 const LIT: f64 = 0.25;
 
 /// One brush stroke: the pixels that it covers (`y * width + x`), and whether they are positive or negative examples.
