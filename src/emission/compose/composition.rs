@@ -156,7 +156,7 @@ impl Composition {
         self.render_lights(input, styles, tile, Lights::All, job)
     }
 
-    /// Renders either all lights of a tile or only the lights that follow the patches, and their coverage.
+    /// Renders either all lights of a tile or only the lights that are copied patch by patch, and their coverage.
     pub(in crate::emission) fn render_lights(
         &self,
         input: &Input,

@@ -2,9 +2,9 @@
 //!
 //! Every lamp of a texture is a shifted lamp of an exemplar, so the list stores each outline once, and a position for
 //! each lamp. If a texel is not exactly one unwarped pixel, the outlines are more exact than those of the texture,
-//! which consist of whole texels. Some lights follow the patches instead of being copied as a whole: lights that run
-//! through their exemplar and, without [`crate::emission::Params::whole_lamps`], all lights. These are listed as the
-//! texture shows them.
+//! which consist of whole texels. Some lights are copied patch by patch and not as a whole: lights that run through
+//! their exemplar and, without [`crate::emission::Params::whole_lamps`], all lights. Their outlines are measured in the
+//! texture.
 
 use super::composition::{Composition, exemplars};
 use super::layer::Layer;
@@ -30,7 +30,7 @@ pub struct LampList {
     shapes: Vec<Vec<Luminaire>>,
     /// Each lamp in the texture, with the index of its exemplar.
     shown: Vec<(u32, Instance)>,
-    /// Lights that follow the patches, as the texture shows them.
+    /// Lights that are copied patch by patch, measured in the texture.
     others: Vec<Luminaire>,
     /// Sum of luminance times area over all listed lights.
     flux: f64,

@@ -43,7 +43,7 @@ pub struct Layer {
     pub patch_map: PatchMap,
     /// Lamps that are copied as a whole, with their shifts.
     pub instances: Vec<Instance>,
-    /// Whether lamps are copied as a whole. If not, all lights follow the patches.
+    /// Whether lamps are copied as a whole. If not, all lights are copied patch by patch.
     pub has_pieces: bool,
     /// Colours for the clipped parts of lamps, read from their rims; `None` if the photo shows nothing clipped.
     pub rim_colours: Option<RimColours>,
@@ -55,7 +55,7 @@ pub struct Layer {
     pub scale: f64,
 }
 
-/// The settings by which an exemplar is laid out on the texture.
+/// The settings by which an exemplar's pattern is placed on the texture.
 struct Setting<'a> {
     params: &'a Params,
     /// The continuation found in the exemplar, and the one that the texture uses. They differ if the texture is
@@ -135,7 +135,7 @@ impl Layer {
         !self.has_pieces || self.exemplar.roles.contains(&Role::Through)
     }
 
-    /// Whether some lights follow the patches, and the texture is not just a copied part of the exemplar.
+    /// Whether some lights are copied patch by patch, and the texture is not just a copied part of the exemplar.
     pub fn follows_patches(&self) -> bool {
         self.has_by_pixel() && self.continuation != Continuation::Copy
     }
@@ -160,7 +160,7 @@ const SURE: f64 = 0.6;
 /// [convention]
 const RAGGED: f64 = 2.0;
 
-/// The exemplar from which a texture is made, and its law.
+/// The exemplar from which a texture is made, and the law by which its pattern continues.
 struct Source {
     exemplar: Exemplar,
     /// The law by which the pattern continues.

@@ -1,5 +1,5 @@
-//! Finds the lights that follow the patches without rendering the whole texture, although a light that runs through
-//! the exemplar is as long as the texture.
+//! Finds the lights that are copied patch by patch, without rendering the whole texture, although a light that runs
+//! through the exemplar is as long as the texture.
 //!
 //! A sweep renders the texture in bands from top to bottom. For every connected light, it keeps running sums, and the
 //! first and the last texel in each row. The outline encloses everything between these two texels, in steps of whole
@@ -27,8 +27,8 @@ const BESIDE: usize = 2;
 /// Index of the light at a texel without light.
 const NONE: u32 = u32::MAX;
 
-/// Finds all lights of a composition that follow the patches, in the order of their first texel. Their shares of flux
-/// are 0.
+/// Finds all lights of a composition that are copied patch by patch, in the order of their first texel. Their shares
+/// of flux are 0.
 pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Vec<Luminaire>> {
     if !composition.layers.iter().any(|layer| layer.follows_patches()) {
         return Ok(Vec::new());

@@ -24,7 +24,7 @@ const BELOW_HALF: f32 = 0.5 - f32::EPSILON;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Lights {
     All,
-    /// Only lights that follow the patches, and only if the texture is not a copied part of the exemplar.
+    /// Only lights that are copied patch by patch, and only if the texture is not a copied part of the exemplar.
     OfPatches,
 }
 
@@ -111,7 +111,7 @@ impl Row<'_> {
         }
     }
 
-    /// Adds the lights that follow the patches to the row.
+    /// Adds the lights that are copied patch by patch to the row.
     fn add_patches(&mut self, source: &Source, frame: &Frame, k: usize) {
         let size = DVec2::new(frame.width as f64, frame.height as f64);
         for x in self.first..self.first + self.coverage.len() {

@@ -63,7 +63,7 @@ impl Evidence {
         (self.size - other.size).abs().cmple(slack).all()
     }
 
-    /// Whether two lamps may have equal sizes, if both lie at the same site of a lattice: a wider tolerance.
+    /// Whether two lamps may have equal sizes, with the wider tolerance for lamps at one site of a lattice.
     pub fn may_be_like(&self, other: &Self) -> bool {
         let slack = self.size.max(other.size) * MAYBE_LIKE + (self.blur + other.blur) * MAYBE_BLUR;
         (self.size - other.size).abs().cmple(slack).all()

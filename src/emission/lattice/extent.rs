@@ -28,7 +28,7 @@ pub fn as_period(exemplar: &Exemplar) -> Continuation {
     Continuation::Tile([DVec2::X * cell, DVec2::Y * cell])
 }
 
-/// Whether there are too few lamps for a law of their own, or all lamps form one isolated group.
+/// Whether there are too few lamps to find a period, or all lamps form one isolated group.
 pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }

@@ -1,4 +1,4 @@
-//! The minimum-error boundary cut of image quilting (Efros and Freeman 2001, §2.1).
+//! Computes the minimum-error boundary cut of image quilting (Efros and Freeman 2001, §2.1).
 
 /// Finds the cheapest path from the top row to the bottom row of a `width` × `height` grid of costs, which moves by at
 /// most one column per row. Returns its column in each row; of equal paths, the leftmost.

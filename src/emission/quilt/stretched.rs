@@ -1,4 +1,4 @@
-//! Adapts the patch map to a stretched lattice, for the lights that follow the patches.
+//! Adapts the patch map to a stretched lattice, for the lights that are copied patch by patch.
 
 use super::patch_map::{NONE, PatchMap, Shift, Shifts};
 use crate::emission::exemplar::Exemplar;

@@ -1,4 +1,5 @@
-//! Analyses an exemplar: finds its lamps, and the law by which they continue (a lattice, a row, repetition, or none).
+//! Analyses an exemplar: finds its lamps, and the law by which their pattern continues beyond it: a lattice, a row,
+//! repetition of the whole exemplar, or none.
 //!
 //! A single analysis is not reliable: distant lamps are magnified with their blur and spoil the autocorrelation of the
 //! near ones. So laws are proposed from the whole exemplar and from its sharper parts, with strict and with loose
@@ -26,21 +27,21 @@ const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 const PROPOSED: f32 = 0.35;
 const PROPOSED_RELATIVE: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
-/// Score that lights without a law get: a lattice must score higher. [judged on 20 photos]
+/// Score of patterns without a period (no lattice, no row); a lattice must score higher. [judged on 20 photos]
 const LAWLESS: f64 = 0.35;
-/// Minimum score of the law that the settings ask for. Below it, the lights count as having no law.
-/// [judged on 20 photos]
+/// Minimum score of the law (lattice or row) that the settings ask for. Below it, the pattern counts as having no
+/// period. [judged on 20 photos]
 const HOPELESS: f64 = 0.15;
-/// Another law replaces the one that the settings ask for if its score is higher by more than this.
-/// [judged on 20 photos]
+/// Another law (lattice or row) replaces the one that the settings ask for only if its score is higher by more than
+/// this. [judged on 20 photos]
 const CLEARLY: f64 = 0.1;
 /// Laws are compared only if lamps have at least this share of the lights' photo pixels; the rest are lights that run
 /// through the photo. [judged on 20 photos]
 const MIN_LAMPS: f64 = 0.5;
-/// Maximum relative difference between the periods of two laws that count as equal. [judged on 20 photos]
+/// Maximum relative difference between the periods of two lattices or rows that count as equal. [judged on 20 photos]
 const SAME_LAW: f64 = 0.08;
 
-/// The score of the chosen law, and the best alternative.
+/// The score of the chosen law of continuation, and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps for a
@@ -57,13 +58,13 @@ impl Choice {
         self.score - self.runner_up_score
     }
 
-    /// The choice without a comparison: the score is NaN, and the runner-up is the law itself with score 0.
+    /// The choice if no laws were compared: the score is NaN, and the runner-up is the chosen law itself with score 0.
     pub fn only(continuation: Continuation) -> Self {
         Self { score: f64::NAN, runner_up: continuation, runner_up_score: 0.0 }
     }
 }
 
-/// The analysis of an exemplar: its lamps, and the law by which they continue.
+/// The analysis of an exemplar: its lamps, and the law by which their pattern continues.
 pub struct Reading {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
@@ -76,7 +77,7 @@ pub struct Reading {
     max_magnification: f64,
 }
 
-/// A proposed law with its regularity and its score.
+/// A proposed law of continuation (lattice, row, …), with its regularity and its score.
 #[derive(Clone, Copy)]
 struct Proposal {
     continuation: Continuation,
@@ -85,7 +86,7 @@ struct Proposal {
 }
 
 impl Proposal {
-    /// Lights without a law: no lamp is predicted from another.
+    /// A pattern without a period: no lamp is predicted from another.
     fn lawless(continuation: Continuation) -> Self {
         Self { continuation, regularity: 0.0, score: LAWLESS }
     }
@@ -98,7 +99,7 @@ impl Reading {
         Self::of(exemplar, input, params, job)
     }
 
-    /// Finds the law of an exemplar that has been built already.
+    /// Finds the law of continuation for an exemplar that has been built already.
     pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
         let working_side = working_side(input, params);
         let least_regularity = params.least_regularity;
@@ -135,7 +136,7 @@ impl Reading {
             && self.max_magnification == params.max_magnification
     }
 
-    /// Compares the law that the settings ask for with other laws, and chooses one.
+    /// Compares the law of continuation that the settings ask for with other laws, and chooses one.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
         let evidence = exemplar.evidence(Role::is_whole);
@@ -167,8 +168,8 @@ impl Reading {
         let best = proposals.iter().fold(own, |best, p| if p.score > best.score + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.continuation, Continuation::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // The panes of a luminous ceiling get the best lattice, unless its score is clearly lower than that of the own
-        // law.
+        // The panes of a luminous ceiling get the best lattice, unless its score is clearly below the score of the law
+        // that the settings ask for.
         let panes = lattice
             .filter(|p| exemplar.is_luminous_ceiling() && p.score > LAWLESS + CLEARLY && p.score > own.score - CLEARLY);
         let chosen = match panes {
@@ -254,8 +255,8 @@ impl Reading {
     }
 }
 
-/// Score of a law: how well it predicts the whole lamps and the parts of lamps. NaN if the pattern does not change
-/// along one of the periods: only the autocorrelation can judge such a law.
+/// Score of a law of continuation: how well it predicts the whole lamps and the parts of lamps. NaN if the pattern
+/// does not change along one of the periods: only the autocorrelation can judge a law with such a period.
 fn score(exemplar: &Exemplar, (lamps, parts): (&[Evidence], &[Evidence]), law: Continuation) -> f64 {
     match Sites::new(exemplar, lamps, law) {
         Some(sites) => sites.score(parts),

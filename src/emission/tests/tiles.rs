@@ -5,7 +5,8 @@ use super::*;
 #[test]
 fn tiles_have_the_bits_of_the_whole_in_any_order() {
     let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
-    // Lights that run out of the exemplar follow the patches. Large lamps in fine texels have crumbs at their edges.
+    // Lights that run out of the exemplar are copied patch by patch. Large lamps in fine texels have crumbs at their
+    // edges.
     let lines = Design::new(200, 200, |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < 120.0);
     let free = blobs(200, 180, 22.0).0;
     for (exemplar, params) in [

@@ -173,7 +173,7 @@ fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
 pub struct Regions {
     /// Area of each node in pixels.
     pub area: Vec<f64>,
-    /// Sums on the surface of the room; `None` if the room was not laid out as a box.
+    /// Sums on the surface of the room; `None` if the room has no box layout.
     pub surface: Option<OnSurface>,
     x: Vec<f64>,
     y: Vec<f64>,

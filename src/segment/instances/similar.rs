@@ -24,7 +24,7 @@ const SOLIDITY: f64 = 0.85;
 /// Minimum area, relative to the smallest painted lamp: at three times the distance, a lamp in a ceiling is a third as
 /// wide and, foreshortened, a ninth as high. [convention]
 const SMALLER: f64 = 1.0 / 27.0;
-/// Maximum area in pixels, relative to the largest painted lamp, if the room was not laid out. [judged on 28 photos]
+/// Maximum area in pixels, relative to the largest painted lamp, if the room has no box layout. [judged on 28 photos]
 const LARGER: f64 = 1.6;
 /// The area of a lamp on the plane may be this factor below the smallest or above the largest painted lamp: bloom and
 /// blur enlarge distant lamps. [judged on 44 photos]
@@ -37,8 +37,8 @@ const LONGER: f64 = 2.5;
 /// Area and shape on the plane are taken from painted lamps with at least this share of the pixels of the largest one.
 /// [judged on 44 photos]
 const SHOWN: f64 = 0.01;
-/// Maximum breadth in pixels, relative to the broadest painted lamp, if the room was not laid out.
-/// [judged on 28 photos]
+/// Maximum breadth in pixels, relative to the broadest painted lamp, if the room has no box layout. [judged on 28
+/// photos]
 const BROADER: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
@@ -88,7 +88,7 @@ pub struct Similar {
 struct Model {
     min_area: f64,
     max_area: f64,
-    /// Limits on the surface of the room; `None` if the room was not laid out.
+    /// Limits on the surface of the room; `None` if the room has no box layout.
     surface: Option<OnSurface>,
     max_breadth: f64,
     min_lightness: f64,
@@ -225,8 +225,8 @@ impl Search<'_> {
         }))
     }
 
-    /// Whether a node has the size and aspect of a lamp. They are measured on the plane if the room was laid out, else
-    /// in the photo. A lamp that the photo's border cuts may be much smaller.
+    /// Whether a node has the size and aspect of a lamp. They are measured on the plane if the room has a box layout,
+    /// else in the photo. A lamp that the photo's border cuts may be much smaller.
     fn has_size(&self, model: &Model, node: usize) -> bool {
         let regions = self.regions;
         let area = regions.area[node];
@@ -242,8 +242,8 @@ impl Search<'_> {
         area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
     }
 
-    /// Returns the lamps whose area and aspect nearly equal those of a node, measured on the face of a room that was
-    /// laid out; no lamps if it was not.
+    /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
+    /// the room has no box layout.
     fn like_ones<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> impl Iterator<Item = &'a u32> {
         let alike = self.regions.surface.as_ref();
         lamps.filter(move |&&lamp| {

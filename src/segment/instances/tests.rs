@@ -255,7 +255,7 @@ fn without_strokes_and_without_lamps_the_error_asks_for_strokes() {
 
 #[test]
 fn a_lamp_in_a_row_with_others_beyond_the_plane_is_told_apart_from_a_window() {
-    // The plane's mask ends above the second row of lamps, as if a wall had been laid out too near.
+    // The plane's mask ends above the second row of lamps, as if the layout had placed a wall too near.
     let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
     let rows = [[20, 20, 60, 32], [120, 20, 160, 32], [22, 70, 60, 81], [200, 66, 206, 106]];
     let lamps = segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&cut));
