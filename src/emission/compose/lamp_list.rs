@@ -3,8 +3,8 @@
 //! Every lamp of a texture is a shifted lamp of an exemplar, so the list stores each outline once, and a position for
 //! each lamp. If a texel is not exactly one unwarped pixel, the outlines are more exact than those of the texture,
 //! which consist of whole texels. Some lights are copied patch by patch and not as a whole: lights that run through
-//! their exemplar and, without [`crate::emission::Params::whole_lamps`], all lights. Their outlines are measured in the
-//! texture.
+//! their exemplar and, without [`crate::emission::Params::whole_lamps`], all lights. Their outlines are measured in
+//! the texture.
 
 use super::composition::{Composition, exemplars};
 use super::layer::Layer;
