@@ -1,5 +1,5 @@
-//! Finds regions without a stroke that look like the painted lamps: as bright, of the same colour, as sharp against the
-//! plane around them, of similar size and shape. Regions that almost meet these criteria are reported as doubtful.
+//! Finds regions without a stroke that look like the painted lamps: similar in brightness, colour, size, shape, and in
+//! sharpness against the plane around them. Regions that almost meet these criteria are reported as doubtful.
 
 use super::painted::MIN_AREA;
 use super::regions::{Brightness, Regions};
@@ -10,103 +10,107 @@ use crate::image::{Image, try_vec};
 use crate::job::Job;
 use std::ops::RangeInclusive;
 
-/// Maximum difference in L* by which a lamp may be darker than the darkest painted lamp. [judged on 28 photos]
+/// Maximum amount by which a lamp may be darker than the darkest painted lamp, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
-/// Maximum distance in a* and b* from the nearest painted lamp. [judged on 28 photos]
+/// Maximum distance of a lamp's colour from that of the nearest painted lamp, in a* and b*. [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Minimum contrast along the contour, relative to the median of the painted lamps: distant lamps are small and
-/// blurred. [judged on 28 photos]
+/// Minimum contrast along a lamp's contour, relative to the median of the painted lamps. It is below 1 because distant
+/// lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
 /// Minimum contrast to the ring around a lamp, relative to the median of the painted lamps. [judged on 28 photos]
 const RING: f64 = 0.5;
-/// Minimum solidity, relative to the least solid painted lamp. [judged on 28 photos]
+/// Minimum solidity (see `Regions::solidity`), relative to the least solid painted lamp. [judged on 28 photos]
 const SOLIDITY: f64 = 0.85;
 /// Minimum area, relative to the smallest painted lamp: at three times the distance, a lamp in a ceiling is a third as
 /// wide and, foreshortened, a ninth as high. [convention]
 const SMALLER: f64 = 1.0 / 27.0;
-/// Maximum area, relative to the largest painted lamp, if the room's size is not known. [judged on 28 photos]
+/// Maximum area in pixels, relative to the largest painted lamp, if the room has no box layout. [judged on 28 photos]
 const LARGER: f64 = 1.6;
-/// Maximum factor between the area of a lamp on the plane and the areas of the painted lamps: bloom and blur enlarge
-/// distant lamps. [judged on 44 photos]
+/// The area of a lamp on the plane may be this factor below the smallest or above the largest painted lamp: bloom and
+/// blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// Maximum factors by which a lamp may be rounder or longer on the plane than the painted lamps: blur widens thin
-/// lamps, and lengthens distant lamps along the line of sight. [bench photos:tune]
+/// The aspect of a lamp on the plane may be `ROUNDER` times below the least and `LONGER` times above the largest
+/// aspect of the painted lamps. Blur widens thin lamps, and lengthens distant lamps along the line of sight.
+/// [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// Minimum size of a painted lamp whose area and shape on the plane are used, as a share of the pixels of the largest
-/// painted lamp. [judged on 44 photos]
+/// Area and shape on the plane are taken from painted lamps with at least this share of the pixels of the largest one.
+/// [judged on 44 photos]
 const SHOWN: f64 = 0.01;
-/// Maximum breadth, relative to the broadest painted lamp, if the room's size is not known. [judged on 28 photos]
+/// Maximum breadth in pixels, relative to the broadest painted lamp, if the room has no box layout. [judged on 28
+/// photos]
 const BROADER: f64 = 1.5;
-/// Minimum area on the plane of a lamp that the photo's border cuts, as a share of the minimum area of a whole lamp.
+/// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const CUT: f64 = 0.06;
 /// Minimum share of the ring around a lamp that must lie on the plane. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// Minimum share of a region that must lie on the face of the room that holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
-/// Ranges of the ratios of a region's area and aspect to those of a lamp, within which a region off the plane is a lamp
-/// too: blur enlarges distant lamps. [bench photos:tune]
+/// A region off the plane counts as a lamp only if the ratio of its area to that of a known lamp, and the ratio of the
+/// aspects, lie in these ranges. Blur enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
-/// Maximum offset of lamps across their row, as a share of a lamp's width. [bench photos:tune]
+/// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of a lamp's width.
+/// [bench photos:tune]
 const IN_ROW: f64 = 0.25;
-/// Maximum ratio of the axes of a round lamp: round lamps are often scattered, others lie in rows. [bench photos:tune]
+/// Maximum aspect of a round lamp. Round lamps are often scattered, other lamps lie in rows. [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Maximum difference in CIELAB between the ring of a region off the plane and the ring of a painted lamp, up to which
-/// the region's surroundings count as plane. [bench photos:tune]
+/// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a painted
+/// lamp. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
-/// Exponent of the area in the order of candidates: of nested regions with almost equally sharp contours, the largest
-/// comes first. [judged on 44 photos]
+/// Exponent of a candidate's area in its rank. Of nested regions with almost equally sharp contours, the largest is
+/// tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
-/// Minimum likeness of a doubtful region, where 1 is the likeness that is required of a lamp. [judged on 28 photos]
+/// Minimum likeness of a doubtful region; a lamp must have a likeness of 1. [judged on 28 photos]
 const NEARLY: f64 = 0.7;
 
-/// Variance of the blur of a photo together with the smoothing of the gradient, in square pixels. [judged on 44 photos]
+/// Variance of the photo's blur and of the smoothing of the gradient together, in square pixels. [judged on 44 photos]
 const BLUR: f64 = 2.0;
 
-/// Share of a lamp's contrast that blur leaves: the value at the centre of a disc of the lamp's area after a Gaussian
-/// blur.
+/// Share of a lamp's contrast that is left after blur: the value at the centre of a disc with the lamp's area, after a
+/// Gaussian blur.
 fn sharpness(area: f64) -> f64 {
     1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
 }
 
-/// Regions without strokes.
+/// Regions that no stroke touches but that resemble the painted lamps.
 #[derive(Default)]
 pub struct Similar {
     pub found: Vec<u32>,
-    /// Regions on the plane that are somewhat less like the painted lamps than is required of a lamp.
+    /// Regions on the plane whose likeness to the painted lamps is just below the minimum for a lamp.
     pub doubtful: Vec<u32>,
-    /// Regions beyond the plane that would be like the painted lamps if the plane continued there.
+    /// Regions off the plane that would count as lamps if the plane continued there.
     pub beyond: Vec<u32>,
 }
 
-/// The properties required of a lamp, taken from the painted lamps.
+/// The limits that a lamp must meet, derived from the painted lamps.
 struct Model {
     min_area: f64,
     max_area: f64,
-    /// Present if the room was laid out.
+    /// Limits on the surface of the room; `None` if the room has no box layout.
     surface: Option<OnSurface>,
     max_breadth: f64,
     min_lightness: f64,
     min_solidity: f64,
     colours: Vec<[f64; 3]>,
-    /// Colours of the rings around them.
+    /// Colours of the rings around the painted lamps.
     rings: Vec<[f64; 3]>,
-    /// Minimum contrast along the contour and to the ring, for a lamp so large that blur does not matter.
+    /// Minimum contrast along the contour, and minimum contrast to the ring, for a lamp so large that blur does not
+    /// reduce them.
     contour: f64,
     ring: f64,
 }
 
 impl Model {
-    /// Whether a ring has the colour of a ring around a painted lamp.
+    /// Whether a ring has the colour of the ring around one of the painted lamps.
     fn is_beside(&self, ring: &Surroundings) -> bool {
         let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
     }
 }
 
-/// Ranges of the area and the aspect of lamps on the surface of the room.
+/// Ranges `[min, max]` of the area and the aspect of lamps on the surface of the room.
 struct OnSurface {
     area: [f64; 2],
     aspect: [f64; 2],
@@ -117,12 +121,12 @@ pub struct Search<'a> {
     pub regions: &'a Regions,
     pub photo: &'a Brightness,
     pub plane: Option<&'a Image>,
-    /// Number of pixels under negative strokes in the region of each node.
+    /// Number of pixels under negative strokes in each node.
     pub negatives: &'a [f64],
 }
 
 impl Search<'_> {
-    /// Finds regions that are like the `painted` ones, without these.
+    /// Finds regions that are like the `painted` ones; these are not part of the result.
     pub fn run(&self, painted: &[u32], job: Job) -> Result<Similar> {
         let Self { tree, regions, photo, .. } = *self;
         let mut taken = try_vec(tree.node_of.len(), false)?;
@@ -131,7 +135,7 @@ impl Search<'_> {
         }
         let Some(model) = self.model(painted)? else { return Ok(Similar::default()) };
 
-        // Rate all nodes except those around or inside the painted ones.
+        // Rate all nodes that neither contain a painted node nor lie inside one.
         let mut chosen = Disjoint::new(tree)?;
         painted.iter().for_each(|&node| chosen.choose(node));
         let mut is_painted = try_vec(tree.len(), false)?;
@@ -148,7 +152,8 @@ impl Search<'_> {
             }
         }
 
-        // Take the sharpest contour first. Regions inside or around a region that was taken belong to it.
+        // Take the candidates with the sharpest contours first. Regions inside or around a chosen region belong to
+        // that region, so skip them.
         candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
         let mut similar = Similar::default();
         for (k, &(node, likeness, _)) in candidates.iter().enumerate() {
@@ -220,8 +225,8 @@ impl Search<'_> {
         }))
     }
 
-    /// Whether a node has the size of a lamp. The size is measured on the plane if the room was laid out, else in the
-    /// photo. A lamp that the border of the photo cuts may be much smaller.
+    /// Whether a node has the size and aspect of a lamp. They are measured on the plane if the room has a box layout,
+    /// else in the photo. A lamp that the photo's border cuts may be much smaller.
     fn has_size(&self, model: &Model, node: usize) -> bool {
         let regions = self.regions;
         let area = regions.area[node];
@@ -237,8 +242,8 @@ impl Search<'_> {
         area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
     }
 
-    /// The lamps whose size and shape are nearly those of a node, both measured on the face of a room that was laid
-    /// out.
+    /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
+    /// the room has no box layout.
     fn like_ones<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> impl Iterator<Item = &'a u32> {
         let alike = self.regions.surface.as_ref();
         lamps.filter(move |&&lamp| {
@@ -249,14 +254,14 @@ impl Search<'_> {
         })
     }
 
-    /// Whether some lamp has nearly the size and shape of a node, and the node is round or lies in a row with that
-    /// lamp: round lamps are often scattered, others lie in rows.
+    /// Whether a lamp has nearly the size and shape of a node, and the node is round or in a row with that lamp. Round
+    /// lamps are often scattered, other lamps lie in rows.
     fn is_like_one<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         let is_round = self.regions.surface.as_ref().is_some_and(|surface| surface.aspect(node) <= ROUND);
         self.like_ones(lamps, node).any(|&lamp| is_round || self.is_in_row(node, lamp))
     }
 
-    /// Whether a node continues a row of lamps of its size and shape.
+    /// Whether a node lies in a row with a lamp of nearly its size and shape.
     fn continues_row<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         self.like_ones(lamps, node).any(|&lamp| self.is_in_row(node, lamp))
     }
@@ -265,15 +270,15 @@ impl Search<'_> {
         self.regions.surface.as_ref().is_some_and(|surface| surface.are_in_row(node, lamp as usize, IN_ROW))
     }
 
-    /// Whether a node lies on the face of the room that holds the lamps.
+    /// Whether at least [`ON_FACE`] of a node's pixels show the face of the room that holds the lamps.
     fn is_on_face(&self, node: usize) -> bool {
         let surface = self.regions.surface.as_ref();
         surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }
 
-    /// How much a node is like the painted lamps, apart from its surroundings. The likeness is at least 1 if the node
-    /// is like them in all respects. Below 1 it is the least of the likenesses in brightness, colour and contrast. It
-    /// is 0 if size, shape or negative strokes rule the node out.
+    /// Likeness of a node to the painted lamps, apart from its surroundings: the least of its likenesses in
+    /// brightness, colour and contour contrast. A value of at least 1 means that the node meets all limits. The
+    /// likeness is 0 if size, shape or negative strokes rule the node out.
     fn likeness(&self, model: &Model, node: usize) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
@@ -287,10 +292,10 @@ impl Search<'_> {
         }
         let [l, a, b] = regions.colour(node);
         let chroma = model.colours.iter().map(|c| (c[1] - a).hypot(c[2] - b)).fold(f64::INFINITY, f64::min);
-        // Blur darkens small lamps.
+        // Lower the limit for small lamps, because blur darkens them.
         let min_lightness = model.min_lightness - (1.0 - sharpness) * model.ring / RING;
         let lightness = l / min_lightness.max(1.0);
-        // A shortfall below the minimum lightness counts tenfold: L* is a narrow scale at its top.
+        // A relative shortfall below the minimum L* counts tenfold, because bright colours differ little in L*.
         let lightness = if lightness < 1.0 { 1.0 - 10.0 * (1.0 - lightness) } else { lightness };
         contour.min(lightness).min(CHROMA / chroma.max(1e-3)).max(0.0)
     }
