@@ -10,8 +10,8 @@ pub(super) use exif::{Exif, read};
 pub use orientation::Orientation;
 pub(super) use orientation::Upright;
 
-/// Relative standard deviation of a focal length from EXIF. [convention]: lenses are marked to about 5 %, and the
-/// equivalent for 35 mm film is rounded to a millimetre and refers to the diagonal or the width (4 % apart at 4:3).
+/// Relative standard deviation of a focal length from EXIF. [convention]: lenses are marked to about 5 %. Besides, the
+/// 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or to the width (4 % apart at 4:3).
 const FOCAL_ERROR: f64 = 0.05;
 
 /// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer [convention: CIPA DCG-001].
@@ -21,8 +21,8 @@ const FILM_DIAGONAL: f64 = 43.266_615_305_567_87;
 /// [`FOCAL_ERROR`].
 const AGREEMENT: f64 = 0.1;
 
-/// Maximum relative difference between the aspect ratio of a photo and the recorded one; beyond it the photo has been
-/// cropped. Sides are whole numbers, and resizing rounds them. [convention]
+/// Largest difference between the logarithms of two aspect ratios, that of the photo and the recorded one, at which
+/// the photo counts as not cropped. It allows for the rounding of the sides when a photo is resized. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
 /// The saturation-based ISO speed is this number in lx s, divided by the focal-plane exposure that just saturates

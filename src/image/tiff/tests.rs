@@ -125,8 +125,8 @@ impl Picture {
             1 => bytes.to_vec(),
             5 => weezl::encode::Encoder::with_tiff_size_switch(weezl::BitOrder::Msb, 8).encode(bytes).unwrap(),
             8 => miniz_oxide::deflate::compress_to_vec_zlib(bytes, 6),
-            // PackBits: write equal pairs as runs and all else literally, each followed by an instruction without
-            // effect.
+            // PackBits: write equal pairs as runs. Write other bytes literally, followed by the code 128, which does
+            // nothing.
             _ => bytes
                 .chunks(2)
                 .flat_map(|c| {
