@@ -37,7 +37,7 @@ pub struct Material {
     /// Opacity in `[0, 1]`, multiplied by the alpha of the base colour texture.
     pub alpha: f32,
     pub alpha_mode: AlphaMode,
-    /// 0 for dielectrics, 1 for metals, or a mixture of both.
+    /// Metalness in `[0, 1]`: 0 for dielectrics, 1 for metals.
     pub metallic: f32,
     /// Perceptual roughness in `[0, 1]`; its square is the width parameter α of the GGX distribution.
     pub roughness: f32,
