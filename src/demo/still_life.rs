@@ -114,7 +114,8 @@ fn vase_profile() -> Vec<Vec2> {
     profile
 }
 
-/// Adds a ring about the vertical through the origin. `radius` is that of its centre line, `tube` that of its tube.
+/// Adds a ring about the vertical through the origin. `radius` is the radius of its centre line, `tube` the radius of
+/// its cross section.
 fn torus(mesh: &mut Mesh, radius: f32, tube: f32) {
     let (around, across) = (128u32, 48u32);
     let first = mesh.positions.len() as u32;

@@ -25,9 +25,9 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     let between = |column: usize, row: usize| lamp(column, row) + grid.period * Vec2::new(0.5, 0.0);
     let half = Vec2::new(0.3, 0.0) * grid.size;
 
-    // Strokes for the plane. Positive ones lie on the ceiling: along the room between two columns of lamps, both far
-    // and near, and across it between two rows. Negative ones lie on the walls and on objects in front of them. No two
-    // strokes cross, so that a single drawing can hold them all.
+    // Strokes for the plane. Positive strokes lie on the ceiling: along the room between two columns of lamps, both
+    // far and near, and across the room between two rows. Negative strokes lie on the walls and on objects in front of
+    // them. No two strokes cross, so that a single drawing can hold them all.
     let along = |column: usize, row: usize| [on_ceiling(between(column, row)), on_ceiling(between(column, row + 1))];
     let across = |column: usize, row: usize| {
         let middle = Vec2::new(0.0, 0.5) * grid.period;
@@ -48,7 +48,7 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
         set.plane.push(stroke(points, false)?);
     }
 
-    // Strokes for the lights. Positive ones run across three lamps; negative ones lie on the ceiling.
+    // Strokes for the lights. Positive strokes run across three lamps; negative strokes lie on the ceiling.
     for (column, row) in [(0, 2), (1, 1), (1, 3)] {
         let centre = lamp(column, row);
         set.lights.push(stroke(&[on_ceiling(centre - half), on_ceiling(centre + half)], true)?);

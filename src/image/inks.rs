@@ -22,8 +22,8 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 /// Whether a JPEG has four components, according to its frame header.
 pub fn has_inks(bytes: &[u8]) -> bool {
-    // The markers C0 to CF begin frame headers, except those of tables (C4, CC) and of an extension (C8). The sixth
-    // byte of a frame header is the number of components.
+    // The markers C0 to CF begin frame headers, except the markers of tables (C4, CC) and of an extension (C8). The
+    // sixth byte of a frame header is the number of components.
     jpeg_segments(bytes)
         .find(|(marker, _)| matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc))
         .is_some_and(|(_, frame)| frame.get(5) == Some(&4))

@@ -16,8 +16,8 @@ pub fn probe(bytes: &[u8], format: ImageFormat) -> Result<(usize, usize, usize)>
     Ok((width as usize, height as usize, channels(usize::from(decoder.color_type().channel_count()))))
 }
 
-/// Bytes of memory for reading a file, in addition to the picture itself; without those for the ancillary chunks of a
-/// PNG.
+/// Bytes of memory for reading a file, in addition to the picture itself. The ancillary chunks of a PNG are not
+/// included.
 pub fn working_bytes(bytes: &[u8], format: ImageFormat) -> Result<usize> {
     let decoder = decoder(bytes, format)?;
     let (width, height) = decoder.dimensions();

@@ -10,9 +10,10 @@ pub struct Luminaire {
     pub manufacturer: String,
     /// Vertical angles γ in degrees, ascending, within `[0, 180]`.
     pub gammas: Vec<f64>,
-    /// Angles C of the planes in degrees, ascending from 0 to below 360. They cover the full circle without symmetry.
+    /// Angles C of the planes in degrees, ascending from 0 to below 360. They cover the full circle: no symmetry is
+    /// implied.
     pub planes: Vec<f64>,
-    /// Intensities in candela, plane by plane: one per vertical angle.
+    /// Intensities in candela: for each plane in turn, one per vertical angle.
     pub candela: Vec<f64>,
     /// Rated flux of the lamps in lumens; 0 if the intensities are absolute (absolute photometry).
     pub lamp_flux: f64,

@@ -100,7 +100,7 @@ impl Opening {
         self.faces(direction).iter().map(|face| face.projected_area(direction)).sum()
     }
 
-    /// Whether a point lies inside the opening or within [`CONTACT`] of it.
+    /// Whether a point lies inside the opening or within `CONTACT` of it.
     pub fn contains(&self, point: DVec3) -> bool {
         let within = |p: f64, size: f64| p.abs() <= size / 2.0 + CONTACT;
         match *self {
@@ -131,7 +131,8 @@ fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec
         let reach = (a * u).hypot(b * v).max(f64::MIN_POSITIVE);
         let nearest = (first * (a * a * u) + second * (b * b * v)) / (2.0 * reach);
         let tangent = second * u - first * v;
-        // The rectangle spans this width through the axis; move it along `direction` to the near side.
+        // The rectangle has this width and contains the axis; move it along `direction` to the near side of the
+        // cylinder.
         let centre = (first * u + second * v) * nearest.dot(first * u + second * v);
         faces.push(Face { centre, sides: [tangent * width, along * length], is_round: false });
     }

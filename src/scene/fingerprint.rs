@@ -68,7 +68,7 @@ impl Digest {
     /// Hashes a small value by its `Debug` text: this text has all digits of floats, and fields added later are hashed
     /// without a change here.
     fn text(&mut self, value: &dyn Debug) {
-        // `write_str` of the digest never fails.
+        // Ignore the result: `write_str` of the digest never fails.
         let _ = writeln!(self, "{value:?}");
     }
 }

@@ -67,7 +67,7 @@ fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<
         if darkness < 0.03 {
             continue;
         }
-        // Keep dots apart such that they cover roughly a share of the paper that equals the darkness.
+        // Space the dots such that the share of the paper that they cover roughly equals the darkness.
         let apart = radius * (1.75 / darkness.sqrt()).clamp(1.45, MAX_SPACING);
         let (x, y, span) = ((at.x / cell) as usize, (at.y / cell) as usize, (apart / cell).ceil() as usize);
         let mut near = (y.saturating_sub(span)..(y + span + 1).min(rows))

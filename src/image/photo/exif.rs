@@ -30,8 +30,8 @@ mod tag {
     pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
-/// Value of the 16-bit sensitivity tag that means: the number is too large and stored in another tag [convention:
-/// Exif].
+/// A 16-bit sensitivity tag of this value means that the number is too large for it and stored in another tag
+/// [convention: Exif].
 const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
 
 /// The metadata that the library uses. `None` if the file lacks a value or states an implausible one.

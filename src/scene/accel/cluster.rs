@@ -200,7 +200,7 @@ impl Boxes {
         boxes
     }
 
-    /// Loads the boxes of `clusters`, and resets the remaining ones of the `before` boxes held so far to sentinels.
+    /// Loads the boxes of `clusters`. The boxes left over from the `before` clusters held so far become sentinels.
     fn update(&mut self, clusters: &[Cluster], before: usize) {
         for (i, cluster) in clusters.iter().enumerate() {
             self.set(i, cluster.node.min.into(), cluster.node.max.into());

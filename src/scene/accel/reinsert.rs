@@ -57,7 +57,7 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// For each share, returns an area that at most this share of all nodes reaches, and approximately so many.
+    /// For each share, returns an area threshold that at most this share of all nodes reaches, and hardly fewer.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];
@@ -184,8 +184,8 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// A pair of siblings still to be examined: the gain before the new sibling's own box is counted, and the index of the
-/// first.
+/// A pair of siblings whose positions are still to be examined: the gain without the area of the new parent, and the
+/// index of the first sibling.
 type Waiting = (f32, u32);
 
 /// The search for the best position of one subtree.
@@ -198,8 +198,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Examines all positions beside `node` or below it. `gained` is the decrease of the area outside this part of the
-    /// tree.
+    /// Examines all positions beside `node` or below it. `gained` is the decrease of the total area of all boxes,
+    /// without the area of the new parent.
     fn below(&mut self, gained: f32, node: u32) {
         self.beside(gained, node);
         while let Some((gained, first)) = self.waiting.pop() {

@@ -93,8 +93,7 @@ struct Importer<'a> {
     default_material: Option<usize>,
     /// Copies of materials multiplied by a vertex colour: index of the original, the colour, and index of the copy.
     tinted: Vec<(usize, [f32; 4], usize)>,
-    /// Index in the file of each IES profile read so far; its distribution has the same position in this list and in
-    /// the scene.
+    /// Indices in the file of the IES profiles read so far. Profile `profiles[i]` is distribution `i` of the scene.
     profiles: Vec<usize>,
     /// The world transform of each node. Filled only if the file has skins, whose joints are nodes.
     nodes: Vec<Option<DMat4>>,
@@ -275,7 +274,8 @@ impl Importer<'_> {
             None => map_indexed(positions, |_, p| point(whole, p))?,
         };
 
-        // A reflection reverses the winding of triangles, so reverse the normals too.
+        // A reflection reverses the winding of triangles, which `triangles` undoes. It also negates the result of
+        // `cofactor`, which `side` undoes.
         let is_mirrored =
             skinning.as_ref().map_or_else(|| whole.determinant() < 0.0, |skinning| skinning.is_mirrored(count));
         let side = if is_mirrored { -1.0 } else { 1.0 };

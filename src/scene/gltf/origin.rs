@@ -24,8 +24,8 @@ const FAR: f64 = 4.0;
 /// Number of corners of bounding boxes from which on no further nodes are examined: they would change the origin
 /// little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
-/// Number of corners to which the collected corners are thinned out, at most by a factor of 2 more. Few enough for the
-/// small memory reserve of the library. [convention]
+/// The collected corners are thinned out to between this number and twice this number of corners, which fit into the
+/// library's small memory reserve. [convention]
 const SAMPLES: usize = 4096;
 
 /// Returns the new origin of the scene, in metres in the space into which `world` transforms the file; zero if the
@@ -53,8 +53,8 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
     Ok(DVec3::select(is_near, DVec3::ZERO, (median / GRID).round() * GRID))
 }
 
-/// Returns the corners of a primitive's bounding box as the file states them, or twice the origin of its node if the
-/// file states none in plain numbers.
+/// Returns the corners of a primitive's bounding box in the coordinates of its node, as its accessor states them. Both
+/// are zero if the accessor states none, or if its integers are normalised.
 fn bounds(file: &File, primitive: &Primitive) -> [DVec3; 2] {
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
     let accessor = positions.and_then(|index| file.root.get(*index)).filter(|accessor| !accessor.normalized);

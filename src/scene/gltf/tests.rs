@@ -315,7 +315,7 @@ fn inconsistent_files_are_errors_that_give_the_reason() {
         let error = import(&triangle_file(edit), None).expect_err(&format!("case {i}: {message}"));
         assert!(error.message.contains(message), "case {i}: {error}");
     }
-    // Two nodes show 65 primitives with an accessor of more elements than are allowed.
+    // Two nodes share a mesh of 65 primitives, each of which has one vertex more than the limit of 2^26.
     let bomb = triangle_file(|f| {
         f["accessors"][0] = json!({ "componentType": 5126, "count": 1 << 20, "type": "VEC3" });
         f["meshes"][0]["primitives"] = json!(vec![json!({ "attributes": { "POSITION": 0 }, "indices": 1 }); 65]);

@@ -20,8 +20,8 @@ const DIRECTIONS: usize = 32;
 const PLANES: usize = 16;
 const MIN_AREA: f64 = 0.05;
 
-/// Cosines of 75 and 5 degrees, between which a triangle is sloped: steeper ones are the edges of a slab, flatter ones
-/// belong to the plane [convention: luxfer_surface].
+/// Cosines of 75 and 5 degrees, between which a triangle is sloped: steeper triangles are the edges of a slab, flatter
+/// triangles belong to the plane [convention: luxfer_surface].
 const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
 /// Triangles that lie in one plane, within tolerances.
