@@ -30,8 +30,8 @@ pub trait PixelLanes: Copy {
     fn add(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
-    /// The sum over the four pixels for each channel; the remaining lanes are undefined. The remaining lanes of the
-    /// next two functions are undefined too.
+    /// Sums the four pixels for each channel. The lanes beyond the channels are undefined, here and in the next two
+    /// functions.
     fn sum(self) -> Vec4;
     fn min_over_pixels(self) -> Vec4;
     fn max_over_pixels(self) -> Vec4;
@@ -198,7 +198,7 @@ mod avx512 {
 
     // SAFETY of all blocks below: the processor supports AVX-512, as required above.
 
-    /// Combines the first pixel with the third and the second with the fourth, then the two results.
+    /// Combines the first pixel with the third and the second with the fourth, then combines the two results.
     macro_rules! fold {
         ($of:expr, $eight:ident, $four:ident) => {
             unsafe {

@@ -17,8 +17,8 @@ use crate::simd::{Level, widest};
 use glam::{DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maximum number of parts of a footprint; footprints that need more parts use a coarser level. At the coarsest level,
-/// this is the maximum number of parts along a side.
+/// Maximum number of parts of a footprint; footprints that need more parts use a coarser pyramid level. On the
+/// coarsest level, this is the maximum number of parts along each side.
 const MAX_PARTS: usize = 16;
 
 /// Rows per unit of work. One row of each band is examined to find the number of pyramid levels needed.
@@ -64,7 +64,7 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
 
 /// The mapping from pixels to the source.
 struct Map {
-    /// Column by column.
+    /// The homography from pixels to the source, column by column.
     to_source: [f64; 9],
     /// The sign of the third coordinate in front of the camera: the sign at the image centre, which is assumed to be
     /// visible.
