@@ -101,7 +101,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
             Ok((depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None))
         }
     };
-    // Allocate the output meanwhile: it takes a tenth of the total time.
+    // Meanwhile, allocate the output: allocation takes a tenth of the total time.
     let (geometry, image) = exec::both(geometry, || Image::new(width, height, CHANNELS));
     let (surface, depth_source, layout) = geometry?;
     let mut image = image?;
