@@ -1,4 +1,4 @@
-//! Sets of usable patches.
+//! Sets of patches of an image, for instance of the patches that may be used as matches.
 
 use super::position::pack;
 use crate::error::Result;
@@ -85,7 +85,7 @@ impl Domain {
         self.count = self.list.len();
     }
 
-    /// Positions of the members.
+    /// Packed positions of the members in scan order; may include removed members until [`Domain::compact`].
     pub fn members(&self) -> &[u32] {
         &self.list
     }
@@ -95,7 +95,7 @@ impl Domain {
         &self.member
     }
 
-    /// Converts the set into [`Domain::flags`].
+    /// Converts the set into the list of [`Domain::flags`].
     pub fn into_flags(self) -> Vec<bool> {
         self.member
     }

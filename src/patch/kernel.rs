@@ -1,13 +1,13 @@
-//! Distance between two patches with early exit; the only file of this engine with `unsafe` code.
+//! Computes the distance between two patches, with early exit; the only file of the patch engine with `unsafe` code.
 //!
-//! Both versions add the same integers in 32 bits and stop after the same row, so they agree to the bit. [`Quantiser`]
-//! (see `quantised.rs`) keeps the sum below 2³¹.
+//! The portable and the AVX2 version add the same integers in 32 bits and stop after the same row, so they agree to
+//! the bit. [`Quantiser`] (see `quantised.rs`) keeps the sum below 2³¹.
 //!
 //! [`Quantiser`]: super::Quantiser
 
 use crate::simd::Level;
 
-/// The instruction set to compute with.
+/// The instruction set with which distances are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kernel(Level);
 
@@ -19,13 +19,13 @@ pub struct Patch<'a> {
 }
 
 impl Kernel {
-    /// The fastest kernel on this machine.
+    /// Returns the fastest kernel on this machine.
     pub fn detect() -> Self {
         Self(Level::widest())
     }
 
-    /// Sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after the row in which
-    /// the sum reaches `limit`.
+    /// Returns the sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after the row
+    /// in which the sum reaches `limit`.
     #[inline]
     pub fn distance(self, a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
         let end = |p: &Patch| (rows - 1) * p.row_len + run;
