@@ -17,7 +17,7 @@ type Plane = [f32; TILE];
 /// Inputs of the geometric channels of a tile.
 struct Geometry<'a> {
     inverse_depth: &'a [f32],
-    /// Three channels, interleaved.
+    /// Normals in camera space: three channels, interleaved.
     normals: &'a [f32],
     frustum: &'a Frustum,
     to_room: Mat3,

@@ -52,7 +52,7 @@ struct Columns {
 /// Prefix sums over columns, where `i` is the column: the difference of two prefix sums is the sum over a window. They
 /// are padded by the window's radius before the first column and after the last.
 struct Running {
-    /// n, i, ii, j, jj, ij, w, iw, jw, ww.
+    /// The sums of 1 (the count n), i, i², j, j², i j, w, i w, j w and w², in this order.
     sums: [Vec<f64>; 10],
     radius: usize,
 }

@@ -33,9 +33,9 @@ const LANES: usize = 8;
 /// A segment and the room axis that it runs along, which decides which faces can contain it.
 struct RoomSegment {
     axis: usize,
-    /// Ray through its midpoint, in room axes.
+    /// Ray through the segment's midpoint, in room axes.
     middle: DVec3,
-    /// Weight: its share of the length of all segments.
+    /// Weight: the segment's share of the length of all segments.
     weight: f64,
 }
 
@@ -53,14 +53,14 @@ struct Points {
 /// on these two sides of the box.
 #[derive(Default)]
 pub struct Quadrant {
-    /// Sample points for each axis.
+    /// Sample points of the segments along each axis.
     points: [Points; 3],
     /// For each stroke sample, the absolute coordinates of its ray, and the sample's weight in the score of the face
     /// that the ray hits.
     stroke_samples: Vec<(DVec3, f64)>,
 }
 
-/// The classified segments and the strokes of a view.
+/// The evidence of a view about its box: the segments with their axes, and the strokes.
 pub struct Evidence {
     segments: Vec<RoomSegment>,
     /// The upper left, upper right, lower left and lower right part of the view.

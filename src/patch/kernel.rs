@@ -77,7 +77,7 @@ unsafe fn avx2(a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
                 sums = _mm256_add_epi32(sums, _mm256_zextsi128_si256(_mm_madd_epi16(d, d)));
             }
         }
-        // Add the eight lanes.
+        // Add the eight lanes of `sums`.
         let half = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256::<1>(sums));
         let pair = _mm_add_epi32(half, _mm_unpackhi_epi64(half, half));
         let one = _mm_add_epi32(pair, _mm_shuffle_epi32::<1>(pair));

@@ -14,14 +14,14 @@ use glam::{DMat3, DVec2, DVec3};
 /// camera [convention].
 pub const FREE_ERROR: f64 = 0.5;
 
-/// A camera with the vanishing point of each of its axes.
+/// The estimated camera, with the vanishing point of each room axis.
 pub struct Oriented {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
     pub squareness: [Option<Squareness>; 3],
     /// The prior of the focal length.
     pub expected: Expected,
-    /// For each input point, the index of the axis it became, if any.
+    /// For each input vanishing point, the index of the room axis it became; `None` if it became none.
     pub axis_of: Vec<Option<usize>>,
 }
 

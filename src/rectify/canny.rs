@@ -50,7 +50,7 @@ pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
             }
         }
     }
-    // Hysteresis: candidates connected to a strong edge are edges too.
+    // Hysteresis: candidates connected to an edge pixel are edge pixels too.
     while let Some(i) = pending.pop() {
         let (x, y) = (i as usize % width, i as usize / width);
         for ny in y - 1..=y + 1 {

@@ -37,7 +37,7 @@ pub trait PixelLanes: Copy {
     fn max_over_pixels(self) -> Vec4;
 }
 
-/// One channel.
+/// Four pixels of one channel, in one register.
 #[derive(Clone, Copy)]
 pub struct GreyLanes(Vec4);
 
@@ -105,7 +105,7 @@ impl PixelLanes for GreyLanes {
     }
 }
 
-/// Three channels in three registers of four.
+/// Four pixels of three interleaved channels, in three registers of four lanes.
 #[derive(Clone, Copy)]
 pub struct RgbLanes([Vec4; 3]);
 

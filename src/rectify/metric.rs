@@ -93,7 +93,7 @@ mod tests {
         assert!((l.printed_distance(p) - 4.0 / 3.0).abs() < 1e-15);
         // Near the middle of the segment, the naive distance is the smaller.
         assert!((l.printed_distance(DVec3::new(1.1, 0.3, 1.0)) - 0.3).abs() < 1e-15);
-        // Homogeneous scale and sign do not matter.
+        // The sine does not depend on the scale and sign of the homogeneous point.
         assert_eq!(l.sine(p), l.sine(p * -2.0));
     }
 

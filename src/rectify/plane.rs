@@ -100,7 +100,7 @@ fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Pl
     };
     let i = if runs(i).x.abs() >= runs(j).x.abs() { i } else { j };
     let right = perspective.axes.col(i) * if runs(i).x < 0.0 { -1.0 } else { 1.0 };
-    // Keep the handedness: right, down and away from the camera are right-handed, so the plane is not mirrored.
+    // Avoid a mirror image: right, down and away from the camera form a right-handed system.
     let down = normal.cross(right);
     Plane { right, down, normal, perspective: *perspective }
 }
@@ -133,7 +133,7 @@ fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
         let share_ahead = ahead / pixels.len() as f64;
         let one_sided = (2.0 * share_ahead - 1.0).abs();
         let lines = 1.0 - share[third] + share[i].min(share[j]);
-        // The vertical axis points down: no pixel of a ceiling lies in front of the camera along it.
+        // The vertical axis points down, and all rays to a ceiling point up.
         let ceiling = if third == VERTICAL && share_ahead < 0.02 { 1.5 } else { 1.0 };
         one_sided.powi(4) * lines * ceiling
     };

@@ -62,20 +62,20 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
     Ok(out)
 }
 
-/// The mapping from pixels to the source.
+/// The map from output pixels to the source image.
 struct Map {
     /// The homography from pixels to the source, column by column.
     to_source: [f64; 9],
     /// The sign of the third coordinate in front of the camera: the sign at the image centre, which is assumed to be
     /// visible.
     front: f64,
-    /// Size of the source, and width of the image.
+    /// Size of the source (`size`), and width of the output image (`width`), in pixels.
     size: [f64; 2],
     width: usize,
 }
 
 widest! {
-    /// The coarsest pyramid level that a row needs.
+    /// Returns the coarsest pyramid level that a row needs.
     fn highest_level(map: &Map, row: usize) -> usize {
         let mut footprints = Footprints::EMPTY;
         let mut highest = 0;
@@ -122,7 +122,8 @@ struct Sampling {
     parts: [usize; 2],
 }
 
-/// `None` if no pixel is visible.
+/// Chooses the finest pyramid level on which the taps cover the shortest side and at most [`MAX_PARTS`] parts cover
+/// every footprint. `None` if no pixel is visible.
 #[inline(always)]
 fn choose_sampling(footprints: &Footprints, levels: usize) -> Option<Sampling> {
     let [shortest, width, height] = extent(footprints)?;

@@ -192,7 +192,7 @@ fn iterate(lines: &[WeightedLine], start: DVec3, focal: f64, prior: [[f64; 3]; 3
     Some(direction)
 }
 
-/// The zero matrix: a system without priors [convention].
+/// The zero matrix, for a least-squares problem without priors [convention].
 const ZERO_MATRIX: [[f64; 3]; 3] = [[0.0; 3]; 3];
 
 fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {
@@ -271,7 +271,7 @@ fn endpoint_noise(rows: &[Row]) -> f64 {
     // correspond to two observations.
     let freedom = (count - 2.0 * PER_OBSERVATION).max(0.0) + PRIOR_COUNT;
     let seen = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / freedom;
-    // Correct for the residuals that the limit truncates.
+    // Correct for the residuals that the biweight's limit cuts off.
     let mut noise = seen;
     for _ in 0..NOISE_ROUNDS {
         let shown =

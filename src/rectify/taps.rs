@@ -23,7 +23,7 @@ pub struct Part {
     /// Index of the part along x and y (`at`), and the number of parts along x and y (`of`).
     pub at: [usize; 2],
     pub of: [usize; 2],
-    /// Pixels of the pyramid level in use per pixel of the source.
+    /// Number of pixels of the pyramid level in use per source pixel, along a side: 1 on the finest level.
     pub scale: f32,
 }
 

@@ -168,7 +168,7 @@ fn solve_cholesky(a: &mut [f64], x: &mut [f64]) {
     for i in 0..m {
         for k in 0..=i {
             let rest = a[i * m + k] - dot(&a[i * m..i * m + k], &a[k * m..k * m + k]);
-            // Bound small pivots away from zero against rounding.
+            // Bound small pivots from below: rounding could make them zero or negative.
             a[i * m + k] = if i == k { rest.max(f64::EPSILON * a[i * m + i]).sqrt() } else { rest / a[k * m + k] };
         }
     }

@@ -48,7 +48,7 @@ pub struct Importance {
     height: usize,
     /// For each batch and each cell, row by row: the target's mean radiance if only this cell emits, with 1 cd/m².
     batches: Vec<Vec<DVec3>>,
-    /// For each batch the target's mean radiance under all other light.
+    /// For each batch, the target's mean radiance under all light except the emission of the surface.
     background: Vec<DVec3>,
     /// Number of paths traced.
     pub paths: u32,
@@ -194,7 +194,7 @@ impl Importance {
         solve::run(&measured, target.as_dvec3(), [Constraint::Exactly; 3])
     }
 
-    /// Mean emission of each cell.
+    /// Computes the mean emission of each cell.
     fn emission(&self, texture: &Texture, placement: &Mat3, job: Job) -> Result<Vec<DVec3>> {
         if !placement.is_finite() {
             return Err(Error::argument(format!("placement is {placement}; it must be finite")));

@@ -232,7 +232,7 @@ impl Lamps {
     }
 }
 
-/// Connected vertices (union-find, Tarjan 1975, with path halving).
+/// The connected pieces of a mesh: a union-find forest over its vertices (Tarjan 1975, with path halving).
 struct Pieces(Vec<u32>);
 
 impl Pieces {
@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn patches_of_texels_and_pieces_of_meshes_are_lamps() {
-        // Two regions; one of them is connected only at a corner.
+        // The picture has two regions; one of them is connected only at a corner.
         let rows = ["#....", ".#..#", "....#"];
         let image = Image::from_fn(5, 3, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
         let lamps = Lamps::of_texture(&image).unwrap();

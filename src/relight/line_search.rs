@@ -7,7 +7,7 @@ pub(super) struct Slope {
     pub start: f64,
     /// The slope of the derivative at 0, ≥ 0.
     pub growth: f64,
-    /// Positions at which the slope of the derivative changes, and the changes.
+    /// Positions at which the slope of the derivative changes, each with the change.
     pub changes: Vec<(f64, f64)>,
 }
 

@@ -42,7 +42,7 @@ pub struct Pose {
     pub offset: DVec2,
     /// Number of repetitions of the texture along the surface's u and v.
     pub scale: DVec2,
-    /// In radians.
+    /// Rotation in radians.
     pub rotation: f64,
 }
 

@@ -23,7 +23,7 @@ const MAX_RELATIVE_MISS: f64 = 1e-6;
 pub struct Mixture {
     /// Drive of each primary, in `[0, max_drive]`.
     pub drives: Vec<f64>,
-    /// The colour of the mixture.
+    /// The linear RGB colour of the mixture.
     pub colour: DVec3,
     /// Whether the mixture has the requested colour; otherwise it has the nearest reachable colour.
     pub reached: bool,

@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 /// Which part of a goal's light has to meet the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aspect {
-    /// Every channel.
+    /// Every channel, so that the colour of the light counts.
     Colour,
     /// The luminance alone, for goals in lux.
     Luminance,

@@ -34,10 +34,10 @@ impl Constraint {
 }
 
 pub(super) struct Problem<'a> {
-    /// Row by row.
+    /// The coefficients `a` of the terms, row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    /// One per row.
+    /// The kind of each term: one per row.
     pub constraints: &'a [Constraint],
     /// `λ` relative to the mean square of a row, positive.
     pub regularisation: f64,
@@ -49,7 +49,8 @@ pub(super) struct Problem<'a> {
 
 /// Maximum number of Newton steps; a few suffice. [convention]
 const MAX_STEPS: usize = 200;
-/// A term keeps its state (active or not) while its value is this close to its limit, relatively. [rounding]
+/// A term keeps its state (active or not) while the relative distance of its value from its limit is at most this.
+/// [rounding]
 const ROUNDING: f64 = 1e-12;
 
 impl Problem<'_> {

@@ -9,7 +9,7 @@
 use super::bounded::dot;
 use super::sided::Constraint;
 
-/// The terms of the goals: see [`super::sided::Problem`].
+/// The terms of the goals, one per row of the matrix: see [`super::sided::Problem`].
 pub(super) struct Terms<'a> {
     pub matrix: &'a [f64],
     pub right: &'a [f64],

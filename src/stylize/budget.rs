@@ -52,7 +52,7 @@ impl Hyperbola {
         let points = || points.iter().filter(|p| p.1 > 0.0);
         let mut fit = solve(points().map(|&(x, y)| ([y * y, -x * y * y], y)))?;
         for _ in 0..3 {
-            // df/da = -f², df/db = x f².
+            // The derivatives are df/da = -f² and df/db = x f².
             let step = solve(points().map(|&(x, y)| {
                 let f = 1.0 / (fit.a - fit.b * x);
                 ([-f * f, x * f * f], y - f)
@@ -178,7 +178,7 @@ mod tests {
         // A step: a fifth of the matches fits, the rest is forced (Fig. 7).
         let step = curve(1000, |x| if x < 0.2 { 0.01 } else { 0.9 + 0.1 * x });
         assert!((super::budget(&step).knee - 0.2).abs() < 0.01);
-        // Most errors are zero.
+        // In the last curve, most errors are zero.
         let mut zeros = vec![0u32; 1000];
         zeros[990..].iter_mut().enumerate().for_each(|(i, e)| *e = 1 + i as u32);
         assert!(budget(&zeros).knee > 0.9);

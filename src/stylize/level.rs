@@ -23,7 +23,7 @@ pub(super) struct Problem {
     pub target_mask: Option<Vec<bool>>,
     /// Colours of the target outside `target_mask`, encoded for display.
     pub known: Option<Image>,
-    /// Number of non-finite pixels in the exemplar and in the target.
+    /// Number of non-finite pixels in the exemplar (`.0`) and in the target (`.1`).
     pub broken: (usize, usize),
 }
 

@@ -23,7 +23,7 @@ const EXHAUSTIVE: usize = 1 << 24;
 struct Setup<'a> {
     input: &'a Input<'a>,
     params: &'a Params,
-    /// Number of levels.
+    /// Number of pyramid levels of the run.
     levels: usize,
     /// Number of halvings from the artwork's size to the finest level: 1 for a preview, else 0.
     halved: usize,

@@ -27,7 +27,7 @@ pub enum Mode {
 /// The algorithm that searches for nearest patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finder {
-    /// PatchMatch.
+    /// PatchMatch (Barnes et al. 2009).
     PatchMatch,
     /// A k-d tree over patch means, an alternative to PatchMatch.
     Table,

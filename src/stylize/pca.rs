@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn compressed_guides_keep_their_distances() {
-        // Nine channels of rank two.
+        // Test images with nine channels, all of them combinations of two.
         let image = |seed: usize| {
             Image::from_fn(31, 17, |x, y| {
                 let (a, b) = (((x * 7 + seed) % 31) as f32 / 31.0, ((y * 5 + seed) % 17) as f32 / 17.0);

@@ -26,7 +26,7 @@ pub struct LevelReport {
 pub struct Usage {
     /// Share of the allowed exemplar patches that are used.
     pub used: f64,
-    /// Maximum number of uses of a single patch.
+    /// Number of uses of the patch that is used most often.
     pub max_uses: u32,
     /// Entropy of the usage in bits; at most log2 of the number of target patches.
     pub entropy: f64,
@@ -34,7 +34,7 @@ pub struct Usage {
 
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// Coarsest level first.
+    /// Reports of the levels, coarsest level first.
     pub levels: Vec<LevelReport>,
     pub usage: Usage,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides

@@ -12,7 +12,7 @@ fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
             scene.materials.push(Material { double_sided: false, ..Material::diffuse("paint", colour) });
             scene.meshes[mesh].material = scene.materials.len() - 1;
         }
-        // A strip of the ceiling emits; the rest of the ceiling is the target, as in the photo.
+        // A strip just below the ceiling emits; the ceiling is the target, as in the photo.
         let ceiling = scene.meshes[1].clone();
         scene.meshes[1].material = 0;
         let strip = Vec3::new(0.5, 0.0, 0.1);

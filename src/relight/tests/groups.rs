@@ -147,7 +147,7 @@ fn other_light_that_is_too_bright_is_named() {
     assert!(solution.scale.iter().all(|x| *x == DVec3::ZERO));
     assert_eq!(solution.outcomes[0].status, [TargetStatus::TooBright; 3]);
     assert!(solution.unreachable.unwrap().contains("other lights alone"));
-    // Errors name the parameter.
+    // Invalid parameters are errors.
     for bad in [
         GroupParams { regularisation: 0.0, ..GroupParams::default() },
         GroupParams { max_scale: vec![1.0], ..GroupParams::default() },
@@ -250,7 +250,7 @@ fn limits_count_on_one_side() {
     assert_eq!(solve(one(caps[0], Constraint::AtMost), one(1e3, Constraint::AtMost)).scale, [DVec3::ONE; 2]);
     let solution = solve(one(caps[1], Constraint::AtMost), one(1e3, Constraint::AtMost));
     assert!((solution.outcomes[0].achieved.x / f64::from(caps[1]) - 1.0).abs() < 1e-3, "{solution:?}");
-    // An unreachable goal is reported with its side.
+    // An unreachable goal is reported with the kind of its limit.
     let goals = [at(0.9, 0.9, 40.0, Constraint::AtLeast), at(3.1, 3.1, 1.0, Constraint::AtMost)];
     let torn = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert_eq!([0, 1].map(|goal| torn.outcomes[goal].status[0]), [TargetStatus::TooDim, TargetStatus::TooBright]);

@@ -49,8 +49,8 @@ fn solve_with(scene: &Scene, fit: Fit, params: &Params) -> Solution {
     super::solve(scene, Vec3::ONE, &Params { fit, quantity: Quantity::Incident, ..params.clone() }).unwrap()
 }
 
-/// Without other light, the least squares solution is the solution for the mean divided by `1 + CV²`, where CV is the
-/// coefficient of variation of the response.
+/// Without other light, the scale by least squares is the scale by the mean, divided by `1 + CV²`. CV is the
+/// coefficient of variation of the response over the target.
 #[test]
 fn bright_points_count_more_by_the_coefficient_of_variation() {
     let mut scene = scene();
