@@ -91,7 +91,8 @@ mod tests {
     #[test]
     fn identity_survives_upsampling_to_odd_sizes_and_inversion() {
         for (w, h) in [(6usize, 5usize), (7, 4), (1, 1), (13, 9)] {
-            // Patches of width 5 in images of (w + 4) × (h + 4) pixels, halved: the coarse image has fewer patches.
+            // With patches of width 5, an image of (w + 4) × (h + 4) pixels has w × h patches. The image of half the
+            // size has less than half as many patches along each side.
             let (cw, ch) = (((w + 4) / 2).saturating_sub(4).max(1), ((h + 4) / 2).saturating_sub(4).max(1));
             let coarse_base = Domain::new(cw, ch, 1, None, false).unwrap();
             let base = Domain::new(w, h, 1, None, false).unwrap();

@@ -17,7 +17,8 @@ const TRIALS: u64 = 6;
 const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Radiance in cd/m² far above that of any other light [convention].
 const DOMINANT: f32 = 1e9;
-/// Minimum and maximum number of paths of a solution: its first round, and the limit of its parameter [convention].
+/// Minimum and maximum number of paths of a solution: the paths of its first round, and the limit of
+/// [`relight::Params::paths`] [convention].
 const SOLUTION_PATHS: [f64; 2] = [(relight::BATCHES as u32 * relight::FIRST_ROUND) as f64, (1u32 << 30) as f64];
 /// Ratio of an interval's half-width to its standard error, for the number of batches used [convention].
 const HALF_WIDTH: f64 = 2.04;

@@ -1,4 +1,4 @@
-//! The camera from its vanishing points: focal length and orthonormal room axes, given the principal point.
+//! Estimates the camera from vanishing points: focal length and orthonormal room axes, given the principal point.
 
 use super::focal::{Expected, USUAL_SPREAD};
 use super::params::Params;
@@ -10,8 +10,8 @@ use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{FocalSource, Perspective};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Standard deviation, in radians, of an axis that no line determines and only a convention fixes, such as an upright
-/// camera [convention].
+/// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
+/// the camera is upright) [convention].
 pub const FREE_ERROR: f64 = 0.5;
 
 /// The estimated camera, with the vanishing point of each room axis.

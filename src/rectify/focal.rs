@@ -17,7 +17,7 @@ pub struct Expected {
 }
 
 impl Expected {
-    /// The prior from the photo's metadata or, without metadata, from the usual focal length of photos of this width.
+    /// Returns the prior from the photo's metadata or, without metadata, the usual focal length for this width.
     pub(super) fn new(params: &Params, width: usize) -> Self {
         match params.expected_focal {
             Some([focal, error]) => Self { focal, spread: error / focal, source: FocalSource::Metadata },

@@ -21,7 +21,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// coarsest level, this is the maximum number of parts along each side.
 const MAX_PARTS: usize = 16;
 
-/// Rows per unit of work. One row of each band is examined to find the number of pyramid levels needed.
+/// Number of rows per band, the unit of work. The first row of each band is examined to find the number of pyramid
+/// levels needed.
 const BAND: usize = 8;
 
 /// Resamples the source to an image of the given size: the pixel at `p` shows the source at `to_source(p)`. Footprints

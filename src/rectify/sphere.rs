@@ -168,8 +168,8 @@ pub fn refine(lines: &[WeightedLine], start: DVec3, focal: f64) -> Option<Refine
 /// covariance that the lines give at the start.
 pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
     let own = covariance(lines, start, focal)?;
-    // The normal matrix of the lines is the inverse of their covariance up to a factor; express the priors in its
-    // unit.
+    // Up to a factor, the normal matrix of the lines is the inverse of their covariance. Scale the priors by this
+    // factor.
     let unit = deviation(&own.of_direction).powi(2) / own.inverse_trace;
     let mut prior = ZERO_MATRIX;
     for RightAngle { to, variance } in expected {

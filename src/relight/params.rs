@@ -18,9 +18,9 @@ pub enum Quantity {
 pub enum Fit {
     /// By its mean over the points, a single colour, as in the paper.
     Mean,
-    /// Point by point in the least squares sense, the limit of gradient descent on texels (Lipp et al. 2024). Bright
-    /// points have more weight: without other light, the solution is dimmer by `1 / (1 + CV²)`, where CV is the
-    /// coefficient of variation of the response over the target.
+    /// Point by point, by least squares: the limit of gradient descent on texels (Lipp et al. 2024). Bright points
+    /// have more weight: without other light, the solution is dimmer by `1 / (1 + CV²)`, where CV is the coefficient
+    /// of variation of the response over the target.
     LeastSquares,
 }
 

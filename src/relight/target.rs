@@ -7,8 +7,8 @@ use crate::scene::{Material, Mesh, Scene};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// The generalised golden ratio in two dimensions, 1/g and 1/g² (Roberts 2018): a low-discrepancy sequence.
-/// [convention]
+/// Steps of a low-discrepancy sequence: 1/g and 1/g² of the generalised golden ratio g in two dimensions (Roberts
+/// 2018). [convention]
 const KRONECKER: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
 
 pub(super) enum Sampler<'a> {

@@ -72,7 +72,7 @@ struct Batch {
 /// whereas squares of single paths include their noise.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pairs {
-    /// The squared response.
+    /// The response squared.
     pub own: DVec3,
     /// The product of response and background.
     pub cross: DVec3,
