@@ -1,5 +1,5 @@
-//! Reconstructs the image from a field: averages the pixels that overlapping matches place at each position (Algorithm
-//! 1).
+//! Reconstructs the image from a field by Algorithm 1: averages the pixels that overlapping matches place at each
+//! position.
 
 use super::field::Field;
 use super::position::{NONE, pack, unpack};

@@ -7,8 +7,8 @@ use crate::scene::{Material, Mesh, Scene};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// Steps of a low-discrepancy sequence: 1/g and 1/g² of the generalised golden ratio g in two dimensions (Roberts
-/// 2018). [convention]
+/// Steps of a low-discrepancy sequence (Roberts 2018): 1/g and 1/g² of the generalised golden ratio g in two
+/// dimensions. [convention]
 const KRONECKER: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
 
 pub(super) enum Sampler<'a> {

@@ -38,7 +38,7 @@ pub struct Report {
     pub levels: Vec<LevelReport>,
     pub usage: Usage,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
-    /// of the exemplar pixel painted there, in `[0, 1]`. It is high where nothing in the exemplar is suitable (Fig.
+    /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (Fig.
     /// 17).
     pub guide_error: Image,
     /// Two channels: for each target pixel, the position in the artwork from which its paint comes, x and y in pixels.
