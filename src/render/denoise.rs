@@ -112,7 +112,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     Ok(Output { image, bias })
 }
 
-/// Filters one half of the paths.
+/// Filters the image of one half of the paths.
 fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: Job) -> Result<Image> {
     let (width, height) = (half.width, half.height);
     let mut light = light(half, variance, guide, job.part(0.0, 0.1))?;

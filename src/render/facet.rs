@@ -98,7 +98,8 @@ impl Facet {
     }
 }
 
-/// Whether the mesh has no vertex normals, or those of the triangle equal its geometric normal up to rounding.
+/// Whether the mesh has no vertex normals, or the vertex normals of the triangle equal its geometric normal up to
+/// rounding.
 fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
     if mesh.normals.is_empty() {
         return true;

@@ -25,7 +25,7 @@ const MAX_TEXEL_COORDINATE: f64 = 8e6;
 pub struct Tiling {
     /// The triangle's corners in texel coordinates.
     triangle: [DVec2; 3],
-    /// Converts an offset from the first corner, in texels, to barycentric coordinates.
+    /// Converts an offset from the triangle's first corner, in texels, to barycentric coordinates.
     to_barycentric: DMat2,
     /// The first texel of the tile grid (`start`), and the number of tiles along u (`columns`) and v (`rows`).
     start: [i64; 2],
@@ -97,7 +97,8 @@ impl Tiling {
             && !self.texel_inside(first).is_some_and(|texel| texture.is_black(texel, SIDE))
     }
 
-    /// Returns the texture's texel at the tile's first texel, if the whole tile lies inside the texture.
+    /// Returns the column and row of the tile's first texel in the texture, or `None` if the tile extends beyond the
+    /// texture. `first` is that texel in unwrapped texel coordinates.
     fn texel_inside(&self, first: DVec2) -> Option<[usize; 2]> {
         let last = first + (SIDE - 1) as f64;
         let is_inside =

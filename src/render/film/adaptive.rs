@@ -53,7 +53,7 @@ impl<'p> AdaptiveSampler<'p> {
         if self.uniform_paths > 0 && clock.is_over() {
             return Ok(None);
         }
-        // Refine the coarse image down to one path per pixel.
+        // While the image is still coarse, halve the pixel stride. At a stride of 1, every pixel has one path.
         if self.stride > 1 {
             self.stride /= 2;
             self.uniform_paths = 1;
@@ -81,8 +81,8 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(Some(Pass { stride: self.stride, ..Pass::uniform(canvas.grid.tiles(), count)? }))
     }
 
-    /// Returns a pass that doubles the paths of the tiles with the largest need, or `None` if no tile needs more
-    /// paths.
+    /// Returns a pass that doubles the paths of some tiles, or `None` if no tile needs more paths. The tiles with the
+    /// largest need come first. The need of a tile is its required number of paths divided by its present number.
     fn adaptive_pass(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let statistics = canvas.statistics(|_, _| 1.0, job)?;
         let target_paths = self.target_paths(canvas, &statistics, job)?;

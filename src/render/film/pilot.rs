@@ -38,7 +38,8 @@ use std::time::Duration;
 
 /// Largest number of tiles that the pilot run renders. [origin not recorded]
 const MAX_TILES: usize = 128;
-/// Paths per pixel of the three passes. Each replication gets a power of four, at which points are stratified best.
+/// Paths per pixel of the three passes. Each of the four replications of a pixel gets a power of four of these paths,
+/// because points are stratified best at powers of four.
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
 /// Largest number of tiles that the third pass renders. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
@@ -57,8 +58,8 @@ pub struct Pilot {
     pub squared_errors: [f64; 3],
     /// Ratio of the number of uniform paths to the number of adaptively allocated paths for equal error; at least 1.
     pub adaptive_gain: f64,
-    /// Root mean square of the image's radiance, divided by its mean. The factor converts an error that is the same
-    /// share of the radiance everywhere to the error of the image.
+    /// Root mean square of the image's radiance, divided by its mean. If the error of every pixel is the same share of
+    /// the pixel's radiance, then [`super::super::Film::error`] is that share times `contrast`.
     pub contrast: f64,
 }
 
@@ -89,7 +90,7 @@ struct PilotTile {
 struct TileSums {
     weight: f64,
     pixels: f64,
-    /// What the first look expects for the sums `mean` and `square`.
+    /// Predictions of the first look for the sums `mean` and `square`.
     expected: [f64; 2],
     mean: f64,
     square: f64,

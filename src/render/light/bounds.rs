@@ -130,7 +130,8 @@ pub struct BoundsLanes {
     intensity: Lanes,
 }
 
-/// Because of rounding, a cosine whose bound is above minus this margin may be positive. [rounding]
+/// The true cosine may be positive if its computed upper bound exceeds minus this margin, because the bound is
+/// rounded. [rounding]
 const MARGIN: f32 = 1e-4;
 
 impl BoundsLanes {

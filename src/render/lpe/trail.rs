@@ -44,7 +44,7 @@ pub struct Trail<'a> {
     /// Scratch memory: the components before an event (`before`), and the components at a light (`ends`).
     before: Vec<Component>,
     ends: Vec<Component>,
-    /// The panes between the vertex and its light sample.
+    /// The panes between the current vertex and its light sample.
     panes: Vec<Pane>,
     /// Light of the path so far, for each initial state and each list of expressions.
     sums: SparseSums,
@@ -217,8 +217,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits the components,
-    /// because a share of its light may pass beside it.
+    /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits the components:
+    /// a share of the light passes through the pane, and, if the opacity is below 1, another share misses it.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, before, ends, panes, sums, .. } = self;

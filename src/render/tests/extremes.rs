@@ -56,7 +56,7 @@ fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
 #[test]
 fn lamps_of_any_brightness_make_the_same_image() {
     let unit = render(&world(grown(1.0, 1.0)), &viewer(), &SMALL());
-    // Test about 1e-9 and 1e9 cd/m². The factors are powers of two, so that scaling is exact.
+    // Test lights of about 1e-9 and of about 1e9 cd/m². The factors are powers of two, so that scaling is exact.
     for light in [2f32.powi(-30), 2f32.powi(30)] {
         let film = render(&world(grown(1.0, light)), &viewer(), &SMALL());
         assert_eq!(differing(&unit.beauty, &film.beauty, light), 0.0, "{light}");
