@@ -9,7 +9,8 @@ use glam::Vec3;
 /// Neighbouring pixels whose normals differ by this (1 - cosine; about 40°) form an edge of full strength
 /// [origin not recorded].
 const FULL_CREASE: f32 = 0.25;
-/// A second difference of depth of this share of the depth forms an edge of full strength [origin not recorded].
+/// A depth discontinuity is an edge of full strength if the second difference of the depth is at least this share of
+/// the depth [origin not recorded].
 const FULL_STEP: f32 = 0.02;
 /// Standard deviation, in pixels, of the blur of the edges, which lets patches beside an edge sense it
 /// [origin not recorded].

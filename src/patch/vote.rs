@@ -51,7 +51,7 @@ pub fn vote(
                 let (px, py) = unpack(offset.wrapping_add(pack(x, y)));
                 style.pixel(px, py)
             };
-            // Fast path for most pixels: all patches over the pixel belong to one piece of the exemplar.
+            // Fast path for most pixels: all patches over the pixel place the same exemplar pixel there.
             if let Some(offset) = common_offset(field, patch, x, y) {
                 pixel.copy_from_slice(colour(offset));
                 continue;
@@ -108,8 +108,8 @@ fn collect(ballots: &mut Vec<Ballot>, field: &Field, patch: usize, [x, y]: [usiz
     }
 }
 
-/// Returns the offset from target to source that all patches over a pixel share; `None` if they differ or one has no
-/// match.
+/// Returns the offset from target to source that all patches over a pixel share; `None` if the offsets differ or a
+/// patch has no match.
 #[inline]
 fn common_offset(field: &Field, patch: usize, x: usize, y: usize) -> Option<u32> {
     let (columns, rows) = (fields_over(x, patch, field.width), fields_over(y, patch, field.height));
@@ -122,8 +122,8 @@ fn common_offset(field: &Field, patch: usize, x: usize, y: usize) -> Option<u32>
     (first != NONE && rows.into_iter().all(agrees)).then_some(offset)
 }
 
-/// Returns the exemplar pixel that all patches over a target pixel place there; `None` if they differ or one has no
-/// match.
+/// Returns the exemplar pixel that all patches over target pixel (`x`, `y`) place there; `None` if the patches
+/// disagree or one of them has no match.
 pub fn origin(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, usize)> {
     common_offset(field, patch, x, y).map(|offset| unpack(offset.wrapping_add(pack(x, y))))
 }

@@ -62,7 +62,8 @@ impl Picture {
         self.pixels * paths * self.pilot.seconds_per_path.max(1e-12)
     }
 
-    /// Returns the expected error with uniform sampling. The curve is valid for whole nets; other numbers of paths
+    /// Returns the expected error with uniform sampling. The curve is valid if the paths of each replication (point
+    /// sequence) of a pixel form one whole net, that is, if their number is a power of two. Other numbers of paths
     /// combine several nets, whose errors are treated as independent. More paths may therefore even increase the
     /// error: a few paths beyond a whole net contribute little but their own error.
     fn error(&self, paths: u32) -> f64 {
@@ -83,7 +84,9 @@ impl Picture {
         Curve { min_seconds: self.seconds(MIN_PATHS), max_seconds: self.seconds(MAX_PATHS), points }
     }
 
-    /// Returns the settings for a time in seconds with uniform sampling, or for the error expected after that time.
+    /// Returns the settings for a time in seconds, which is allocated on the curve of uniform sampling. For a goal in
+    /// seconds, the settings use this time. For an error goal, they aim at the error that the curve has after this
+    /// time.
     pub fn plan(&self, params: &render::Params, goal: Goal, seconds: f64) -> Rendering {
         let plain = render::Params {
             target_error: 0.0,
@@ -114,7 +117,8 @@ impl Picture {
                 uniform(counts.find(|&paths| self.error(paths) <= wanted).unwrap_or(ADAPTIVE_FROM as u32))
             }
             Goal::Seconds(_) => {
-                // Use as many paths as the time allows, or fewer that form whole nets.
+                // Candidates are the largest number of paths that the time allows, and that number with its lowest
+                // bits cleared. Use the candidate with the smallest expected error.
                 let max_paths = count(uniform_paths);
                 let whole = (0..max_paths.ilog2())
                     .map(|bits| max_paths >> bits << bits)

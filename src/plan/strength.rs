@@ -84,8 +84,9 @@ impl Strength {
         self.half_width * (f64::from(TRIAL) / paths).sqrt()
     }
 
-    /// Returns the settings for a time in seconds, or for the error expected after that time; and the expected time
-    /// and error. The error is the relative half-width of the solution's interval.
+    /// Returns the settings, and the expected time and error. For a goal in seconds, the settings use the time
+    /// `seconds`. For an error goal, they aim at the error expected after this time. The error is the relative
+    /// half-width of the solution's interval.
     pub fn plan(&self, params: &relight::Params, goal: Goal, seconds: f64) -> (relight::Params, Expected) {
         let paths = (seconds / self.seconds_per_path).clamp(SOLUTION_PATHS[0], SOLUTION_PATHS[1]);
         let error = self.half_width(paths);

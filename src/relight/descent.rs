@@ -20,7 +20,8 @@ const MAX_HALVINGS: usize = 30;
 const ARMIJO: f64 = 1e-4;
 /// Length of the first step, in the units of the variables. [origin not recorded]
 const FIRST_STEP: f64 = 0.05;
-/// The search ends when a step decreases the value by at most this share of it. [origin not recorded]
+/// The search ends when a step decreases the function by at most this share of the function's value. [origin not
+/// recorded]
 const MIN_RELATIVE_GAIN: f64 = 1e-10;
 
 impl<const N: usize> Bounds<N> {

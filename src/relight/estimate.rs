@@ -17,7 +17,7 @@ pub(super) fn standard_error(values: &[f64; BATCHES]) -> f64 {
     (values.iter().map(|v| (v - centre) * (v - centre)).sum::<f64>() / (n - 1.0) / n).sqrt()
 }
 
-/// Returns the mean over all batches but one, whose value is `part`.
+/// Returns the mean over all batches except one; `part` is the value of that batch.
 pub(super) fn without(mean: f64, part: f64) -> f64 {
     let n = BATCHES as f64;
     (n * mean - part) / (n - 1.0)

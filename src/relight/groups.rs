@@ -70,7 +70,7 @@ impl Default for GroupParams {
 /// The result for one goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Mean radiance of the goal's target surface, in cd/m² per channel.
+    /// Mean radiance of the goal's surface or grid, in cd/m² per channel.
     pub achieved: DVec3,
     /// Half-widths of the 95 % confidence intervals of `achieved`, for fixed powers.
     pub half_width: DVec3,

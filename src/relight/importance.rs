@@ -1,12 +1,13 @@
-//! The importance map: how much each point of the emissive surface contributes to the target.
+//! The importance map: how much each point of the emissive surface contributes to the mean radiance of the target
+//! surface.
 //!
-//! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`. Paths from the
-//! target, in a scene with uniform emission on the surface, estimate the integrals of `I` over the cells of the
-//! surface's texture coordinates once. After that, any texture at any scale, rotation and offset costs one dot
-//! product, without tracing.
+//! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`, where `I` is the
+//! importance. The texture space of the emissive surface is divided into cells. The integral of `I` over each cell is
+//! estimated once, with paths that start at the target while the surface emits uniformly. After that, the response to
+//! any texture at any scale, rotation and offset is a dot product, without tracing.
 //!
-//! Cells limit the bandwidth: within a cell, `I` is taken as constant. Among matt surfaces `I` is smooth, and the
-//! error is proportional to the squared size of a cell; [`Importance::respond`] estimates it.
+//! Cells limit the resolution: within a cell, `I` is taken as constant. Among matt surfaces `I` is smooth, and the
+//! error is proportional to the squared size of a cell; [`Importance::respond`] estimates this error.
 
 use super::bins::{Bins, Division};
 use super::estimate::BATCHES;
@@ -31,7 +32,7 @@ pub struct MapParams {
     /// Number of cells along u and v, each in `[1, 512]`.
     pub width: usize,
     pub height: usize,
-    /// Stopping conditions; their error is that of the response to uniform emission. `quantity` is ignored.
+    /// Stopping conditions. The target error applies to the response to uniform emission. `quantity` is ignored.
     pub tracing: Params,
 }
 
@@ -75,10 +76,11 @@ pub(super) struct Cells {
 /// Maximum number of cells along each side; a map of this size takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// Limits of the number of look-ups along each side of a cell, which is normally the number of texels that the cell
-/// covers. The maximum is `MAX_LOOK_UPS`. The minimum is `LOOK_UPS_ACROSS` divided by the number of cells along that
-/// side, but between 4 and `MIN_LOOK_UPS`. With fewer look-ups, texels that cell borders cut would get wrong weights,
-/// which biases periodic patterns. [origin not recorded]
+/// The emission of a cell is averaged over a grid of texture look-ups. Along each side of the cell, the number of
+/// look-ups is the number of texels that the side covers, within a minimum and a maximum. The maximum is
+/// `MAX_LOOK_UPS`. The minimum is `LOOK_UPS_ACROSS` divided by the number of cells along that side of the map, but
+/// between 4 and `MIN_LOOK_UPS`. With fewer look-ups, texels that cell borders cut would get wrong weights, which
+/// biases periodic patterns. [origin not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;

@@ -114,7 +114,7 @@ impl Lamps {
         Self { count: centres.len(), labels, division: Division::Triangles { first }, centres, sizes }.checked()
     }
 
-    /// Makes each punctual light of the scene a lamp; surfaces are no lamps.
+    /// Makes each punctual light of the scene a lamp; surfaces do not count as lamps.
     pub fn of_lights(scene: &Scene) -> Result<Self> {
         let place = |light: &PunctualLight| match *light {
             PunctualLight::Point { position, .. }

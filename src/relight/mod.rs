@@ -63,7 +63,8 @@ pub struct Input<'a> {
     pub world: &'a World,
     /// Index of the emitting material to solve for.
     pub emitter: usize,
-    /// The target surface: (mesh, triangle) of each of its triangles, whose winding faces the side to match.
+    /// The triangles of the target surface, each as (mesh, triangle). They wind counter-clockwise as seen from the
+    /// side to match.
     pub target_triangles: &'a [(usize, usize)],
     /// Mean radiance of the target to achieve, in cd/m² per channel, ≥ 0. For [`Quantity::Incident`], it is the
     /// radiance of a white surface in the same light, illuminance / π.

@@ -27,8 +27,8 @@ pub enum Fit {
 /// The geometry of a target: where its light is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place<'a> {
-    /// A surface: (mesh, triangle) of each of its triangles, whose winding faces the side to match. Lamps on the
-    /// surface are excluded.
+    /// A surface, given by its triangles as (mesh, triangle). They wind counter-clockwise as seen from the side to
+    /// match. Lamps on the surface are excluded.
     Surface(&'a [(usize, usize)]),
     /// A calculation grid in the air: a parallelogram given by a corner and two edges, lit on the side of `normal`.
     /// Its light is that of a white surface there, illuminance / π.

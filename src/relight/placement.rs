@@ -70,7 +70,8 @@ impl Pose {
 pub struct PlaceParams {
     pub aim: Aim,
     /// Bounds: offsets in `[-16, 16]`, scales in `[1/64, 64]`, rotations in `[-2π, 2π]`. Parameters with equal bounds
-    /// are fixed. Offsets over at least a period and rotations over at least a full turn are unbounded.
+    /// are fixed. An offset whose range covers a period of the texture is unbounded, and so is a rotation whose range
+    /// covers a full turn.
     pub min: Pose,
     pub max: Pose,
     /// Number of starting points, in `[1, 4096]`.

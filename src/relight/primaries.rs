@@ -110,7 +110,7 @@ mod tests {
         let mixture = mix_primaries(&[warm, cold], FREE, DVec3::Z).unwrap();
         let alone = cold.z / cold.length_squared();
         assert!(mixture.drives[0] == 0.0 && (mixture.drives[1] - alone).abs() < 1e-6, "{mixture:?}, expected {alone}");
-        // With bounded drives, the mixture of a colour that is too bright is as bright as possible.
+        // If a colour is too bright for the bounded drives, all drives are at their maximum.
         let bounded = mix_primaries(&[warm, cold], 1.0, (warm + cold) * 10.0).unwrap();
         assert_eq!((bounded.drives, bounded.reached), (vec![1.0; 2], false));
         // No mixture on a fine grid of drives is nearer.

@@ -38,8 +38,8 @@ pub struct Goal<'a> {
 
 /// Maximum number of goals. [convention]
 pub const MAX_GOALS: usize = 64;
-/// Maximum number of lamps × goals. Each pair takes [`BATCHES`] colours of memory, twice while results are assembled.
-/// [convention]
+/// Maximum number of lamps × goals. For each pair of a lamp and a goal, [`BATCHES`] colours are stored, and twice as
+/// many while results are assembled. [convention]
 pub const MAX_PAIRS: usize = 1 << 20;
 
 /// A mean over batches with its standard error, per channel.
@@ -70,7 +70,8 @@ impl Estimate {
     }
 }
 
-/// The response of each goal to each lamp or group of lamps.
+/// The response of each goal to each lamp or group of lamps: the mean radiance of the goal's surface or grid under the
+/// light of this lamp or group alone.
 #[derive(Clone, Debug)]
 pub struct Responses {
     lamps: usize,
@@ -163,17 +164,17 @@ impl Responses {
         self.goals.len()
     }
 
-    /// Mean radiance of a goal under one lamp, in cd/m².
+    /// Mean radiance of a goal's surface or grid under one lamp, in cd/m².
     pub fn lamp(&self, goal: usize, lamp: usize) -> Estimate {
         Estimate::of(|batch| self.batch(goal, batch)[lamp])
     }
 
-    /// Mean radiance of a goal under all lamps.
+    /// Mean radiance of a goal's surface or grid under all lamps.
     pub fn all(&self, goal: usize) -> Estimate {
         Estimate::of(|batch| self.batch(goal, batch).iter().sum())
     }
 
-    /// Mean radiance of a goal under all light except the lamps.
+    /// Mean radiance of a goal's surface or grid under all light except the lamps.
     pub fn background(&self, goal: usize) -> Estimate {
         Estimate::of(|batch| self.goals[goal].background[batch])
     }

@@ -47,7 +47,8 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
 }
 
 /// Computes the distances of the advected matches, and selects the patches that keep their match. A patch keeps its
-/// match if the error lies left of the knee, unless the patch is in a block that is chosen for new matches.
+/// match if the error is within the budget (left of the knee of the sorted errors), unless the patch lies in a block
+/// that is chosen for new matches.
 pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
     let mut picture = level.problem.blank_picture()?;
     paint(&mut picture, field, level.problem, params.vote, job, |_| true)?;

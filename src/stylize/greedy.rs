@@ -12,7 +12,7 @@ const COHERENCE: f64 = 5.0;
 
 /// Paints the centre of every patch in scan order, from the patch's nearest match or from a coherent match, which
 /// continues the match of a neighbour painted earlier. A coherent match is preferred if its distance is within the
-/// tolerance. Each pixel depends on the pixels before it, so the function runs on one thread.
+/// tolerance of `COHERENCE`. Each pixel depends on the pixels before it, so the function runs on one thread.
 pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, depth: usize, job: Job) -> Result<()> {
     let patch = level.problem.patch;
     let half = patch / 2;

@@ -172,8 +172,8 @@ fn rematch(
 ) -> Result<Option<Vec<Pass>>> {
     let State { field, picture, kept } = state;
     // The distance of a match changes only if the patch contains a changed pixel, so rematch only these patches. The
-    // first polishing iteration is an exception: it rematches all patches, because they were assigned under the
-    // budget.
+    // first iteration of `Params::polish` is an exception: it rematches all patches, because they were assigned under
+    // the budget.
     let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
     let rematches_all = k == 0 || polishes && k == params.finest_iterations;
     let mut changed = if rematches_all {

@@ -1,4 +1,5 @@
-//! Predicts the time and the energy that settings take, from pilot runs at reduced resolution.
+//! Predicts, for given settings, the run time and the final energy (the objective function, Eq. 3) from pilot runs at
+//! reduced resolution.
 
 use super::level::Problem;
 use super::multires;
@@ -15,7 +16,7 @@ const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
 
-/// Predicted time, in seconds, that settings take, and predicted energy of their result.
+/// Predicted run time of a stylisation in seconds, and predicted energy (Eq. 3) of its result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prediction {
     pub seconds: f64,
@@ -36,8 +37,8 @@ pub struct PilotRuns<'a> {
     /// The problem at full resolution, and its successive halves down to the lowest resolution used.
     problems: Vec<Problem>,
     preparing: f64,
-    /// Measurements at the highest pilot resolution: for the reference settings, and for other settings after
-    /// [`Self::refine`]; else `None`.
+    /// Measurements at the highest pilot resolution, one per element of `ladder`. The reference settings have one from
+    /// the start, other settings after [`Self::refine`]; until then `None`.
     near: Vec<Option<Prediction>>,
     /// Measurements of all settings at the next lower resolution.
     middle: Vec<Prediction>,
@@ -130,8 +131,8 @@ impl<'a> PilotRuns<'a> {
         let [all, tried, middle] =
             [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
         let ratio = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
-        // If the settings ran at the middle resolution only, assume that their ratio to the reference settings is
-        // equal at the highest pilot resolution.
+        // If the settings ran at the middle resolution only, compute their time and energy there relative to the
+        // reference settings, and assume the same ratios at the highest pilot resolution.
         let usual = self.near[self.usual].unwrap_or_default();
         let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
         let near = self.near[settings].unwrap_or(Prediction {

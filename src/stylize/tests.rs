@@ -172,7 +172,7 @@ fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
     assert!(usage.windows(2).all(|w| w[1].used > w[0].used && w[1].entropy > w[0].entropy), "{usage:?}");
     assert!(usage[3].used > 0.95, "{usage:?}");
     // The penalty costs similarity, which the energy reports; the penalty itself is not part of the energy. (The run
-    // with weight 0 is left out, because it searches fewer patches again.)
+    // with weight 0 is left out, because it rematches fewer patches in each iteration.)
     let energy = runs.each_ref().map(|run| *run.report.levels.last().unwrap().energy.last().unwrap());
     assert!(energy[1] < energy[2] && energy[2] < energy[3], "{energy:?}");
     // The largest valid weight yields finite colours, and invalid weights are errors.

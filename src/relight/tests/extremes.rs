@@ -94,8 +94,8 @@ fn a_white_closed_room_and_rooms_of_any_size() {
         let responses = Pool::new(2)
             .unwrap()
             .run(|| lamp_responses(&world, 1, &lamps, &[grid], &params, Monitor::default().job()).unwrap());
-        // Every wall emits and reflects e / (1 - ρ) = 2 in total; each of the six walls is a lamp and contributes to
-        // it.
+        // In total, every wall emits and reflects e / (1 - ρ) = 2. Each of the six walls is a lamp and contributes to
+        // this total.
         let all = responses.all(0);
         assert_eq!(lamps.count(), 6);
         assert!((all.mean.x - 2.0).abs() < 4.0 * all.standard_error.x + 1e-5, "size {size}: {all:?}");
@@ -110,7 +110,7 @@ fn a_white_closed_room_and_rooms_of_any_size() {
     assert!((mean / (1.0 / 0.06) - 1.0).abs() < 0.1, "{mean}");
 }
 
-/// No light of a convex vault's lamps returns to the vault in empty space, and the error says so.
+/// In empty space, light from the lamps of a convex vault never returns to the vault. The error message says so.
 #[test]
 fn a_convex_ceiling_receives_no_light_of_its_own() {
     let (apex, ring) = (Vec3::Y, |i: u32| Vec3::new((i as f32 * 0.785).cos(), 0.0, (i as f32 * 0.785).sin()) * 2.0);

@@ -173,7 +173,8 @@ fn every_reason_for_a_missed_goal_is_reported() {
     let redless = World::build(Arc::new(redless), Monitor::default().job()).unwrap();
     let reason = reason_for(&redless, &[floor(Vec3::splat(5.0))], &free);
     assert!(reason.contains("in red") && reason.contains("no light of these lamps finds its way there"), "{reason}");
-    // The groups cannot produce a colour; then the goals contradict each other, with fixed and with free colours.
+    // Test a colour that the groups cannot produce, then goals that contradict each other, with fixed and with free
+    // colours.
     let reason = reason_for(&world, &[floor(Vec3::new(9.0, 5.0, 1.0))], &kept);
     assert!(reason.contains("a colour that the groups do not have"), "{reason}");
     let torn = [floor(Vec3::splat(5.0)), floor(Vec3::splat(9.0))];
@@ -185,7 +186,8 @@ fn every_reason_for_a_missed_goal_is_reported() {
         reason.contains("luminance") && reason.contains("different things") && !reason.contains("colour"),
         "{reason}"
     );
-    // The groups reach their bound; then other lights exceed the target, so the power would have to be negative.
+    // Test powers at their bound, then other lights that exceed the target, so that the power would have to be
+    // negative.
     let reason =
         reason_for(&world, &[floor(Vec3::splat(1e6))], &GroupParams { max_scale: vec![1.0; 2], ..kept.clone() });
     assert!(reason.contains("all groups are at their largest power"), "{reason}");
@@ -235,13 +237,15 @@ fn limits_count_on_one_side() {
         powers(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
     };
     let one = |least, constraint| at(0.0, 0.0, least, constraint);
-    // With equal lamps, the darker desk gets its lower limit and the brighter desk exceeds it.
+    // If both lamps have the same power, the darker desk just reaches its lower limit, and the brighter desk exceeds
+    // it.
     let both = responses.all(0).mean.x.min(responses.all(1).mean.x);
     let solution = solve(one(40.0, Constraint::AtLeast), one(40.0, Constraint::AtLeast));
     assert!(solution.unreachable.is_none(), "{solution:?}");
     let power = solution.scale.iter().map(|x| x.x).fold(0.0, f64::max);
     assert!((power / (40.0 / both) - 1.0).abs() < 1e-3, "{solution:?} {both}");
-    // Equal lamps would violate the upper limit, so the lamp above the other desk takes over some power.
+    // Equal powers would violate the upper limit of the second desk, so the lamp above the first desk takes over some
+    // power.
     let solution = solve(one(40.0, Constraint::AtLeast), one(25.0, Constraint::AtMost));
     let light: Vec<f64> = solution.outcomes.iter().map(|o| o.achieved.x).collect();
     assert!(light[0] > 39.99 && light[1] < 25.01 && solution.unreachable.is_none(), "{solution:?}");

@@ -131,7 +131,7 @@ fn a_map_needs_texture_coordinates_and_has_the_same_bits() {
     };
     let image = trace(&scene, 1).unwrap().image().unwrap();
     assert_eq!(image.data, trace(&scene, 3).unwrap().image().unwrap().data);
-    // The centre of the ceiling contributes more to the floor than its corners.
+    // The centre of the ceiling contributes more light to the floor than the corners of the ceiling do.
     assert!(image.rgb(4, 4).x > 1.2 * image.rgb(0, 0).x);
     scene.meshes[1].uvs[0].clear();
     let error = trace(&scene, 1).unwrap_err();

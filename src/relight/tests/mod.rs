@@ -128,7 +128,7 @@ fn unreachable_targets_are_reported() {
     }
 }
 
-/// If a channel has a limit, the emission keeps its colour unless that violates the limit.
+/// If a channel has a limit, the emission keeps its colour unless the limit would then be violated.
 #[test]
 fn a_limit_binds_only_where_it_is_broken() {
     let scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::new(0.7, 0.5, 0.3), Vec3::splat(0.8), Vec3::ONE);
