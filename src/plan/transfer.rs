@@ -17,11 +17,11 @@ use std::sync::Arc;
 pub struct Lighting {
     pub relight: relight::Params,
     pub render: render::Params,
-    /// Expectation of [`Stage::Relight`]; its error is the relative half-width of the solution's interval.
+    /// Expected time and error of [`Stage::Relight`]. The error is the relative half-width of the solution's interval.
     pub solving: Expected,
-    /// Expectation of [`Stage::Render`]; its error is the picture's sampling error alone.
+    /// Expected time and error of [`Stage::Render`]. The error is the picture's sampling error alone.
     pub rendering: Expected,
-    /// Expectation of both stages together; its error is that of the resulting picture.
+    /// Expected time and error of both stages together. The error is that of the resulting picture.
     pub whole: Expected,
 }
 

@@ -92,8 +92,8 @@ pub struct GroupSolution {
 /// Solves for the powers of groups of lamps. `responses` are the responses to the groups ([`Responses::grouped`]),
 /// traced for the same goals; only the targets and weights of the goals may differ.
 ///
-/// `Unreachable` if no goal gets light from any group; an error too if parameters are out of range or the job is
-/// cancelled.
+/// Returns an `Unreachable` error if no goal gets light from any group. Also fails if parameters are out of range or
+/// the job is cancelled.
 pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams, job: Job) -> Result<GroupSolution> {
     check(responses, goals, params)?;
     let system = System { responses, goals, params };

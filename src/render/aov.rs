@@ -171,7 +171,8 @@ impl Surfaces {
         }
     }
 
-    /// Adds these sums to lossless f64 sums. Vote counts are lossless up to `ballot::CANDIDATES` different indices.
+    /// Adds these sums to the lossless f64 sums of a rendered part. Vote counts are exact for up to
+    /// `ballot::CANDIDATES` different indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {
             Aov::Object => ballot::cast(sums, self.object.candidate.into(), self.object.lead.into()),
@@ -194,7 +195,8 @@ impl Surfaces {
     }
 }
 
-/// State of a Boyer–Moore majority vote: the leading candidate, and by how many uncancelled votes it leads.
+/// State of a Boyer–Moore majority vote: the leading candidate, and its lead. The lead is the number of the
+/// candidate's votes that no vote for another candidate has cancelled.
 #[derive(Clone, Copy, Default)]
 struct Vote {
     candidate: u32,

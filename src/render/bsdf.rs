@@ -3,9 +3,9 @@
 //! The model has a Lambertian layer below a GGX layer (the top layer). At a roughness below 1/1000, the top layer is a
 //! perfect mirror. Of the light that passes the top layer, the share `transmission` continues in a straight line, as
 //! through a thin pane (`KHR_materials_transmission` without volume). Appendix B blends the two layers by the Fresnel
-//! factor of the half vector; its sum reflects up to twice the incident light at grazing angles. This module instead
-//! attenuates the diffuse layer by the albedo of the top layer, for the incoming and for the outgoing direction. A
-//! dielectric with an index of refraction of 1 has no top layer.
+//! factor of the half vector; the sum of both layers then reflects up to twice the incident light at grazing angles.
+//! This module instead attenuates the diffuse layer by the albedo of the top layer, for the incoming and for the
+//! outgoing direction. A dielectric with an index of refraction of 1 has no top layer.
 //!
 //! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
 
@@ -348,7 +348,8 @@ impl<'a> TopAlbedo<'a> {
     }
 }
 
-/// Tilts a shading normal that faces away from the viewer until the viewer sees the surface at a grazing angle.
+/// If the shading normal faces away from the viewer, tilts it until it is almost perpendicular to the view direction,
+/// so that the viewer sees the surface at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
     // Smallest cosine between the tilted normal and the viewer's direction. [origin not recorded]
     const MIN_COSINE: f32 = 1e-3;

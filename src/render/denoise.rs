@@ -6,8 +6,8 @@
 //! which preserves textures. Each level averages a pixel with eight neighbours, whose distance doubles from level to
 //! level. The weight of a neighbour falls with its distance from the pixel's plane, with the angle between the
 //! normals, with the difference in albedo, and with the difference in luminance relative to the standard errors of
-//! both. The filter propagates the variance of each average to the next level. With zero variance it leaves the image
-//! unchanged.
+//! both luminances. The filter propagates the variance of each average to the next level. With zero variance it leaves
+//! the image unchanged.
 //!
 //! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, and changes their
 //! radiance by about their standard error. [`Output::bias`] estimates this bias; final images are rendered without the
@@ -136,7 +136,7 @@ fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: J
     Ok(image)
 }
 
-/// Returns the guide images in one array; within each row the channels follow each other as planes.
+/// Returns the guide images in one array. Each row stores its channels one after the other.
 fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *input.albedo;
     let mut out = try_vec(GUIDE * width * height, 0.0f32)?;
@@ -152,8 +152,8 @@ fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     Ok(out)
 }
 
-/// Returns a half divided by the albedo, with the variance of its luminance as fourth channel. Within each row the
-/// channels follow each other as planes.
+/// Returns a half divided by the albedo, with the variance of its luminance as fourth channel. Each row stores its
+/// channels one after the other.
 fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *half;
     let mut out = try_vec(LIGHT * width * height, 0.0f32)?;

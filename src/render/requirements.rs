@@ -206,8 +206,8 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
 }
 
 impl Requirements {
-    /// Adds the kinds of scattering that a material can cause, and its albedo. `extremes` are its extreme parameter
-    /// sets.
+    /// Adds the kinds of scattering that a material can cause, and the material's albedo bound. `extremes` are the
+    /// parameter sets that bound the material (see [`extremes`]).
     fn include_material(
         &mut self,
         index: usize,
@@ -321,8 +321,8 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Returns the extreme parameter sets of a material. Between them, all parameters of the layers are linear or
-/// monotone.
+/// Returns the parameter sets of a material with the smallest and largest metalness and roughness. Between these sets,
+/// all parameters of the layers are linear or monotone.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);

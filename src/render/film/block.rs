@@ -21,7 +21,7 @@ const BLOCKS: usize = AREA / MAX_SHARED;
 /// Longer side of a block in pixels.
 const LONGER_SIDE: usize = 4;
 
-/// A pixel of a block, with the length and the seed of its paths in one replication.
+/// A pixel of a block, with the length limit and the seed of its paths in one replication.
 pub struct BlockPixel {
     /// Index of the pixel in its tile.
     pub pixel: usize,

@@ -7,8 +7,8 @@
 //! to be truncated. Components in the dead state are dropped. Once all components are in absorbing states, further
 //! scattering costs nothing.
 //!
-//! A subpath that several paths reuse is tracked only once, separately for each state in which these paths may join
-//! it.
+//! A subpath that several paths reuse is traced only once, and tracked separately for each state in which these paths
+//! may join it.
 
 use super::alphabet::Scatter;
 use super::automaton::{Automaton, DEAD};
