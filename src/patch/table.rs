@@ -48,7 +48,8 @@ impl Means {
     }
 }
 
-/// The patches of one image in the order of the tree's leaves, in which similar patches are mostly close.
+/// The patches of one image in the order of the tree's leaves. In this order, similar patches are mostly close to each
+/// other.
 pub struct Table {
     order: Vec<u32>,
     /// Channel and value of each split; the children of node `i` are `2i + 1` and `2i + 2`.

@@ -16,8 +16,7 @@ pub struct Stylisation {
 
 /// Plans a stylisation. Changes only the numbers of iterations and sweeps in `params`; ignores `input.previous`.
 ///
-/// # Errors
-/// A goal or a setting out of range; those of [`crate::stylize::run`].
+/// # Errors A goal or a setting out of range; the errors of [`crate::stylize::run`].
 pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job: Job) -> Result<Stylisation> {
     goal.check()?;
     let (ladder, usual) = ladder(params);
@@ -62,8 +61,8 @@ fn ladder(params: &Params) -> (Vec<Params>, usize) {
     (rungs.iter().map(rung).collect(), 1)
 }
 
-/// Returns the settings with the smallest error within the time, or with the shortest time for the error; if none
-/// reach the goal, those that come nearest.
+/// Returns the index of the settings with the smallest error within the time, or with the shortest time for the error.
+/// If no settings reach the goal, returns the index of the settings that come nearest to it.
 fn chosen(rungs: &[Expected], goal: Goal) -> usize {
     let indices = 0..rungs.len();
     let quickest = |a: &usize, b: &usize| rungs[*a].seconds.total_cmp(&rungs[*b].seconds);

@@ -209,7 +209,7 @@ mod tests {
         // Identical unknowns get equal shares beyond their preferred values.
         let x = solve(1, &[1.0, 1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0, 3.0], &[FREE; 3]);
         assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 1.0).abs() < 1e-7 && (x[2] - 4.0).abs() < 1e-7, "{x:?}");
-        // The first unknown is bounded by 1, so the second gives the rest.
+        // The first unknown is bounded by 1, so the second unknown contributes the remaining 5.
         let x = solve(1, &[1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0], &[1.0, FREE]);
         assert!(x[0] == 1.0 && (x[1] - 5.0).abs() < 1e-7, "{x:?}");
         // A negative solution is clipped to 0.

@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn patches_of_texels_and_pieces_of_meshes_are_lamps() {
-        // The picture has two regions; one of them is connected only at a corner.
+        // The picture has two regions. One of them consists of two texels that touch only at a corner.
         let rows = ["#....", ".#..#", "....#"];
         let image = Image::from_fn(5, 3, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
         let lamps = Lamps::of_texture(&image).unwrap();
@@ -276,7 +276,8 @@ mod tests {
         assert_eq!([at(-0.5, 1.5), at(5.5, 0.5)], [Some(1), Some(0)]);
         assert!((lamps.centres()[1] - Vec3::new(0.9, 2.0 / 3.0, 0.0)).length() < 1e-6);
         assert!(Lamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
-        // Lamps of equal area are of one type. Areas of four and five texels are too, but not areas of two and three.
+        // Lamps of equal area are of one type. Areas of four and five texels are also of one type, but areas of two
+        // and three texels are not.
         assert_eq!(lamps.types(), (vec![0, 0], 1));
         let labels = vec![1, 1, 0, 2, 2, 2, 0, 3, 3];
         assert_eq!(Lamps::of_labels(9, 1, labels).unwrap().types(), (vec![0, 1, 0], 2));

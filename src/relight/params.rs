@@ -31,7 +31,7 @@ pub enum Place<'a> {
     /// match. Lamps on the surface are excluded.
     Surface(&'a [(usize, usize)]),
     /// A calculation grid in the air: a parallelogram given by a corner and two edges, lit on the side of `normal`.
-    /// Its light is that of a white surface there, illuminance / π.
+    /// Its light is the radiance that a white surface there would have: illuminance / π.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 

@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn colours_within_the_cone_are_mixed_exactly() {
-        // Three primaries have a unique solution: that of the linear system.
+        // With three primaries, the linear system has a unique solution.
         let led = [DVec3::new(1.2, 0.1, 0.0), DVec3::new(-0.2, 0.9, 0.1), DVec3::new(0.0, -0.1, 0.8)];
         let drives = [0.5, 0.25, 2.0];
         let wanted: DVec3 = led.iter().zip(drives).map(|(p, d)| *p * d).sum();

@@ -13,7 +13,7 @@ use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
 
-/// Which part of a goal's light has to meet the target.
+/// Which property of the light has to meet a goal's target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aspect {
     /// Every channel, so that the colour of the light counts.

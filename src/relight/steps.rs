@@ -116,8 +116,8 @@ mod tests {
         assert_eq!(terms.round(&[0.1], &[0.2, 0.5], &[0.1]), [0.2]);
     }
 
-    /// Joint rounding is never worse than separate rounding, no change of a single group improves it, and its mean
-    /// error is less than 0.6 of that of separate rounding.
+    /// Joint rounding is never worse than separate rounding, and no change of a single group improves it. Its mean
+    /// error is less than 0.6 times the mean error of separate rounding.
     #[test]
     fn joint_choices_against_all_combinations() {
         let mut rng = Rng::new(11, &[]);

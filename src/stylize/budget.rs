@@ -175,7 +175,7 @@ mod tests {
         outlier[999] = u32::MAX - 1;
         let b = budget(&outlier);
         assert!(b.knee > 0.0 && b.knee <= 1.0 && b.total >= 0.0);
-        // A step: a fifth of the matches fits, the rest is forced (Fig. 7).
+        // A step: a fifth of the matches is feasible, and the others are forced into unsuitable positions (Fig. 7).
         let step = curve(1000, |x| if x < 0.2 { 0.01 } else { 0.9 + 0.1 * x });
         assert!((super::budget(&step).knee - 0.2).abs() < 0.01);
         // In the last curve, most errors are zero.

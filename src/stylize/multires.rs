@@ -221,7 +221,8 @@ fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     Ok(Output { image, field, report })
 }
 
-/// Finds the nearest exemplar patch of each target patch that has changed; the matches of the others are up to date.
+/// Finds the nearest exemplar patch of each target patch that has changed. The matches of all other target patches are
+/// up to date.
 fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, round: usize, job: Job) -> Result<()> {
     let changed = |i: usize| changed[i];
     let search = level.forward();

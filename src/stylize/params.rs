@@ -88,8 +88,8 @@ pub struct Params {
     pub polish: usize,
     /// PatchMatch sweeps per retrieval, in `[1, 100]`.
     pub sweeps: usize,
-    /// Share of the target patches that are matched under the budget, in `[0, 1]`; the rest is then matched without
-    /// it.
+    /// Share of the target patches that are matched under the budget, in `[0, 1]`. All other target patches are then
+    /// matched without the budget.
     pub coverage: f32,
     /// Maximum number of retrieval passes per iteration, in `[1, 1000]`.
     pub passes: usize,

@@ -1,7 +1,7 @@
 //! Adaptive sampling: decides how many paths each tile gets in the next pass.
 //!
-//! The first passes render a coarse image. The next ones give every pixel a few paths, then twice as many, and so on,
-//! since sample points are stratified best at powers of two. With an error target, tiles get individual numbers of
+//! The first passes render a coarse image. The next passes give every pixel a few paths, then twice as many, and so
+//! on, since sample points are stratified best at powers of two. With an error target, tiles get individual numbers of
 //! paths after [`MIN_UNIFORM_PATHS`] paths per pixel. If the target limits the error of the whole image, the number of
 //! paths is proportional to the standard deviation of the tile's paths, absolute or relative to the tile's radiance
 //! (Neyman 1934). If the target limits the error of each pixel, the number follows from the tile's own error. Each

@@ -1,4 +1,4 @@
-//! Tracks a light path through the automaton of light path expressions, as components: each is a state of the
+//! Tracks a light path through the automaton of light path expressions, as components. A component is a state of the
 //! automaton with its share of the path's light.
 //!
 //! A sample at a surface with a diffuse and a glossy layer stands for both layers, as it is weighted by the sum of the
