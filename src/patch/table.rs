@@ -131,8 +131,7 @@ impl Search<'_> {
                 let mut best = Best { at: before.at[i], error: before.error[i], x, y };
                 if count > 0 && active(i) {
                     let middle = table.leaf_of(query_means.of(pack(x, y))).min(count - 1);
-                    // Walk outwards on both sides, skipping patches that are not allowed, for a bounded number of
-                    // steps.
+                    // Walk outwards on both sides for a bounded number of steps. Skip patches that are not allowed.
                     let mut left = tries;
                     for step in 0..16 * tries {
                         let at = if step % 2 == 0 { middle + step / 2 } else { middle.wrapping_sub(step / 2 + 1) };

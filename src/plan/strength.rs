@@ -75,7 +75,8 @@ impl Strength {
         )
     }
 
-    /// Returns the contribution of a solution with the given relative half-width to the error of a picture.
+    /// Returns how much a solution contributes to the error of a picture, given the relative half-width of the
+    /// solution's interval.
     pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }

@@ -102,8 +102,9 @@ const MAX_CELLS: usize = 64;
 const MAX_DESCENTS: usize = 8;
 
 impl Importance {
-    /// Returns the target's light under a placed texture, without other light, and its derivatives with respect to the
-    /// offset along u and v, the scale along u and v, and the rotation. The texture is band-limited as in the search.
+    /// Returns the light of the target under a placed texture, without other light. Also returns the derivatives of
+    /// this light with respect to the offset along u and v, the scale along u and v, and the rotation. The texture is
+    /// band-limited as in the search.
     ///
     /// # Errors
     /// Cancelled.

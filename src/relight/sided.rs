@@ -3,8 +3,9 @@
 //! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r` for exact targets, the negative
 //! part of `r` for "at least", and the positive part for "at most". The function is convex, smooth and piecewise
 //! quadratic. Each step of Newton's method solves the problem with only the terms that are active at the current point
-//! ([`super::bounded`]), then moves to the minimum on the line to this solution. The method ends after finitely many
-//! steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in practice after a few.
+//! ([`super::bounded`]), then moves towards the solution, to the minimum of the function on this line. The method ends
+//! after finitely many steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in practice after
+//! a few.
 
 use super::bounded::{self, dot};
 use super::line_search::Slope;

@@ -73,9 +73,9 @@ pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3
     })
 }
 
-/// Adjusts the channels whose target is only a lower or an upper limit. Such a channel takes the mean scale of the
-/// channels whose exact target was met, which preserves the colour of the lamps, unless this scale violates its limit.
-/// If no exact target was met, the channel keeps the scale that just reaches its limit.
+/// Adjusts the channels whose target is only a lower or an upper limit. To preserve the colour of the lamps, such a
+/// channel takes the mean scale of the channels whose exact target was met, unless this scale violates the channel's
+/// limit. If no exact target was met, the channel keeps the scale that just reaches its limit.
 fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
     // A lower limit is met if the other light alone exceeds it.
     for (answer, _) in answers.iter_mut().zip(constraint).filter(|(_, constraint)| *constraint == Constraint::AtLeast) {

@@ -156,7 +156,7 @@ impl<'a> Bsdf<'a> {
     }
 
     /// Whether neighbouring pixels may share a path vertex with this BSDF. True for a BSDF that reflects light,
-    /// transmits none, and has no top layer smoother than [`SHAREABLE_ROUGHNESS`]. The result does not depend on the
+    /// transmits none, and has no top layer smoother than `SHAREABLE_ROUGHNESS`. The result does not depend on the
     /// view direction.
     #[inline]
     pub fn is_shareable(&self) -> bool {

@@ -67,11 +67,11 @@ const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Kernel weight of a neighbour in the same row or column, relative to the weight of the pixel itself: the binomial
 /// kernel. [convention]
 const TAP: f32 = 0.5;
-/// Ratio of the variance of one half to the variance of the mean of both halves. It is exact for independent halves.
+/// Ratio of two variances: of one half, and of the mean of both halves. It is exact for independent halves.
 /// [convention]
 const HALF: f32 = 2.0;
-/// Range weight: at strength 1, the weight of a neighbour falls by a factor e if the squared difference in luminance
-/// is this multiple of the sum of the two variances. [origin not recorded]
+/// Range weight: let the squared difference in luminance be this multiple of the sum of the two variances. Then, at
+/// strength 1, the weight of a neighbour falls by a factor e. [origin not recorded]
 const RANGE: f32 = 12.0;
 /// Plane weight: the weight falls by a factor e if the squared sine of the angle between the pixel's plane and the
 /// direction to the neighbour has this value. [origin not recorded]

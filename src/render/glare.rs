@@ -88,8 +88,8 @@ const MAX_SOLID_ANGLE: f64 = 0.1;
 /// Smallest length of the horizontal part of the unit vector along the line of sight. Steeper lines of sight are
 /// refused, because the position index needs to know which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
-/// An opening counts as seen edge-on if its projected area towards the eye is at most this share of the largest of its
-/// projected areas along its own axes. [rounding]
+/// Let the reference be the largest of an opening's projected areas along its own axes. The opening counts as seen
+/// edge-on if its projected area towards the eye is at most this share of the reference. [rounding]
 const EDGE_ON: f64 = 1e-6;
 /// Number of visibility rays along each side of each face of a luminous opening.
 const RAYS: usize = 16;

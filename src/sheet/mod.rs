@@ -75,8 +75,8 @@ pub struct Aligned {
     pub error: f64,
 }
 
-/// Finds the marks in a photo (linear RGB) of a sheet that was printed for a picture of `width × height` pixels with
-/// the same parameters, and resamples the photo onto the picture.
+/// Finds the marks in a photo (linear RGB) of a sheet, and resamples the photo onto the picture. The sheet must have
+/// been printed for a picture of `width × height` pixels with the same parameters.
 ///
 /// # Errors
 /// `Degenerate` if fewer than six marks are found in a consistent arrangement.

@@ -19,9 +19,9 @@ use crate::rng::Rng;
 /// Side, in pixels, of the blocks whose matches are kept or discarded together.
 const BLOCK: usize = 24;
 
-/// Advects the field of the previous frame into this frame: each patch takes the match of the patch from which its
-/// centre comes. `motion` has the resolution of the guides; this function halves it if the problem has half that
-/// resolution (`halved` is not 0).
+/// Advects the field of the previous frame into this frame: `motion` gives the position of a patch's centre in the
+/// previous frame, and the patch takes the match found there. `motion` has the resolution of the guides; this function
+/// halves `motion` if the problem has half that resolution (`halved` is not 0).
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
     if halved == 0 {
         return advect(before, motion, problem.patch);

@@ -34,7 +34,8 @@ pub struct PilotRuns<'a> {
     ladder: &'a [Params],
     usual: usize,
     clock: &'a (dyn Fn() -> Duration + Sync),
-    /// The problem at full resolution, and its successive halves down to the lowest resolution used.
+    /// The problem at full resolution, followed by the problems at successively halved resolutions, down to the lowest
+    /// resolution used.
     problems: Vec<Problem>,
     preparing: f64,
     /// Measurements at the highest pilot resolution, one per element of `ladder`. The reference settings have one from

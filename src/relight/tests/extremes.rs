@@ -63,8 +63,8 @@ fn ceiling_and_overall_targets_differ() {
     assert!(ceiling.scale.y > 1.1 * overall.scale.y, "{ceiling:?} {overall:?}");
 }
 
-/// In a closed room whose surfaces all emit `e` and have the albedo `ρ`, `L = e / (1 - ρ)` everywhere, for any size of
-/// the room. In a closed room of albedo 0.99, paths are long.
+/// In a closed room whose surfaces all emit `e` and have the albedo `ρ`, the radiance is `L = e / (1 - ρ)` everywhere,
+/// for any size of the room. At an albedo of 0.99, paths are long.
 #[test]
 fn a_white_closed_room_and_rooms_of_any_size() {
     for size in [1e-6, 1.0, 1e6] {

@@ -43,8 +43,8 @@ const MAX_TILES: usize = 128;
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
 /// Largest number of tiles that the third pass renders. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Constant part of the selection weight of each tile, as a multiple of the mean standard deviation of all tiles, so
-/// that tiles without variance can be selected, too. [origin not recorded]
+/// Constant part of the selection weight of each tile, as a multiple of the mean standard deviation over all tiles. It
+/// lets tiles without variance be selected, too. [origin not recorded]
 const MIN_CHANCE: f64 = 0.5;
 /// Salt of the pilot's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
@@ -180,8 +180,9 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Returns the time per path of the image in seconds. It is the time per path of all pilot tiles together, times the
-/// ratio of the weighted to the unweighted time per path, because the selected tiles are not typical of the image.
+/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is corrected, because
+/// the selected tiles are not typical of the image: it is multiplied by the ratio of the weighted to the unweighted
+/// mean.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);

@@ -218,7 +218,7 @@ impl<'a> Trail<'a> {
     }
 
     /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits the components:
-    /// a share of the light passes through the pane, and, if the opacity is below 1, another share misses it.
+    /// a share of the light passes through the pane, and, if the opacity is below 1, another share misses the pane.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, before, ends, panes, sums, .. } = self;

@@ -45,8 +45,8 @@ fn grown_viewer(scale: f32) -> Camera {
     Camera { position: camera.position * scale, ..camera }
 }
 
-/// Returns the share of values at which `a` and `b / scale` differ by more than rounding, that is, by more than 1/1000
-/// of the value in `a`, or of the mean of `a` if that is larger.
+/// Returns the share of values at which `a` and `b / scale` differ by more than rounding. The tolerance is 1/1000 of
+/// the value in `a`, or of the mean of `a` if that is larger.
 fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
     let mean = a.data.iter().sum::<f32>() / a.data.len() as f32;
     let differs = |(a, b): (&f32, &f32)| (a - b / scale).abs() > 1e-3 * a.max(mean);
