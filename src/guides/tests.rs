@@ -87,8 +87,8 @@ fn motion_follows_the_camera_and_marks_occlusions() {
     assert!(still.data.iter().all(|v| v.is_nan() || v.abs() < 1e-2));
     assert!(defined(&still) > 120 * 90 * 95 / 100);
     let moved = motion(&now, &before).unwrap();
-    // If the camera moves right, everything moves left in the picture, the ball in front more than the wall. The
-    // previous positions are therefore farther right.
+    // If the camera moves right, the picture moves left, and the ball, which is nearer, moves farther than the wall.
+    // The previous positions are therefore farther right.
     let row: Vec<f32> = (0..120).map(|x| moved.pixel(x, 45)[0]).collect();
     let ball = moved.pixel(52, 45)[0];
     let wall = moved.pixel(5, 10)[0];

@@ -180,7 +180,8 @@ impl Tile {
         }
     }
 
-    /// Searches forwards and backwards. Returns whether any patch was searched.
+    /// Runs a sweep over the active patches of this tile, forwards and then backwards. Returns whether any patch was
+    /// searched.
     fn search(
         &mut self,
         search: &Search,
@@ -229,7 +230,7 @@ impl Tile {
         busy
     }
 
-    /// Joins forwards and backwards. Returns whether any match changed.
+    /// Runs [`Search::join`] on this tile, forwards and then backwards. Returns whether any match changed.
     fn join(&mut self, search: &Search, before: &Field, seam: u32, active: &(impl Fn(usize) -> bool + Sync)) -> bool {
         let count = self.width * self.height;
         let mut changed = false;

@@ -16,7 +16,8 @@ pub struct Stylisation {
 
 /// Plans a stylisation. Changes only the numbers of iterations and sweeps in `params`; ignores `input.previous`.
 ///
-/// # Errors A goal or a setting out of range; the errors of [`crate::stylize::run`].
+/// # Errors
+/// A goal or a setting out of range; the errors of [`crate::stylize::run`].
 pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job: Job) -> Result<Stylisation> {
     goal.check()?;
     let (ladder, usual) = ladder(params);

@@ -60,8 +60,8 @@ pub struct Importance {
 pub struct Response {
     /// Mean radiance of the target in cd/m² per channel, for texture values in cd/m².
     pub light: Estimate,
-    /// Difference between the result with cells of twice the side and this result, noise included. Where `I` is
-    /// smooth, the error of the result is a third of this difference.
+    /// Result with cells of twice the side, minus this result; it includes noise. Where `I` is smooth, this difference
+    /// is three times the error of the result.
     pub band_error: DVec3,
     measured: Vec<DVec3>,
 }

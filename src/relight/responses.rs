@@ -92,7 +92,7 @@ struct PerGoal {
 /// have larger errors. `params.quantity` is ignored, and so is `emitter` if the lamps are punctual lights.
 ///
 /// # Errors
-/// Parameters out of range; goals that do not exist or have no area; cancelled.
+/// Parameters out of range; goals whose surface does not exist or has no area; cancelled.
 pub fn lamp_responses(
     world: &World,
     emitter: usize,

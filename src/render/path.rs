@@ -18,8 +18,8 @@ use glam::{Vec2, Vec3};
 
 /// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
-/// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is about this share of
-/// the pixel's estimate or more. In rooms, the measured product of time and variance is smallest near this value.
+/// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is at least about this
+/// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value.
 /// [judged on rooms]
 const CERTAIN_SHARE: f32 = 0.5;
 /// Largest survival probability, so that a path between white walls ends eventually. The variance is infinite if the

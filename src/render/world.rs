@@ -50,7 +50,8 @@ pub struct Pane {
 impl World {
     /// Validates a scene, which may be empty, and prepares it for rendering. Call it on the library's own thread pool.
     ///
-    /// # Errors Invalid indices, sizes or values of the scene, which the message names; too many triangles; no memory;
+    /// # Errors
+    /// Invalid indices, sizes or values of the scene, which the message names; too many triangles; no memory;
     /// cancelled.
     pub fn build(scene: Arc<Scene>, job: Job) -> Result<Self> {
         check(&scene)?;

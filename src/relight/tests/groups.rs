@@ -1,4 +1,4 @@
-//! Tests of the responses of single lamps and of the powers of groups.
+//! Tests of the responses to single lamps, and of the solved powers of lamp groups.
 
 use super::*;
 use crate::image::Image;

@@ -65,8 +65,9 @@ impl Rendered {
 /// Merges the files of all parts, in any order, into the image. The scene, the camera and the parameters must be those
 /// with which the parts were rendered. Call it on the library's own thread pool.
 ///
-/// # Errors Parts of another render (the message names the difference); overlapping parts; missing paths (the message
-/// names the first hole); unreadable files; the errors of [`run`].
+/// # Errors
+/// Parts of another render (the message names the difference); overlapping parts; missing paths (the message names the
+/// first hole); unreadable files; the errors of [`run`].
 pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], job: Job) -> Result<Film> {
     check(camera, params)?;
     let guided = preview::guided(params);
