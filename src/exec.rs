@@ -85,7 +85,8 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
         self.changed.notify_all();
     }
 
-    /// Waits for the result. Drops the closure and returns `None` if `is_cancelled` becomes true before it runs.
+    /// Waits for the result. Drops the closure and returns `None` if `is_cancelled` becomes true before the closure
+    /// runs.
     fn result(&self, is_cancelled: impl Fn() -> bool) -> Option<T> {
         let mut state = lock(&self.state);
         loop {

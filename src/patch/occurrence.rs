@@ -1,10 +1,10 @@
 //! Counts how often each pixel of an image is used by matches, and penalises further use: Kaspar et al., "Self Tuning
 //! Texture Optimization" (2015).
 //!
-//! The occurrence Ω of a pixel is the number of matches that contain it, and ω its value under uniform usage of all
-//! allowed patches. The penalty of a match, added to its distance, is λ times the mean of Ω / ω over its pixels. ω is
-//! computed per pixel, since fewer patches contain pixels near a border: uniform usage then has the same penalty
-//! everywhere, and an identity field remains an identity.
+//! The occurrence Ω of a pixel is the number of matches that contain the pixel. Under uniform usage of all allowed
+//! patches, the occurrence of this pixel would be ω. The penalty of a match, added to its distance, is λ times the
+//! mean of Ω / ω over its pixels. ω is computed per pixel, since fewer patches contain pixels near a border: uniform
+//! usage then has the same penalty everywhere, and an identity field remains an identity.
 
 use super::domain::Domain;
 use super::field::Field;

@@ -50,8 +50,7 @@ pub(super) struct Problem<'a> {
 
 /// Maximum number of Newton steps; a few suffice. [convention]
 const MAX_STEPS: usize = 200;
-/// A term keeps its state (active or not) while the relative distance of its value from its limit is at most this.
-/// [rounding]
+/// A term keeps its state (active or not) if its value equals its limit up to this relative difference. [rounding]
 const ROUNDING: f64 = 1e-12;
 
 impl Problem<'_> {
@@ -141,9 +140,9 @@ impl Problem<'_> {
     }
 }
 
-/// Returns the common power `q ≥ 0` of all lamps that minimises `½ Σ ψ(a q − b)²`, with `a ≥ 0`, in closed form. Among
-/// several minima it returns the smallest, which uses the least light. If no term requires light, it returns the
-/// minimum nearest to 1, the current power.
+/// Returns, in closed form, the power `q ≥ 0` that minimises `½ Σ ψ(a q − b)²`, where all lamps have this power and `a
+/// ≥ 0`. Among several minima it returns the smallest, which uses the least light. If no term requires light, it
+/// returns the minimum nearest to 1, the current power.
 pub(super) fn common_power(responses: &[f64], right: &[f64], constraints: &[Constraint]) -> f64 {
     let rows = || {
         responses

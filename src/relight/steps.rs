@@ -40,8 +40,8 @@ impl Terms<'_> {
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
-        // Start once from the nearest level of every group, and once from the unrounded powers, which the first round
-        // rounds one group after the other.
+        // Start once from the nearest level of every group, and once from the unrounded powers, of which the descent
+        // then rounds one group after the other.
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));

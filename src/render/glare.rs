@@ -2,9 +2,9 @@
 //! Σ L² ω / p²)`, with background luminance Lb, and luminance L, solid angle ω and position index p of each luminaire.
 //!
 //! As in CIE 117, the luminance of a luminaire towards the eye is its intensity divided by the projected area of its
-//! luminous opening, and its solid angle is that area divided by the squared distance. Hidden parts of an opening do
-//! not count; rays from the eye to a grid of points on the opening find the visible parts. The background luminance is
-//! `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
+//! luminous opening, and its solid angle is this projected area divided by the squared distance. Hidden parts of an
+//! opening do not count; rays from the eye to a grid of points on the opening find the visible parts. The background
+//! luminance is `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
 //!
 //! Not modelled: emissive surfaces, the environment and lights without area as glare sources. The rating leaves them
 //! out, but reports their direct illuminance at the eye.

@@ -93,8 +93,8 @@ pub struct Params {
     pub coverage: f32,
     /// Maximum number of retrieval passes per iteration, in `[1, 1000]`.
     pub passes: usize,
-    /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if that is
-    /// closer than the patch's own match. With 0, the paper's assignment is unchanged.
+    /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if the
+    /// continued match is closer than the patch's own match. With 0, the paper's assignment is unchanged.
     pub settle: usize,
     /// Cost of a seam, that is, of two neighbouring patches whose matches do not continue each other, during the
     /// sweeps of `settle`; as a share of the mean error, in `[0, 100]`.
