@@ -152,7 +152,7 @@ pub(super) fn common_power(responses: &[f64], right: &[f64], constraints: &[Cons
             .map(|((a, b), constraint)| (*a, *b, *constraint))
             .filter(|row| row.0 > 0.0)
     };
-    // The minimum lies below the largest of the ratios b / a.
+    // The minimum lies at or below the largest of the ratios b / a.
     let last = rows().map(|(a, b, _)| b / a).fold(0.0, f64::max);
     let mut slope = Slope { start: 0.0, growth: 0.0, changes: Vec::new() };
     for (a, b, constraint) in rows() {
