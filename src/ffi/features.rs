@@ -315,7 +315,7 @@ pub unsafe extern "C" fn luxfer_features_set_strokes(
 }
 
 /// Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all
 /// holes.
 #[unsafe(no_mangle)]

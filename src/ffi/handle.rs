@@ -61,7 +61,7 @@ pub(super) fn read_tag(handle: *const c_void) -> Option<u64> {
     (!tag.is_null() && tag.is_aligned()).then(|| unsafe { (*tag).load(Ordering::Acquire) })
 }
 
-/// Returns the shell behind a handle; an error if the tag is not that of its kind.
+/// Returns the shell behind a handle; an error if its tag is not `H::TAG`.
 fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Object>> {
     if handle.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));

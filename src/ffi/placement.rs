@@ -134,8 +134,8 @@ versioned!(luxfer_placement, [192], {
 
 /// Starts a job that finds the best placement of a texture for the target. The texture is linear, in cd/m², and
 /// repeats. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
-/// LUXFER_INVALID_ARGUMENT if a setting is out of range.
+/// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job is already running. The job may
+/// end with LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start_placement(
     importance: *mut luxfer_importance,

@@ -315,11 +315,11 @@ impl Emitter {
     }
 }
 
-/// Starts a job that solves for the factor of the emission. params may be NULL for the defaults. The caller releases
-/// *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
-/// valid or a setting is out of range.
+/// Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
+/// caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
+/// LUXFER_UNREACHABLE if no emitted light can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or a
+/// setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,

@@ -224,9 +224,9 @@ pub unsafe extern "C" fn luxfer_segment_set_strokes(
 /// proposes a mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive
 /// strokes, or else the ceiling; for lamps it proposes lamps among the brightest regions of the mask of
 /// luxfer_segment_set_region. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
-/// if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not
-/// finite or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the features are missing or a job is already running. The job may end with
+/// LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ,
+/// a feature is not finite or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_start(
     segment: *mut luxfer_segment,

@@ -90,8 +90,8 @@ pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// that a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest
 /// lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without light would differ less from the photo than this one; the severity is the error of
-/// luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without any light would differ less from the photo than the synthesised texture does; the severity is the
+/// error of luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are missing;
 /// the severity is the share of the mask that is expected to be wrong.
