@@ -8,14 +8,14 @@ use crate::scene::{Camera, Material, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(5.4, 2.7, 9.0);
-/// Side of the ceiling's tiles in metres, and their number along x and z [convention].
+/// Side of the ceiling's tiles in metres, and their number along x and z. [convention]
 const TILE: f32 = 0.6;
 const TILES: [usize; 2] = [9, 15];
 /// Width and depth in metres of the bars that carry the tiles.
 const BAR: Vec2 = Vec2::new(0.024, 0.004);
-/// Side of a luminaire in metres; the rest of its tile is a white rim [convention].
+/// Side of a luminaire in metres; the rest of its tile is a white rim. [convention]
 const LUMINAIRE: f32 = 0.56;
-/// Luminance of the luminaires in cd/m² [convention].
+/// Luminance of the luminaires in cd/m². [convention]
 const LUMINANCE: f32 = 3000.0;
 /// Linear Rec.709 colour of a blackbody at 3500 K (CIE xy 0.4053, 0.3907), with luminance 1.
 const WARM_WHITE: Vec3 = Vec3::new(1.564, 0.892, 0.406);

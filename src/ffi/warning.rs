@@ -100,8 +100,8 @@ pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 /// the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
 /// large that floats have rounded them, it is the step of the rounding in metres.
 pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
-/// Luminaires of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not rate them; the
-/// severity is their number, and the message lists the first ones with their positions.
+/// Luminaires of a scene shine from points: they are invisible in renderings, and luxfer_image_get_glare does not rate
+/// them; the severity is their number, and the message lists the first ones with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 
 /// A warning: a reason to doubt a result.

@@ -95,7 +95,7 @@ fn new(path: &Path) -> io::Result<Way> {
     }
 }
 
-/// Maximum number of symbolic links in a chain. A longer chain counts as a loop, as in Linux [convention].
+/// Maximum number of symbolic links in a chain. A longer chain counts as a loop, as in Linux. [convention]
 const MAX_LINKS: usize = 40;
 
 /// Follows a chain of symbolic links and returns the path of its target, which need not exist.

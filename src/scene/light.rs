@@ -5,7 +5,7 @@ use crate::image::Image;
 use glam::Vec3;
 
 /// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. The square of this
-/// value, and of the multiples of it that occur in pixels near a lamp, stay within the range of `f32`. For comparison,
+/// value, and the squares of its multiples that occur in pixels near a lamp, do not overflow `f32`. For comparison,
 /// the sun's disc has 1.6e9 cd/m².
 // [rounding]
 pub const MAX_LIGHT: f32 = 1e15;

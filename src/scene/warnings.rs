@@ -80,7 +80,8 @@ impl Scene {
         )
     }
 
-    /// Number of point lights, spot lights and luminaires that emit. They shine from points, so no picture shows them.
+    /// Number of point lights, spot lights and luminaires that emit. They shine from points, so they are invisible in
+    /// renderings.
     pub fn unseen_lights(&self) -> usize {
         let is_unseen = |light: &&PunctualLight| match light {
             PunctualLight::Point { intensity, .. } | PunctualLight::Spot { intensity, .. } => {
@@ -92,8 +93,8 @@ impl Scene {
         self.lights.iter().filter(is_unseen).count()
     }
 
-    /// Warns if the scene has luminaires: they shine from points, so no picture shows them. Point and spot lights
-    /// raise no warning, because nobody expects to see them in a picture.
+    /// Warns if the scene has luminaires: they shine from points, so they are invisible in renderings. Point and spot
+    /// lights raise no warning, because nobody expects to see them in a rendering.
     fn not_in_picture(&self) -> Option<Warning> {
         let luminaire = |(index, light): (usize, &PunctualLight)| match *light {
             PunctualLight::Luminaire { position, colour, .. } if colour.max_element() > 0.0 => Some((index, position)),

@@ -9,7 +9,7 @@ use super::{cicp, icc};
 use crate::error::Result;
 use crate::image::containers::png_chunks;
 
-/// Factor by which `gAMA` and `cHRM` multiply the numbers that they store [convention: PNG].
+/// Factor by which `gAMA` and `cHRM` multiply the numbers that they store. [convention: PNG]
 const UNIT: f64 = 100_000.0;
 
 /// Plausible exponents in `gAMA`; other exponents are ignored. [convention]

@@ -173,7 +173,7 @@ const BOX_CAPACITY: usize = 2 * FEW_CLUSTERS + 2 * SEARCH_RADIUS;
 struct Boxes([[f32; BOX_CAPACITY]; 6]);
 
 /// Half the side of a sentinel box, larger than any coordinate: scenes are scaled to unit size, though they may lie
-/// 2^24 times as far from the origin [convention].
+/// 2^24 times as far from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
 /// For each cluster `i` (block of eight lanes, lane) and neighbour `i - SEARCH_RADIUS + k`: the bits in which their

@@ -107,7 +107,7 @@ impl Node {
     }
 }
 
-/// Relative margin of the box test: sixteen rounding errors of 2^-24 each [rounding].
+/// Relative margin of the box test: sixteen rounding errors of 2^-24 each. [rounding]
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
 /// A ray prepared for box tests. Its distance to an axis-aligned plane is `plane * scale + shift`.

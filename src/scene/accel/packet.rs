@@ -6,7 +6,7 @@ use super::ray::Hit;
 use glam::Vec3;
 
 /// Smallest distance of a hit, relative to the triangle's largest depth along the ray. Nearer hits are rounding
-/// errors: sixteen errors of 2^-24 each [rounding].
+/// errors: sixteen errors of 2^-24 each. [rounding]
 const MIN_DISTANCE: f32 = 1.0 / (1 << 20) as f32;
 
 /// Maximum number of triangles in a packet.

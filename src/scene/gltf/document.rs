@@ -17,7 +17,7 @@ pub struct Document {
     pub root: Root,
     /// The features that are not rendered.
     pub unrendered: Vec<Unrendered>,
-    /// The translation of each node in f64; the crate rounds translations to f32.
+    /// The translation of each node in f64; the crate `gltf` rounds translations to f32.
     pub translations: Vec<DVec3>,
 }
 
@@ -87,8 +87,8 @@ fn tidy(value: &mut Value) {
     }
 }
 
-/// Adds members that glTF lets files omit but the crate requires. Removes animations, which are not read and whose
-/// targets may lack such members.
+/// Adds members that glTF lets files omit but the crate `gltf` requires. Removes animations, which are not read and
+/// whose targets may lack such members.
 fn complete(root: &mut Map<String, Value>) {
     root.remove("animations");
     for scene in objects(root, "scenes") {

@@ -38,15 +38,15 @@ pub const READ: [&str; 15] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions without an effect on the picture, and extensions whose files also hold the image in a format that is
-/// read.
+/// Extensions without an effect on the picture, and an extension for which a file also contains a fallback image in a
+/// format that this importer reads.
 const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds"];
 
 /// A property of an extension, and the default value with which the extension has no effect.
 type Neutral = (&'static str, f64);
 
-/// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn it
-/// off at their default values.
+/// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn the
+/// effect off if they have their default values.
 const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
     ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),

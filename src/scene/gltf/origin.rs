@@ -21,7 +21,7 @@ pub const GRID: f64 = 256.0;
 /// A scene counts as far from the origin if its distance exceeds this multiple of its own extent. [convention]
 const FAR: f64 = 4.0;
 
-/// Number of corners of bounding boxes from which on no further nodes are examined: they would change the origin
+/// Once this many corners of bounding boxes are collected, no further nodes are examined: they would change the origin
 /// little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
 /// The collected corners are thinned out to between this number and twice this number of corners, which fit into the

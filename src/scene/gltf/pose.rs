@@ -1,5 +1,5 @@
-//! Poses meshes at rest: mixes shapes from morph targets, and deforms skins by the joints where the nodes of the file
-//! put them (glTF 2.0, sections 3.7.2.2 and 3.7.3).
+//! Poses meshes at rest: mixes shapes from morph targets, and deforms skins by their joints, whose poses come from the
+//! nodes of the file (glTF 2.0, sections 3.7.2.2 and 3.7.3).
 
 use super::container::{File, missing};
 use super::instances::local_transform;

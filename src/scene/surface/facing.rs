@@ -1,4 +1,5 @@
-//! Selects, among the planes of an object, the plane that faces the room, and on which of its sides the room lies.
+//! Selects, among the planes of an object, the plane that faces the room, and the side of the plane on which the room
+//! lies.
 
 use super::patch::Patch;
 use crate::error::{Error, Result};
@@ -11,7 +12,7 @@ const RAYS: usize = 128;
 /// Number of triangles in one bounding box.
 const CHUNK: usize = 64;
 /// Weight of the cameras: the score of a side is multiplied by 1 plus this weight times the share of cameras in front
-/// of the side [origin not recorded].
+/// of the side. [origin not recorded]
 const CAMERA_WEIGHT: f64 = 4.0;
 
 /// Returns the index of the plane that faces the room, and its unit normal into the room.

@@ -3,13 +3,13 @@
 use crate::geometry::polygon;
 use glam::{DVec2, DVec3};
 
-/// Cosine of 1°: axes within this angle of the aligned axes snap to them [convention].
+/// Cosine of 1°: axes within this angle of the aligned axes snap to them. [convention]
 const COS_SNAP: f64 = 0.999_847_695;
-/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share [origin not
-/// recorded].
+/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. [origin not
+/// recorded]
 const MIN_SAVING: f64 = 1e-3;
-/// Cosine of 45°, compared with the vertical component of a plane's normal: below it, the plane is a wall
-/// [convention].
+/// Cosine of 45°, compared with the vertical component of a plane's normal: below it, the plane is a wall.
+/// [convention]
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 pub struct Frame {
