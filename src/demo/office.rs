@@ -51,8 +51,8 @@ pub struct Exemplar {
     pub grid: LuminaireGrid,
     /// Height in metres of the plane in which the ceiling tiles and luminaires lie.
     pub ceiling_height: f32,
-    /// Index of the camera that takes the photo. It is meant for an aspect of 3:2, with a horizontal angle of view of
-    /// 66°, and it is pitched up by 22°.
+    /// Index of the camera that takes the photo. It is meant for an aspect ratio of 3:2, with a horizontal angle of
+    /// view of 66°, and it is pitched up by 22°.
     pub camera: usize,
 }
 

@@ -58,7 +58,7 @@ impl Target {
             Ok(old) if old.is_file() => existing(path, old),
             Ok(_) => Ok(Way::InPlace),
             Err(e) if e.kind() == io::ErrorKind::NotFound => new(path),
-            // On Windows, devices have no metadata.
+            // On Windows, metadata cannot be read for devices such as NUL: write to them in place.
             Err(_) if cfg!(windows) => Ok(Way::InPlace),
             Err(e) => Err(e),
         };

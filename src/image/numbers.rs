@@ -96,8 +96,8 @@ pub fn read_head(path: &Path) -> Result<Head> {
     meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.context(path.display()))
 }
 
-/// Decodes a file and passes the position in the window and the numbers of each pixel to `pixel`. The header of the
-/// file must equal `head`; otherwise the file is refused before memory is allocated for its pixels.
+/// Decodes a file and calls `pixel` for each pixel, with its position in the data window and its `f64` values. The
+/// header of the file must equal `head`; otherwise the file is refused before memory is allocated for its pixels.
 pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
     let headers = headers(bytes)?;
     let found = Head::of(&headers)?;

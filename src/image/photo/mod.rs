@@ -10,8 +10,9 @@ pub(super) use exif::{Exif, read};
 pub use orientation::Orientation;
 pub(super) use orientation::Upright;
 
-/// Relative standard deviation of a focal length from EXIF. [convention]: lenses are marked to about 5 %. Besides, the
-/// 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or to the width (4 % apart at 4:3).
+/// Relative standard deviation of a focal length from EXIF. [convention]: the focal length marked on a lens is
+/// accurate to about 5 %. Besides, the 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or
+/// to the width (4 % apart at 4:3).
 const FOCAL_ERROR: f64 = 0.05;
 
 /// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer. [convention: CIPA DCG-001]
