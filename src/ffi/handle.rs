@@ -56,7 +56,7 @@ pub(super) fn give<H: Handle>(object: Arc<H::Object>) -> *mut H {
 /// misaligned.
 pub(super) fn read_tag(handle: *const c_void) -> Option<u64> {
     let tag: *const AtomicU64 = handle.cast();
-    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is no handle is the host's mistake;
+    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is not a handle is the host's mistake;
     // reading one aligned word is the least harmful way to detect it.
     (!tag.is_null() && tag.is_aligned()).then(|| unsafe { (*tag).load(Ordering::Acquire) })
 }

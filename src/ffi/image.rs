@@ -218,7 +218,7 @@ impl Pixels {
         Ok(Self::own(context, make()?, charge, PhotoMetadata::default()))
     }
 
-    /// Creates the object of an image that is part of a stage's result; both share the pixels.
+    /// Creates the object of an image that is part of a stage's result; the object and the result share the pixels.
     pub(super) fn part<O: Send + Sync + 'static>(
         context: &Arc<Context>,
         output: Arc<O>,

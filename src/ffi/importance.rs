@@ -198,9 +198,9 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
     })
 }
 
-/// Computes the light that the target receives from a texture, which is linear, in cd/m², and repeats. placement is
-/// the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by row,
-/// with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
+/// Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
+/// is the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by
+/// row, with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
 /// thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]

@@ -23,8 +23,8 @@ pub const LUXFER_AIM_MIN_LUMINANCE: luxfer_aim = 1;
 /// Bring the mean radiance of the target, all other light included, nearest to luxfer_placement_params.radiance.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 
-/// Objective and bounds of a placement. A placement scales the texture coordinates of the surface, then rotates them,
-/// both about their centre (0.5, 0.5), and then shifts them. Fill it with luxfer_placement_params_init.
+/// Objective and bounds of a placement. A placement scales the texture coordinates of the surface about their centre
+/// (0.5, 0.5), then rotates them about this centre, and then shifts them. Fill it with luxfer_placement_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_placement_params {

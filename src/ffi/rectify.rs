@@ -199,8 +199,8 @@ pub struct luxfer_rectify_report {
     /// Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed.
     pub aspect_confidence: f64,
     /// Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
-    /// below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of straight edges,
-    /// and not corrected. NaN if the photo has too few lines.
+    /// below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
+    /// edges, and not corrected. NaN if the photo has too few lines.
     pub distortion: f64,
     /// Standard deviation of distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
@@ -286,7 +286,8 @@ pub(super) struct Inputs {
 pub(super) struct Output {
     pub(super) view: Arc<View>,
     pub(super) unwarped: Option<Arc<Unwarped>>,
-    /// The photo in which the view was found, and the settings. The view is used again as long as both stay the same.
+    /// The photo in which the view was found, and the settings. The view is used again as long as the photo and the
+    /// settings are unchanged.
     found_in: Arc<Pixels>,
     found_with: rectify::Params,
 }

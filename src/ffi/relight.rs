@@ -238,8 +238,8 @@ pub unsafe extern "C" fn luxfer_relight_create(
 }
 
 /// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match;
-/// luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has
-/// in the scene. Any thread.
+/// luxfer_scene_place_emission returns the indices of this material and of a new mesh that has it. The solution is a
+/// factor for the emission that the material has in the scene. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(

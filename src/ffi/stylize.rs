@@ -157,11 +157,11 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
 }
 
 /// Adds a guide, or replaces the guide with that name. source shows the exemplar scene and target the scene to paint.
-/// Both have the same number of channels, and all guides together have at most 60 channels. If target is NULL, source
-/// serves as the target too: for a picture of which one part is painted already (luxfer_stylize_set_painted). weight,
-/// in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. All sources must have one size, and
-/// all targets one size. In a target, values that are not finite count as 0; pixels of a source with such values are
-/// not used. Any thread.
+/// source and target have the same number of channels, and all guides together have at most 60 channels. If target is
+/// NULL, source serves as the target too: for a picture of which one part is painted already
+/// (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value.
+/// All sources must have one size, and all targets one size. In a target, values that are not finite count as 0;
+/// pixels of a source with such values are not used. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the numbers of channels differ or are too large, or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guide(

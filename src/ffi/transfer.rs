@@ -337,8 +337,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_camera(
     })
 }
 
-/// Sets the strokes on the photo, for both masks. Strokes on lights count as strokes on the plane too. The call copies
-/// the strokes, which replace earlier strokes; strokes may be NULL: no strokes. Any thread.
+/// Sets the strokes on the photo, for the mask of the plane and the mask of the lights. Strokes on lights count as
+/// strokes on the plane too. The call copies the strokes, which replace earlier strokes; strokes may be NULL: no
+/// strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_strokes(

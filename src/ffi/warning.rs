@@ -83,8 +83,8 @@ pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
 /// A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in metres,
 /// below the limit if the scene is too small. The message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
-/// The file of a scene has a feature or an extension that is not rendered, which the message names with the first
-/// objects that have it; the severity is their number.
+/// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
+/// objects that have it; the severity is the number of these objects.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
 /// that a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest

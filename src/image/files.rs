@@ -127,7 +127,7 @@ fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> 
 }
 
 /// Maximum number of names to try for the new file. Other threads, and earlier processes with the same id, may have
-/// taken some.
+/// taken some names.
 const MAX_NEIGHBOURS: usize = 10_000;
 
 /// Creates a new file in the folder of `file`; returns its path and the open file. If `is_private`, only the owner may

@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-/// The header of a file of exact numbers.
+/// The header of a file that stores `f64` values per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
     /// Width and height of the whole picture, in pixels.

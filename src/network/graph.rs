@@ -95,7 +95,7 @@ impl Network {
     }
 }
 
-/// Numbers the values of a graph by name while its nodes are read.
+/// Assigns an index to each named value of a graph while the nodes of the graph are read.
 struct Values<'a> {
     numbers: HashMap<&'a str, usize>,
     constants: Vec<Option<Tensor>>,

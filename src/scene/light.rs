@@ -31,7 +31,8 @@ pub enum PunctualLight {
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
     /// Illuminance per channel in lux on a surface perpendicular to `direction`, along which the light travels.
     Directional { direction: Vec3, illuminance: Vec3 },
-    /// A measured luminaire in the far field: it acts as a point at the distance of the lit surfaces.
+    /// A measured luminaire in the far field: it is treated as a point, which assumes that the lit surfaces are far
+    /// away compared with its size.
     ///
     /// `axis` is the unit direction of γ = 0 (down for a hanging luminaire), and `c0` the unit direction of C = 0,
     /// perpendicular to `axis`. C increases anticlockwise for a viewer who looks along `axis`, from above for a

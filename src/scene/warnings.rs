@@ -16,8 +16,8 @@ pub const MAX_WIDTH: f64 = 2000.0;
 /// Extent in metres below which the unit of a scene is probably not the metre. [convention]: a table lamp is larger.
 pub const MIN_EXTENT: f64 = 0.2;
 
-/// Height and width of a typical room in metres. The suggested unit is the one that brings a scene closest to them.
-/// [convention]
+/// Height and width of a typical room in metres. The suggested unit is the unit in which a scene comes closest to this
+/// size. [convention]
 const USUAL_HEIGHT: f64 = 3.0;
 const USUAL_WIDTH: f64 = 6.0;
 

@@ -30,7 +30,7 @@ mod tag {
     pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
-/// A 16-bit sensitivity tag of this value means that the number is too large for it and stored in another tag.
+/// If a 16-bit sensitivity tag has this value, the number is too large for the tag and is stored in another one.
 /// [convention: Exif]
 const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
 

@@ -22,8 +22,8 @@ const FILM_DIAGONAL: f64 = 43.266_615_305_567_87;
 /// [`FOCAL_ERROR`].
 const AGREEMENT: f64 = 0.1;
 
-/// Largest difference between the logarithms of two aspect ratios, that of the photo and the recorded one, at which
-/// the photo counts as not cropped. It allows for the rounding of the sides when a photo is resized. [convention]
+/// A photo counts as not cropped if the logarithms of its aspect ratio and of the recorded aspect ratio differ by less
+/// than this value. It allows for the rounding of the sides when a photo is resized. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
 /// The saturation-based ISO speed is this number in lx s, divided by the focal-plane exposure that just saturates.

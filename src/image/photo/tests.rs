@@ -160,7 +160,7 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let all = [&recorded[..], &sensor].concat();
     let by_sensor = 4.3 * 576.0 * 40.0 / 4032.0;
     assert!(near(metadata(&all).focal, by_sensor), "{:?}", metadata(&all));
-    // If the two estimates agree within 10 %, that of the sensor is used, otherwise the 35 mm equivalent.
+    // If the two estimates agree within 10 %, the estimate from the sensor is used, otherwise the 35 mm equivalent.
     assert!(near(metadata(&[&all[..], &[short(big, 0xa405, 21)]].concat()).focal, by_sensor));
     assert!(near(metadata(&[&all[..], &[film.clone()]].concat()).focal, by_film));
     // The focal length is unknown if the photo is cropped to another aspect ratio, if the 35 mm equivalent is 0, or if

@@ -22,7 +22,7 @@ use obvhs::bvh2::node::Bvh2Node;
 
 /// Number of clusters to which the clusters of a range are merged before the range is combined with its neighbour.
 const FEW_CLUSTERS: usize = 32;
-/// A cluster chooses its partner among this many clusters before it and after it in the list.
+/// A cluster chooses its partner among this many clusters before it and as many after it in the list.
 const SEARCH_RADIUS: usize = 8;
 /// Maximum number of leaves in a range that one thread processes without splitting off parallel work.
 const SERIAL: usize = 1024;

@@ -95,8 +95,8 @@ impl Node {
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &NodeRay<L>, t_max: f32) -> (u32, L) {
         let plane = |start: usize, axis: usize, shift: L| {
-            // SAFETY: `near_start` is the byte offset of one of the six rows; flipping one bit of it gives that of its
-            // neighbour.
+            // SAFETY: `near_start` is the byte offset of one of the six rows; flipping one bit of this offset gives
+            // the offset of the neighbouring row.
             L::load(unsafe { &*self.bounds.as_ptr().byte_add(start) }).mul_add(ray.scale[axis], shift)
         };
         let enter = |axis: usize| plane(ray.near_start[axis], axis, ray.near_shift[axis]);

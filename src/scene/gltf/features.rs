@@ -177,7 +177,7 @@ fn mesh(list: &mut Vec<Unrendered>, mesh: &Value, place: &dyn Fn() -> String) {
     weights(list, mesh, Some(mesh), place);
 }
 
-/// Returns the JSON of the mesh that a node shows; `None` if it shows none.
+/// Returns the JSON of the mesh to which a node refers; `None` if the node has no mesh.
 fn shown<'a>(document: &'a Value, node: &Value) -> Option<&'a Value> {
     let index = node.get("mesh")?.as_f64()?;
     document.get("meshes")?.get(index as usize)
