@@ -23,7 +23,7 @@ const WELL: (f64, f64) = (6000.0, 12.0);
 /// Strength of the white balance: 0 keeps the colour of the light, 1 turns the mean colour grey. Real cameras correct
 /// partially. [convention]
 const WHITE_BALANCE: f32 = 0.6;
-/// Linear value to which the median luminance of the rendering is exposed. [convention]
+/// The exposure maps the median luminance of the rendering to this linear value. [convention]
 const MEDIAN_EXPOSURE: f32 = 0.14;
 
 #[derive(Clone, Debug, PartialEq)]

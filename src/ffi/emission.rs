@@ -63,8 +63,9 @@ pub struct luxfer_emission_params {
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
-    /// Minimum autocorrelation, after a shift by a period, at which the lights count as regular, in [0, 1]; default
-    /// 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie anywhere.
+    /// The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
+    /// 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie
+    /// anywhere.
     pub min_regularity: f32,
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
@@ -97,9 +98,9 @@ pub struct luxfer_emission_params {
     /// any resolution, and lie exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each
     /// lamp has the outline of the mask.
     pub clean_lamps: u32,
-    /// Largest magnification at which parts of the exemplar are used, in [1, 1e6]; 0, the default: all parts are used.
-    /// The magnification of a pixel is the factor in length by which the photo is magnified there, relative to the
-    /// least magnified pixel of the exemplar. Parts with a larger magnification count as not shown.
+    /// Parts of the exemplar with a magnification above this value, in [1, 1e6], count as not shown in the photo; 0,
+    /// the default: all parts are used. The magnification of a pixel is the factor in length by which the photo is
+    /// magnified there, relative to the least magnified pixel of the exemplar.
     pub max_magnification: f64,
 }
 

@@ -7,8 +7,8 @@ use crate::error::{Error, Result};
 
 /// The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept unless another law is
-/// clearly better.
+/// The law that predicts the lamps of the photo best. The law that LUXFER_LAW_CORRELATION gives is kept unless another
+/// law is clearly better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
 /// The law that the autocorrelation of the lights suggests. min_regularity of luxfer_emission_params is the least
 /// correlation that counts.

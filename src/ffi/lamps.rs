@@ -66,7 +66,7 @@ pub struct luxfer_lamps_params {
     /// Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals are
     /// met, with large values the powers are nearly equal.
     pub regularisation: f64,
-    /// Largest error with which a goal counts as met, as a share of the goal, in [1e-6, 1]; default 0.01. The noise of
+    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The noise of
     /// the goal's light is added to this tolerance.
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.

@@ -27,7 +27,7 @@ pub struct luxfer_glare_report {
     pub ugr: f64,
     /// Luminance of the background in cd/m².
     pub background: f64,
-    /// Luminance in cd/m² above which a pixel counted as a glare source.
+    /// The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources.
     pub threshold: f64,
     /// Solid angle of all sources in steradians.
     pub solid_angle: f64,

@@ -128,7 +128,7 @@ impl From<plan::Lighting> for Made {
     }
 }
 
-/// Settings of a planned stylisation, and whether the caller wants the data for updates kept.
+/// Settings of a planned stylisation, and whether to keep the data for updates.
 #[cfg(feature = "stylize")]
 pub(super) struct Stylisation {
     pub params: stylize::Params,

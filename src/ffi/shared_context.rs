@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 
-/// Maximum number of threads whose last message is kept: the threads that failed last.
+/// The context keeps the last messages of at most this many threads: of those that failed last.
 const MAX_MESSAGES: usize = 256;
 
 /// The object behind a `luxfer_context` handle, shared by all objects that are created in it.

@@ -80,8 +80,8 @@ pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
 /// The photo clips channels of the target, which are then lower bounds; the severity is the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
-/// A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in metres,
-/// below the limit if the scene is too small. The message names the likely unit.
+/// A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this extent in
+/// metres, below the limit if the scene is too small. The message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
 /// objects that have it; the severity is the number of these objects.

@@ -1,4 +1,5 @@
-//! Stores any number of `f64` values per pixel exactly, in OpenEXR files that each hold a window of a picture.
+//! Stores any number of `f64` values per pixel exactly, in OpenEXR files that each hold a window (a rectangle) of a
+//! picture.
 //!
 //! The channels R, G and B hold the picture itself, so that any program can display it. The display window of the file
 //! is the whole picture, and the data window is the window that the file holds. Each `f64` is stored in two channels

@@ -31,7 +31,7 @@ const MAX_NODES: usize = 100_000;
 
 impl Network {
     /// Parses an ONNX file held in memory. Errors: `Format` if the file is damaged or inconsistent, `Unsupported` for
-    /// operators and types that are not implemented. Both name the place in the network.
+    /// operators and types that are not implemented. Both errors name the place in the network.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
         let model = read::model(bytes)?;
         if !(7..=21).contains(&model.opset) {

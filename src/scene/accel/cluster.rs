@@ -20,7 +20,7 @@ use crate::job::Job;
 use crate::simd::Level;
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Number of clusters to which the clusters of a range are merged before the range is combined with its neighbour.
+/// The clusters of a range are merged until at most this many are left; then the range is combined with its neighbour.
 const FEW_CLUSTERS: usize = 32;
 /// A cluster chooses its partner among this many clusters before it and as many after it in the list.
 const SEARCH_RADIUS: usize = 8;

@@ -12,7 +12,8 @@ use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// Size in bytes above which one huge page is obtained as fast as the small pages that it replaces.
+/// One huge page is obtained as fast as the small pages that it replaces if it replaces at least this many bytes of
+/// them.
 const MIN_HUGE: usize = HUGE / 4;
 
 /// A finished list. It starts at the boundary of a huge page if it is long enough for one.

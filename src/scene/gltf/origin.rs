@@ -14,8 +14,8 @@ use glam::{DMat4, DVec3};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 
-/// Distance in metres up to which a scene keeps the origin of its file: `f32` resolves 0.015 mm there. New origins are
-/// multiples of this distance. [convention]
+/// A scene within this distance in metres of the origin of its file keeps that origin: `f32` resolves 0.015 mm there.
+/// New origins are multiples of this distance. [convention]
 pub const GRID: f64 = 256.0;
 
 /// A scene counts as far from the origin if its distance exceeds this multiple of its own extent. [convention]

@@ -57,7 +57,8 @@ fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
     in_front as f64 / scene.cameras.len().max(1) as f64
 }
 
-/// Returns how far one side of a plane sees, in `[0, 1]`: the mean of `min(1, distance / √area)` over [`RAYS`] rays.
+/// Returns how far one can see from one side of a plane, in `[0, 1]`: the mean of `min(1, distance / √area)` over
+/// [`RAYS`] rays.
 fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
     // Accumulate the areas of the triangles, to sample triangles in proportion to area.
     let mut sums = Vec::with_capacity(patch.triangles.len());

@@ -43,12 +43,12 @@ fn upright(normal: DVec3) -> DVec3 {
     candidate.normalize_or(normal.any_orthonormal_vector())
 }
 
-/// Returns the v axis that belongs to `u`, such that `u × v = -normal`.
+/// Returns the v axis that corresponds to `u`: `u × v = -normal`.
 fn down_of(u: DVec3, normal: DVec3) -> DVec3 {
     u.cross(normal)
 }
 
-/// Returns the bounding rectangle with sides along `u` and the v axis that belongs to it.
+/// Returns the bounding rectangle with sides along `u` and along the corresponding v axis.
 pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
     let v = down_of(u, normal);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
