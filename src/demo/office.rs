@@ -71,7 +71,7 @@ pub fn exemplar_room() -> Result<Exemplar> {
     shell(&mut b)?;
     fittings(&mut b)?;
 
-    // Rotate the camera against the room and roll it slightly, so that all three vanishing points are finite.
+    // Rotate the camera relative to the room and roll it slightly, so that all three vanishing points are finite.
     let (yaw, pitch, roll) = (-17f32.to_radians(), 22f32.to_radians(), 1.2f32.to_radians());
     let turn = Mat3::from_rotation_y(yaw) * Mat3::from_rotation_x(pitch) * Mat3::from_rotation_z(roll);
     let fov_y = 2.0 * ((33f32.to_radians()).tan() / 1.5).atan();

@@ -57,7 +57,8 @@ pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
 /// channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// Normalisation of the photo's colours for a network, whose file does not state it: a LUXFER_NORMALISATION_ value.
+/// How the photo's colours are normalised for a network, which an ONNX file does not state: a LUXFER_NORMALISATION_
+/// value.
 pub type luxfer_normalisation = i32;
 /// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
 /// LUXFER_NORMALISATION_HALF.

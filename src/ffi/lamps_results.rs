@@ -79,8 +79,8 @@ pub struct luxfer_lamps_goal {
     pub half_width: [f64; 3],
     /// Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel.
     pub background: [f64; 3],
-    /// Target in lux: pi times the luminance of target. This field and the three fields below are set for goals of
-    /// illuminance only, which are grids, and meshes with LUXFER_QUANTITY_INCIDENT; they are 0 for other goals.
+    /// Target in lux: pi times the luminance of target. This field and the three fields below are set only for goals
+    /// of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
     pub target_lux: f64,
     /// Illuminance with the powers found, in lux.
     pub achieved_lux: f64,

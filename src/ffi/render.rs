@@ -73,7 +73,7 @@ pub struct luxfer_render_params {
     /// Must be 0.
     pub reserved: u32,
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-    /// Default 0: no preview, as for final images. It does not change the other images.
+    /// Default 0: no preview, as for final images. The preview does not change the other images.
     pub preview: f32,
     /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0; paths then go to the
     /// pixels where they reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright

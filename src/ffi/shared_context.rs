@@ -53,8 +53,8 @@ impl Context {
         })
     }
 
-    /// Returns an error in a forked child of the process that created the context. Takes no lock: a thread that held
-    /// it during the fork does not exist in the child and would never release it.
+    /// Returns an error in a forked child of the process that created the context. Takes no lock: if another thread
+    /// held the lock during the fork, that thread does not exist in the child and would never release the lock.
     pub(super) fn check_process(&self) -> Result<()> {
         if self.process == std::process::id() {
             Ok(())

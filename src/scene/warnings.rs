@@ -8,9 +8,9 @@ use glam::{DVec3, Vec3};
 /// than this, whereas rooms of 2 to 4 m given in inches are 79 to 157 units high, and higher in smaller units.
 pub const MAX_HEIGHT: f64 = 50.0;
 
-/// Width in metres above which the unit of a scene is probably not the metre. It serves for scenes without height,
-/// such as a plan or a ceiling alone. [convention]: few halls are longer than 1 km, and a room of 3 m is 3000 wide in
-/// millimetres.
+/// Width in metres above which the unit of a scene is probably not the metre. This limit serves for scenes without
+/// height, such as a plan or a ceiling alone. [convention]: few halls are longer than 1 km, and a room of 3 m is 3000
+/// wide in millimetres.
 pub const MAX_WIDTH: f64 = 2000.0;
 
 /// Extent in metres below which the unit of a scene is probably not the metre. [convention]: a table lamp is larger.

@@ -7,7 +7,7 @@ use half::f16;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 use weezl::{BitOrder, LzwStatus};
 
-/// Decompresses the stored bytes until `out` is full; returns an error if they end before.
+/// Decompresses the stored bytes until `out` is full; returns an error if they end too early.
 pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result<()> {
     let needed = out.len();
     let written = match compression {

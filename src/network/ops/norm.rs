@@ -31,7 +31,7 @@ fn channel_values(tensor: &Tensor, channels: usize) -> Result<&[f32]> {
     Err(Error::format(format!("{} values for {channels} channels", values.len())))
 }
 
-/// Normalises each channel of each image to zero mean and unit variance, then scales and shifts it.
+/// Normalises each channel of each image to zero mean and unit variance, then scales and shifts the channel.
 pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let channels = x.shape.get(1).copied().unwrap_or(1);

@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// One huge page is obtained as fast as the small pages that it replaces if it replaces at least this many bytes of
-/// them.
+/// A huge page is worthwhile for at least this many bytes: it is then obtained as fast as the small pages that it
+/// replaces.
 const MIN_HUGE: usize = HUGE / 4;
 
 /// A finished list. It starts at the boundary of a huge page if it is long enough for one.

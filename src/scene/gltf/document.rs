@@ -35,7 +35,7 @@ pub fn parse(json: &[u8]) -> Result<Document> {
     Ok(Document { root: serde_json::from_value(document).map_err(broken)?, unrendered, translations })
 }
 
-/// Returns the translation of each node, which is the last column of its matrix if it has one.
+/// Returns the translation of each node, which is the last column of the node's matrix if the node has a matrix.
 fn translations(document: &Value) -> Result<Vec<DVec3>> {
     let nodes = document.get("nodes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let number = |list: Option<&Value>, at: usize| list.and_then(|list| list.get(at)?.as_f64()).unwrap_or(0.0);

@@ -54,7 +54,7 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
 }
 
 /// Returns the corners of a primitive's bounding box in the coordinates of its node, as its accessor states them. Both
-/// are zero if the accessor states none, or if its integers are normalised.
+/// corners are zero if the accessor states no bounds, or if its integers are normalised.
 fn bounds(file: &File, primitive: &Primitive) -> [DVec3; 2] {
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
     let accessor = positions.and_then(|index| file.root.get(*index)).filter(|accessor| !accessor.normalized);

@@ -128,7 +128,7 @@ fn joints(file: &File, skin: Index<Skin>, nodes: &[Option<DMat4>]) -> Result<Vec
     Ok(out)
 }
 
-/// Iterates over the morph targets of a primitive whose weight is not 0, with their weights.
+/// Iterates over the morph targets of a primitive, each with its weight; targets with a weight of 0 are skipped.
 pub fn mixed<'a>(primitive: &'a Primitive, weights: &'a [f32]) -> impl Iterator<Item = (&'a MorphTarget, f32)> + Clone {
     let targets = primitive.targets.iter().flatten();
     targets.zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)

@@ -253,7 +253,8 @@ mod tests {
         assert_eq!(slab.normal, DVec3::NEG_Y);
         let words = "24.0 of its 24.0 m² are level, at 3.00 m, which is 100 % of the scene's height, and cover 100 % of its plan";
         assert_eq!(slab.reason, words);
-        // If the ceiling and a wall share a material, its height is the height of its level triangles alone.
+        // If the ceiling and a wall share a material, the height of the material is the height of its level triangles
+        // alone.
         let plaster = &list[1];
         assert_eq!((plaster.index, plaster.area, plaster.level_area, plaster.height), (1, 42.0, 24.0, 3.0));
         let find = |name: &str| list.iter().find(|c| c.name == name).unwrap();

@@ -38,7 +38,7 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     best.map(|(_, i, normal)| (i, normal)).ok_or_else(|| Error::degenerate("the surface has no area"))
 }
 
-/// Returns the plane's normal on its front side, towards which most of its area is wound counter-clockwise.
+/// Returns the normal on the front side of the plane: the side from which most of its area is wound counter-clockwise.
 fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
     let signed: f64 = patch
         .triangles

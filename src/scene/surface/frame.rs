@@ -8,8 +8,7 @@ const COS_SNAP: f64 = 0.999_847_695;
 /// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. [origin not
 /// recorded]
 const MIN_SAVING: f64 = 1e-3;
-/// Cosine of 45°, compared with the vertical component of a plane's normal: below it, the plane is a wall.
-/// [convention]
+/// A plane is a wall if the vertical component of its normal is below this value, the cosine of 45°. [convention]
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 pub struct Frame {
