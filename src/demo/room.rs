@@ -58,7 +58,8 @@ fn shell(b: &mut Builder) -> Result<()> {
     Ok(())
 }
 
-/// Adds a frame of bars around an opening in the wall at z = 0. The bars are as deep as the wall.
+/// Adds a frame of bars around an opening in the wall at z = 0. The bars are as deep as the opening and project 3 cm
+/// into the room.
 fn frame(m: &mut Mesh, [low, high]: [Vec2; 2], bar: f32, sill: bool) {
     let mut piece = |a: Vec2, b: Vec2| cuboid(m, a.extend(-REVEAL), b.extend(0.03));
     piece(Vec2::new(low.x - bar, low.y), Vec2::new(low.x, high.y));

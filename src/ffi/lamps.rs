@@ -58,8 +58,8 @@ pub struct luxfer_lamps_params {
     /// Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of their
     /// coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row.
     pub row_tolerance: f32,
-    /// 1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default: solve
-    /// for the power only.
+    /// 1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
+    /// luxfer_lamps_add_mesh does; 0, the default: solve for the power only.
     pub free_colour: u32,
     /// Largest factor for the emission of a group, >= 0; default infinity.
     pub max_scale: f64,
