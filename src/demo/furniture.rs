@@ -49,7 +49,7 @@ pub fn chair(b: &mut Builder, at: Vec3, degrees: f32, wood: usize, cloth: usize)
 /// Adds an open shelf with books on every board. Before the rotation, its back is at z = 0. Each book takes one of the
 /// materials `covers` at random.
 pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, covers: &[usize]) {
-    /// Depth of the shelf and heights of its boards, in metres [convention].
+    /// Depth of the shelf and heights of its boards, in metres. [convention]
     const DEPTH: f32 = 0.30;
     const BOARDS: [f32; 5] = [0.06, 0.44, 0.82, 1.20, 1.58];
     let mut frame = Mesh::default();

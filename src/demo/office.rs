@@ -8,14 +8,14 @@ use crate::scene::{Camera, Material, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(5.4, 2.7, 9.0);
-/// Side of the ceiling's tiles in metres, and their number along x and z [convention].
+/// Side of the ceiling's tiles in metres, and their number along x and z. [convention]
 const TILE: f32 = 0.6;
 const TILES: [usize; 2] = [9, 15];
 /// Width and depth in metres of the bars that carry the tiles.
 const BAR: Vec2 = Vec2::new(0.024, 0.004);
-/// Side of a luminaire in metres; the rest of its tile is a white rim [convention].
+/// Side of a luminaire in metres; the rest of its tile is a white rim. [convention]
 const LUMINAIRE: f32 = 0.56;
-/// Luminance of the luminaires in cd/m² [convention].
+/// Luminance of the luminaires in cd/m². [convention]
 const LUMINANCE: f32 = 3000.0;
 /// Linear Rec.709 colour of a blackbody at 3500 K (CIE xy 0.4053, 0.3907), with luminance 1.
 const WARM_WHITE: Vec3 = Vec3::new(1.564, 0.892, 0.406);
@@ -51,8 +51,8 @@ pub struct Exemplar {
     pub grid: LuminaireGrid,
     /// Height in metres of the plane in which the ceiling tiles and luminaires lie.
     pub ceiling_height: f32,
-    /// Index of the camera that takes the photo. It is meant for an aspect of 3:2, with a horizontal angle of view of
-    /// 66°, and it is pitched up by 22°.
+    /// Index of the camera that takes the photo. It is meant for an aspect ratio of 3:2, with a horizontal angle of
+    /// view of 66°, and it is pitched up by 22°.
     pub camera: usize,
 }
 
@@ -71,7 +71,7 @@ pub fn exemplar_room() -> Result<Exemplar> {
     shell(&mut b)?;
     fittings(&mut b)?;
 
-    // Rotate the camera against the room and roll it slightly, so that all three vanishing points are finite.
+    // Rotate the camera relative to the room and roll it slightly, so that all three vanishing points are finite.
     let (yaw, pitch, roll) = (-17f32.to_radians(), 22f32.to_radians(), 1.2f32.to_radians());
     let turn = Mat3::from_rotation_y(yaw) * Mat3::from_rotation_x(pitch) * Mat3::from_rotation_z(roll);
     let fov_y = 2.0 * ((33f32.to_radians()).tan() / 1.5).atan();

@@ -11,19 +11,19 @@ use crate::scene::{Camera, Scene};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Standard deviation of the lens blur in pixels [convention].
+/// Standard deviation of the lens blur in pixels. [convention]
 const LENS_BLUR: f32 = 0.7;
 /// Share of the light that the lens scatters into a glow around lamps, and the standard deviation of that glow in
-/// pixels [convention].
+/// pixels. [convention]
 const GLARE: (f32, f32) = (0.03, 9.0);
-/// Brightness in the corners of the photo relative to its centre [convention].
+/// Brightness in the corners of the photo relative to its centre. [convention]
 const VIGNETTE: f32 = 0.8;
-/// Full-well capacity of a pixel, and standard deviation of the read-out noise, both in electrons [convention].
+/// Full-well capacity of a pixel, and standard deviation of the read-out noise, both in electrons. [convention]
 const WELL: (f64, f64) = (6000.0, 12.0);
 /// Strength of the white balance: 0 keeps the colour of the light, 1 turns the mean colour grey. Real cameras correct
-/// partially [convention].
+/// partially. [convention]
 const WHITE_BALANCE: f32 = 0.6;
-/// Linear value to which the median luminance of the rendering is exposed [convention].
+/// The exposure maps the median luminance of the rendering to this linear value. [convention]
 const MEDIAN_EXPOSURE: f32 = 0.14;
 
 #[derive(Clone, Debug, PartialEq)]

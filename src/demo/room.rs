@@ -7,9 +7,9 @@ use crate::scene::{Camera, Mesh, Scene};
 use glam::{Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(6.0, 2.8, 4.0);
-/// Side in metres of the cells into which walls, floor and ceiling are divided [convention].
+/// Side in metres of the cells into which walls, floor and ceiling are divided. [convention]
 const CELL: f32 = 0.25;
-/// Depth in metres of the door and window openings [convention].
+/// Depth in metres of the door and window openings. [convention]
 const REVEAL: f32 = 0.12;
 /// Lower and upper corner, along x and y, of the openings in the wall at z = 0.
 const WINDOW: [Vec2; 2] = [Vec2::new(1.1, 0.95), Vec2::new(3.1, 2.25)];
@@ -58,7 +58,8 @@ fn shell(b: &mut Builder) -> Result<()> {
     Ok(())
 }
 
-/// Adds a frame of bars around an opening in the wall at z = 0. The bars are as deep as the wall.
+/// Adds a frame of bars around an opening in the wall at z = 0. The bars are as deep as the opening and project 3 cm
+/// into the room.
 fn frame(m: &mut Mesh, [low, high]: [Vec2; 2], bar: f32, sill: bool) {
     let mut piece = |a: Vec2, b: Vec2| cuboid(m, a.extend(-REVEAL), b.extend(0.03));
     piece(Vec2::new(low.x - bar, low.y), Vec2::new(low.x, high.y));

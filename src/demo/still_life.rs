@@ -12,7 +12,7 @@ use glam::{Mat3, Vec2, Vec3};
 
 /// Two opposite corners of the rectangular lamp, which faces the table.
 const LAMP: [Vec3; 2] = [Vec3::new(0.12, 0.62, -0.12), Vec3::new(0.34, 0.56, 0.06)];
-/// Luminance of the lamp in cd/m² [convention].
+/// Luminance of the lamp in cd/m². [convention]
 const LAMP_LUMINANCE: f32 = 12_000.0;
 /// Luminance of the dim surroundings in cd/m², per channel.
 const SURROUNDINGS: Vec3 = Vec3::new(120.0, 125.0, 135.0);

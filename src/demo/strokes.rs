@@ -7,7 +7,7 @@ use crate::scene::Camera;
 use crate::segment::{Stroke, StrokeSet};
 use glam::{DVec2, Vec2, Vec3};
 
-/// Brush radius as a share of the photo's height [convention].
+/// Brush radius as a share of the photo's height. [convention]
 const RADIUS: f64 = 0.006;
 
 /// Returns the strokes for a photo of `width` × `height` pixels, taken by the room's own camera.

@@ -55,9 +55,9 @@ pub struct luxfer_context_params {
     /// sizeof(luxfer_context_params), set by luxfer_context_params_init.
     pub struct_size: u32,
     /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
-    /// share these threads. Calls that do their work before they return never wait for a job: they run on the calling
-    /// thread or on other threads. For the latter the context starts num_threads more threads for each such call that
-    /// runs at the same time, and keeps up to four of these sets for later calls.
+    /// share these threads. Synchronous calls, which do their work before they return, never wait for a job: they run
+    /// on the calling thread or on threads of their own. Each such call gets a set of num_threads threads. The context
+    /// starts as many sets as calls run at the same time, and keeps up to four sets for later calls.
     pub num_threads: u32,
     /// Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0, the
     /// default: no limit. A call that would exceed the limit returns LUXFER_OUT_OF_MEMORY. While a picture file is

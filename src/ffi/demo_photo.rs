@@ -75,7 +75,7 @@ pub unsafe extern "C" fn luxfer_demo_photo_create(
 }
 
 /// Starts a job that renders the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+/// LUXFER_INVALID_OPERATION if a job is already running; LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_demo_photo_start(
     demo: *mut luxfer_demo_photo,

@@ -50,8 +50,8 @@ pub struct luxfer_temperature_fit {
     pub luminance: f64,
     /// Mean radiance of the target from this light and all other light, in cd/m².
     pub achieved: [f64; 3],
-    /// CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the latter as middle
-    /// grey.
+    /// CIEDE2000 difference between achieved and the wanted radiance, at the exposure that shows the wanted radiance
+    /// as middle grey.
     pub delta_e: f64,
 }
 
@@ -88,10 +88,10 @@ versioned!(luxfer_preset, [56], {
 });
 
 /// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds
-/// three numbers for each of count LEDs, its linear RGB at drive level 1; channels are negative for LEDs outside the
-/// gamut of Rec.709. count is in [1, 64]. drives receives count drive levels in [0, max_drive]; max_drive is >= 0 and
-/// may be infinite. If several mixtures give the colour, the result is the mixture with the smallest sum of squared
-/// drive levels. size is sizeof *mixture. Any thread.
+/// three numbers for each of count LEDs, the LED's linear RGB at drive level 1; channels are negative for LEDs outside
+/// the gamut of Rec.709. count is in [1, 64]. drives receives count drive levels in [0, max_drive]; max_drive is >= 0
+/// and may be infinite. If several mixtures give the colour, the result is the mixture with the smallest sum of
+/// squared drive levels. size is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(

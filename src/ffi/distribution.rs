@@ -46,9 +46,9 @@ pub struct luxfer_distribution_report {
     pub lamp_flux: f64,
     /// Electric power in watts; 0 if unknown.
     pub watts: f64,
-    /// Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. Negative values are the
-    /// diameters of round openings, as in IES. The three values are the length, width and height of an IES file, and
-    /// the width, length and height of a EULUMDAT file.
+    /// Size of the luminous opening in metres: along C = 0, along C = 90 and along the axis. A negative value stands
+    /// for a round opening, as in IES: its absolute value is the diameter. The three values are the length, width and
+    /// height of an IES file, and the width, length and height of a EULUMDAT file.
     pub size: [f64; 3],
 }
 

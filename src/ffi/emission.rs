@@ -34,10 +34,10 @@ pub type luxfer_emission_image = i32;
 pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
 /// The mask of the texture: 1 on lamps, else 0; 1 channel.
 pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
-/// Metadata of the exemplar at working size: confidence of light, and signed x and y distance in working pixels to the
-/// nearest light; 3 channels.
+/// Metadata of the exemplar, at the resolution that working_side gives: confidence of light, and signed x and y
+/// distance to the nearest light in pixels of this image; 3 channels.
 pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
-/// Metadata of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA as the patches of the texture show them.
+/// Metadata of the texture: the channels of LUXFER_EMISSION_EXEMPLAR_METADATA, copied patch by patch like the texture.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 
 /// Settings of an emissive texture. Fill them with luxfer_emission_params_init.
@@ -63,8 +63,9 @@ pub struct luxfer_emission_params {
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
-    /// Minimum autocorrelation, after a shift by a period, at which the lights count as regular, in [0, 1]; default
-    /// 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie anywhere.
+    /// The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
+    /// 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues none, and patches may lie
+    /// anywhere.
     pub min_regularity: f32,
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
@@ -72,9 +73,9 @@ pub struct luxfer_emission_params {
     /// default 0. If the lights form no lattice, the offset shifts the lamps of a tileable texture, and must be 0 for
     /// other textures.
     pub offset: [f64; 2],
-    /// Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. The clipped core of a lamp
-    /// gets the colour of the lamp's rim, at the lowest brightness that the clipped channels allow. 0: no lamp counts
-    /// as clipped.
+    /// A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
+    /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that the clipped channels allow. 0:
+    /// no lamp counts as clipped.
     pub clip_level: f32,
     /// 1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo.
     pub even_lamps: u32,
@@ -97,9 +98,9 @@ pub struct luxfer_emission_params {
     /// any resolution, and lie exactly at the sites of their lattice; this needs the photo and whole_lamps. 0: each
     /// lamp has the outline of the mask.
     pub clean_lamps: u32,
-    /// Largest magnification at which parts of the exemplar are used, in [1, 1e6]; 0, the default: all parts are used.
-    /// The magnification of a pixel is the factor in length by which the photo is magnified there, relative to the
-    /// least magnified pixel of the exemplar. Parts with a larger magnification count as not shown.
+    /// Parts of the exemplar with a magnification above this value, in [1, 1e6], count as not shown in the photo; 0,
+    /// the default: all parts are used. The magnification of a pixel is the factor in length by which the photo is
+    /// magnified there, relative to the least magnified pixel of the exemplar.
     pub max_magnification: f64,
 }
 
@@ -174,10 +175,10 @@ pub struct luxfer_emission_report {
     /// Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
     /// large part of the lamps. If there is no whole lamp, the texture shows the lamps that the border cuts.
     pub exemplar_lamps: u32,
-    /// Estimated sampling error of the statistics that error compares. Parts of the texture that are as large as the
-    /// exemplar are compared with the whole texture, and this is the root mean square of their differences. If error
-    /// is at most twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the
-    /// exemplar, for blended exemplars, and for a plan.
+    /// Estimated sampling error of the statistics that error compares: their root mean square difference between the
+    /// whole texture and parts of it that are as large as the exemplar. If error is at most twice this value, it does
+    /// not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended exemplars, and for
+    /// a plan.
     pub sampling_error: f32,
     /// The law by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
@@ -413,8 +414,9 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
 
 /// Starts a job that makes the whole texture in memory. For textures that are too large for that, use
 /// luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE
-/// if the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
+/// LUXFER_DEGENERATE if the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
+/// range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start(
     emission: *mut luxfer_emission,
@@ -453,8 +455,8 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Gets the quality of the texture, or of a plan the fields that do not need texels. size is sizeof *report. Any
-/// thread.
+/// Gets the quality of the texture. For a plan, only the fields that need no texels are set. size is sizeof *report.
+/// Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
@@ -492,9 +494,9 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
     })
 }
 
-/// Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so it describes a luminaire as
-/// the exemplar shows it, cut at the edges of the texture. Only lights that run through the whole exemplar, such as
-/// light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
+/// Describes a luminaire of the texture; index starts at 0. A plan has no texels yet, so a luminaire of a plan is
+/// described as the exemplar shows it, cut at the edges of the texture. Only lights that run through the whole
+/// exemplar, such as light bands, are described as the texture will show them. size is sizeof *luminaire. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(

@@ -1,17 +1,17 @@
 //! Laws of an emission
 //!
-//! The laws by which an emissive texture continues the lights of its exemplar.
+//! A law is the rule by which an emissive texture continues the lights of its exemplar, for example on a lattice.
 
 use crate::emission::{Continuation, Law};
 use crate::error::{Error, Result};
 
 /// The law by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
-/// The law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept unless another law is
-/// clearly better.
+/// The law that predicts the lamps of the photo best. The law that LUXFER_LAW_CORRELATION gives is kept unless another
+/// law is clearly better.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// The law that the autocorrelation of the lights gives, with min_regularity of luxfer_emission_params as its
-/// threshold.
+/// The law that the autocorrelation of the lights suggests. min_regularity of luxfer_emission_params is the least
+/// correlation that counts.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// The lamps form a lattice with two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;

@@ -1,6 +1,6 @@
 //! Styles and tiles
 //!
-//! Textures from several exemplars, and textures that are too large to make as a whole. For the latter,
+//! Textures from several exemplars, and textures that are too large to make as a whole. For such large textures,
 //! luxfer_emission_start_plan decides where every lamp lies, and luxfer_emission_render_tile renders any rectangle of
 //! the texture. A plan holds the exemplars, the place of each lamp and the outlines of the patches, but no texels.
 

@@ -57,7 +57,8 @@ pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
 /// channel. Set it as the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// Normalisation of the photo's colours for a network, whose file does not state it: a LUXFER_NORMALISATION_ value.
+/// How the photo's colours are normalised for a network, which an ONNX file does not state: a LUXFER_NORMALISATION_
+/// value.
 pub type luxfer_normalisation = i32;
 /// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
 /// LUXFER_NORMALISATION_HALF.
@@ -205,9 +206,9 @@ pub unsafe extern "C" fn luxfer_features_set_depth(
 
 /// Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
 /// input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096. Its first output is a map of
-/// relative inverse depth, as of MiDaS and DPT. The map is scaled so that its nearest pixel lies on near_plane and its
-/// farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network. The call
-/// reads the file, which is not needed afterwards. Any thread.
+/// relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on near_plane
+/// and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
+/// The call reads the file, which is not needed afterwards. Any thread.
 /// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
 /// that the library does not support, or if the library was built without the Cargo feature onnx.
 #[unsafe(no_mangle)]
@@ -315,7 +316,7 @@ pub unsafe extern "C" fn luxfer_features_set_strokes(
 }
 
 /// Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all
 /// holes.
 #[unsafe(no_mangle)]

@@ -1,6 +1,6 @@
 //! Glare of observers
 //!
-//! Computes the unified glare rating (CIE 117) of observers in a scene. The glare sources are its luminaires. The
+//! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are its luminaires. The
 //! luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as seen from
 //! the eye.
 
@@ -25,7 +25,7 @@ pub struct luxfer_observer {
     pub direction: [f32; 3],
 }
 
-/// The glare of an observer. An element of arrays, so this struct never changes.
+/// The glare that an observer experiences. An element of arrays, so this struct never changes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_observer_glare {

@@ -118,8 +118,8 @@ pub unsafe extern "C" fn luxfer_guides_set_scene(
 }
 
 /// Starts a job that renders the guides. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_start(
     guides: *mut luxfer_guides,

@@ -56,12 +56,12 @@ pub(super) fn give<H: Handle>(object: Arc<H::Object>) -> *mut H {
 /// misaligned.
 pub(super) fn read_tag(handle: *const c_void) -> Option<u64> {
     let tag: *const AtomicU64 = handle.cast();
-    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is no handle is the host's mistake;
+    // SAFETY: the tag of a valid handle is readable at any time. A pointer that is not a handle is the host's mistake;
     // reading one aligned word is the least harmful way to detect it.
     (!tag.is_null() && tag.is_aligned()).then(|| unsafe { (*tag).load(Ordering::Acquire) })
 }
 
-/// Returns the shell behind a handle; an error if the tag is not that of its kind.
+/// Returns the shell behind a handle; an error if its tag is not `H::TAG`.
 fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Object>> {
     if handle.is_null() {
         return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));

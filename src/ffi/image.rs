@@ -138,8 +138,8 @@ pub(super) struct Pixels {
     context: Arc<Context>,
     source: Source,
     metadata: PhotoMetadata,
-    /// Number of point lights, spot lights and luminaires in the rendered scene, which the image does not show; 0 if
-    /// the image is no rendering.
+    /// Number of point lights, spot lights and luminaires in the rendered scene. They light the scene but are
+    /// invisible in the image. 0 if the image is not a rendering.
     unseen_lights: usize,
 }
 
@@ -178,8 +178,7 @@ impl Pixels {
         (self.image().width, self.image().height)
     }
 
-    /// Returns the image without the result of a stage that it may belong to: an image that is part of a stage's
-    /// result is copied.
+    /// Returns the image alone. An image inside a stage's result is copied, because the result cannot be split.
     pub(super) fn shared(&self) -> Result<Arc<Image>> {
         match &self.source {
             Source::Own(image, _) => Ok(image.clone()),
@@ -219,7 +218,7 @@ impl Pixels {
         Ok(Self::own(context, make()?, charge, PhotoMetadata::default()))
     }
 
-    /// Creates the object of an image that is part of a stage's result; both share the pixels.
+    /// Creates the object of an image that is part of a stage's result; the object and the result share the pixels.
     pub(super) fn part<O: Send + Sync + 'static>(
         context: &Arc<Context>,
         output: Arc<O>,
@@ -228,8 +227,8 @@ impl Pixels {
         Self::rendered(context, output, pick, 0)
     }
 
-    /// Creates the object of an image that is part of a rendering, which does not show `unseen_lights` lights of its
-    /// scene.
+    /// Creates the object of an image that is part of a rendering. `unseen_lights` is the number of lights of the
+    /// scene that are invisible in renderings.
     pub(super) fn rendered<O: Send + Sync + 'static>(
         context: &Arc<Context>,
         output: Arc<O>,
@@ -241,7 +240,8 @@ impl Pixels {
         Arc::new(Self { context: context.clone(), source, metadata: PhotoMetadata::default(), unseen_lights })
     }
 
-    /// Number of point lights, spot lights and luminaires in the rendered scene, which the image does not show.
+    /// Number of point lights, spot lights and luminaires in the rendered scene. They light the scene but are
+    /// invisible in the image.
     pub(super) fn unseen_lights(&self) -> usize {
         self.unseen_lights
     }

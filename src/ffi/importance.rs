@@ -1,8 +1,8 @@
 //! Importance
 //!
 //! An importance map: for each point of an emitting surface, the light that it would send to a target. The map is
-//! traced once. Then it gives the light of any emissive texture on that surface, at any scale, rotation and offset,
-//! within milliseconds and with a confidence interval.
+//! traced once. From the map, the light that the target receives from any emissive texture on that surface, at any
+//! scale, rotation and offset, is computed within milliseconds and with a confidence interval.
 
 use super::context::luxfer_context;
 use super::geometry::numbers;
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
 
 /// Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
 /// releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
 /// range.
 #[unsafe(no_mangle)]
@@ -198,9 +198,9 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
     })
 }
 
-/// Computes the light that the target receives from a texture, which is linear, in cd/m², and repeats. placement is
-/// the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by row,
-/// with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
+/// Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
+/// is the map from texture coordinates of the surface to texture coordinates of the texture: a 3 x 3 matrix, row by
+/// row, with the last row 0 0 1; NULL is the identity. The call takes a few milliseconds. size is sizeof *report. Any
 /// thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
 #[unsafe(no_mangle)]
@@ -225,10 +225,10 @@ pub unsafe extern "C" fn luxfer_importance_respond(
     })
 }
 
-/// Solves for the factor of a texture with which the mean radiance of the target is (red, green, blue) in cd/m², each
-/// in [0, 1e15]. luxfer_relight solves this by tracing; this call uses the map. texture and placement are as for
-/// luxfer_importance_respond. size is sizeof *report. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
+/// Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
+/// blue) in cd/m², each in [0, 1e15]. luxfer_relight solves this by tracing; this call uses the map. texture and
+/// placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture can reach the target.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_solve(
     importance: *mut luxfer_importance,

@@ -1,8 +1,8 @@
 //! Lamps
 //!
-//! Finds powers for the lamps of an emission, within bounds, that come nearest to several goals. A goal is a surface
-//! or a calculation grid that should receive a given light. For each goal, one set of paths measures the goal's
-//! response to all lamps at once, even to thousands.
+//! Finds powers for the lamps of an emission, within bounds, with which the scene comes nearest to several goals. A
+//! goal is a surface or a calculation grid that should receive a given light. For each goal, one set of paths measures
+//! the goal's response to all lamps at once, even to thousands.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -43,8 +43,8 @@ pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
 pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 /// Lamps in one row form a group: their centres agree, within row_tolerance, in z of the meshes.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
-/// Lamps of one type form a group: lamps of about equal area. Punctual lights have these types: point lights, spot
-/// lights, and for each distribution the luminaires with it.
+/// Lamps of one type form a group: lamps of about equal area. Among punctual lights, all point lights are one type,
+/// all spot lights are one type, and luminaires with the same distribution are one type.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
 /// Settings of the solver for lamps. Fill them with luxfer_lamps_params_init.
@@ -58,16 +58,16 @@ pub struct luxfer_lamps_params {
     /// Largest gap between neighbouring lamps in one row, for LUXFER_GROUP_BY_X, _Y and _Z: the difference of their
     /// coordinates, in texture coordinates or metres, >= 0; default 0.01. A larger gap starts a new row.
     pub row_tolerance: f32,
-    /// 1: solve for each colour channel of a group separately, which needs goals of colour only; 0, the default: solve
-    /// for the power only.
+    /// 1: solve for each colour channel of a group separately, which needs all goals to be given per channel, as
+    /// luxfer_lamps_add_mesh does; 0, the default: solve for the power only.
     pub free_colour: u32,
     /// Largest factor for the emission of a group, >= 0; default infinity.
     pub max_scale: f64,
     /// Weight in [1e-9, 1e3] that pulls all powers towards one value; default 1e-6. With small values the goals are
     /// met, with large values the powers are nearly equal.
     pub regularisation: f64,
-    /// Largest error with which a goal counts as met, as a share of the goal, in [1e-6, 1]; default 0.01. The noise of
-    /// the goal's light is added to it.
+    /// A goal counts as met if its error is at most this share of the goal, in [1e-6, 1]; default 0.01. The noise of
+    /// the goal's light is added to this tolerance.
     pub tolerance: f64,
     /// Maximum number of paths for each goal, in [1024, 2^30]; default 2^20.
     pub paths: u32,
@@ -166,7 +166,7 @@ pub unsafe extern "C" fn luxfer_lamps_set_scene(
 /// Starts a job that measures the responses and solves for the powers. If the goals cannot be met, the job succeeds
 /// with the powers that come nearest within the bounds. params may be NULL for the defaults. The caller releases *job.
 /// Any thread.
-/// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. The job may end with
+/// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job is already running. The job may end with
 /// LUXFER_UNREACHABLE if no goal receives light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the
 /// emission has no lamp, there are more than 64 goals, goals times lamps exceed 2^20, or a setting is out of range.
 #[unsafe(no_mangle)]

@@ -62,7 +62,7 @@ versioned!(luxfer_lamp, [80], {
     Self { struct_size: 80, group: 0, centre: [0.0; 3], scale: [0.0; 3], half_width: [0.0; 3] }
 });
 
-/// The light that one goal receives with the powers found.
+/// The light that the surface or grid of one goal receives with the powers found.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_goal {
@@ -70,16 +70,17 @@ pub struct luxfer_lamps_goal {
     pub struct_size: u32,
     /// LUXFER_OUTCOME_ value of each channel.
     pub outcome: [luxfer_outcome; 3],
-    /// Target: the mean radiance that the goal should have, in cd/m² per channel; for a grid, illuminance / pi.
+    /// Target: the mean radiance that the goal's surface should have, in cd/m² per channel; for a grid, illuminance /
+    /// pi.
     pub target: [f64; 3],
-    /// Mean radiance of the goal with the powers found, in cd/m² per channel.
+    /// Mean radiance of the goal's surface with the powers found, in cd/m² per channel.
     pub achieved: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of achieved.
     pub half_width: [f64; 3],
-    /// Mean radiance of the goal from all light but the lamps, in cd/m² per channel.
+    /// Mean radiance of the goal's surface from all light but the lamps, in cd/m² per channel.
     pub background: [f64; 3],
-    /// Target in lux: pi times the luminance of target. This field and the three fields below are set for goals of
-    /// illuminance only, which are grids, and meshes with LUXFER_QUANTITY_INCIDENT; they are 0 for other goals.
+    /// Target in lux: pi times the luminance of target. This field and the three fields below are set only for goals
+    /// of illuminance: grids, and meshes with LUXFER_QUANTITY_INCIDENT. They are 0 for other goals.
     pub target_lux: f64,
     /// Illuminance with the powers found, in lux.
     pub achieved_lux: f64,
@@ -106,7 +107,7 @@ versioned!(luxfer_lamps_goal, [144], {
     }
 });
 
-/// The light that one goal receives from one lamp.
+/// The light that the surface or grid of one goal receives from one lamp.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_lamps_response {
@@ -114,7 +115,7 @@ pub struct luxfer_lamps_response {
     pub struct_size: u32,
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Mean radiance of the goal from the lamp at scale 1, in cd/m² per channel.
+    /// Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel.
     pub mean: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of mean.
     pub half_width: [f64; 3],
@@ -171,7 +172,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_lamp(
     })
 }
 
-/// Gets the light that one goal receives; index starts at 0. size is sizeof *goal. Any thread.
+/// Gets the light that the surface or grid of one goal receives; index starts at 0. size is sizeof *goal. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_goal(
@@ -204,8 +205,8 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
     })
 }
 
-/// Gets the light that a goal receives from one lamp, for hosts that mix the light of the lamps themselves; goal and
-/// lamp start at 0. size is sizeof *response. Any thread.
+/// Gets the light that the surface or grid of a goal receives from one lamp, for hosts that mix the light of the lamps
+/// themselves; goal and lamp start at 0. size is sizeof *response. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_response(

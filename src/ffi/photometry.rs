@@ -27,13 +27,13 @@ pub struct luxfer_glare_report {
     pub ugr: f64,
     /// Luminance of the background in cd/m².
     pub background: f64,
-    /// Luminance in cd/m² above which a pixel counted as a glare source.
+    /// The threshold that was used: pixels of at least this luminance in cd/m² counted as glare sources.
     pub threshold: f64,
     /// Solid angle of all sources in steradians.
     pub solid_angle: f64,
-    /// Number of point lights, spot lights and luminaires of the rendered scene: the image does not show them, and ugr
-    /// leaves them out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image and
-    /// luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
+    /// Number of point lights, spot lights and luminaires of the rendered scene. They are invisible in the image, and
+    /// ugr leaves them out; rate them with luxfer_scene_get_glare. Known only for images of luxfer_render_get_image
+    /// and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the scene has
     /// LUXFER_WARNING_NOT_IN_PICTURE.
     pub unseen_lights: u32,
     /// Reserved; always 0.

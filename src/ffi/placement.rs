@@ -23,8 +23,8 @@ pub const LUXFER_AIM_MIN_LUMINANCE: luxfer_aim = 1;
 /// Bring the mean radiance of the target, all other light included, nearest to luxfer_placement_params.radiance.
 pub const LUXFER_AIM_RADIANCE: luxfer_aim = 2;
 
-/// Objective and bounds of a placement. A placement scales the texture coordinates of the surface, then rotates them,
-/// both about their centre (0.5, 0.5), and then shifts them. Fill it with luxfer_placement_params_init.
+/// Objective and bounds of a placement. A placement scales the texture coordinates of the surface about their centre
+/// (0.5, 0.5), then rotates them about this centre, and then shifts them. Fill it with luxfer_placement_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_placement_params {
@@ -134,8 +134,8 @@ versioned!(luxfer_placement, [192], {
 
 /// Starts a job that finds the best placement of a texture for the target. The texture is linear, in cd/m², and
 /// repeats. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
-/// LUXFER_INVALID_ARGUMENT if a setting is out of range.
+/// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job is already running. The job may
+/// end with LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start_placement(
     importance: *mut luxfer_importance,

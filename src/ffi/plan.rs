@@ -3,8 +3,8 @@
 //! Chooses the settings of relighting and rendering, or of a stylisation, for a given error or a given time, before
 //! anything is rendered. A plan also predicts the time and the error of each stage. The cost of a path and the noise
 //! depend on the scene, so a plan measures them on a small part of the actual work; this takes a few tenths of a
-//! second, besides the preparation of the scene. A plan assumes that the load of the machine by other programs does
-//! not change.
+//! second, besides the preparation of the scene. A plan assumes that other programs keep the machine as busy as they
+//! do now.
 //!
 //! The error of a picture is the root mean square error over its pixels, divided by its mean. It includes the noise
 //! and the error in brightness that comes from the solution of the emission. luxfer_plan_start_stylize defines the
@@ -128,7 +128,7 @@ impl From<plan::Lighting> for Made {
     }
 }
 
-/// Settings of a planned stylisation, and whether the caller wants the data for updates kept.
+/// Settings of a planned stylisation, and whether to keep the data for updates.
 #[cfg(feature = "stylize")]
 pub(super) struct Stylisation {
     pub params: stylize::Params,
@@ -174,8 +174,8 @@ pub unsafe extern "C" fn luxfer_plan_create(
 /// and the other settings that do not affect quality; NULL stands for the defaults. params gives the goal. The caller
 /// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_render(
     plan: *mut luxfer_plan,
@@ -201,8 +201,8 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
 /// job, get the planned settings by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, and point the
 /// fields relight and render of settings at them. params gives the goal. The caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
+/// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job is already running. The job may end
+/// with LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_transfer(
     plan: *mut luxfer_plan,
@@ -247,10 +247,10 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
     })
 }
 
-/// Gets the settings to render with: the settings given at the start, in which the plan has set those that affect
-/// quality. If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan sets
-/// the number of paths, and sets time_budget_ms to a quarter more than the time that these paths should take. So every
-/// run gives an equal picture, unless the machine becomes slower. size is sizeof *params. Any thread.
+/// Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
+/// has chosen. If the goal is an error, rendering stops when it reaches the error. If the goal is a time, the plan
+/// sets the number of paths, and sets time_budget_ms to a quarter more than the time that these paths should take. So
+/// every run gives an equal picture, unless the machine becomes slower. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(
@@ -266,8 +266,8 @@ pub unsafe extern "C" fn luxfer_plan_get_render_params(
     })
 }
 
-/// Gets the settings to relight with: the settings given at the start, in which the plan has set those that affect
-/// quality. size is sizeof *params. Any thread.
+/// Gets the settings to relight with: the settings given at the start, except those that affect quality, which the
+/// plan has chosen. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_relight_params(

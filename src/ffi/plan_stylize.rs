@@ -21,8 +21,8 @@ use crate::plan;
 /// values are in [0, 1]. If no settings reach the goal, the plan gives the settings that come nearest to it. The
 /// caller releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or sets no goal or two, or if a setting is out of range;
-/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end with the statuses
-/// of luxfer_stylize_start's job.
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running. The job may end with the
+/// statuses of luxfer_stylize_start's job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_stylize(
     plan: *mut luxfer_plan,
@@ -45,8 +45,8 @@ pub unsafe extern "C" fn luxfer_plan_start_stylize(
     })
 }
 
-/// Gets the settings to stylise with: the settings given at the start, in which the plan has set the numbers of rounds
-/// and sweeps. size is sizeof *params. Any thread.
+/// Gets the settings to stylise with: the settings given at the start, except the numbers of rounds and sweeps, which
+/// the plan has chosen. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_stylize_params(

@@ -23,7 +23,7 @@ pub const LUXFER_NONE: u32 = 0xFFFF_FFFF;
 pub struct luxfer_ray {
     /// Start of the ray, in metres.
     pub origin: [f32; 3],
-    /// Direction of the ray; any length but 0. It is the unit of distances along the ray.
+    /// Direction of the ray; any length but 0. Its length is the unit of distances along the ray.
     pub direction: [f32; 3],
     /// Only hits at distances in (0, t_max) count, in units of the length of direction; may be infinite.
     pub t_max: f32,

@@ -94,8 +94,8 @@ pub struct luxfer_rectify_params {
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane that are
-    /// so far away that they would be magnified more are cut off.
+    /// Largest magnification of the photo in the unwarped image, in (0, 1e6]; default 16. Parts of the plane with a
+    /// larger magnification, which lie far from the camera, are cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -199,8 +199,8 @@ pub struct luxfer_rectify_report {
     /// Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed.
     pub aspect_confidence: f64,
     /// Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
-    /// below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of straight edges,
-    /// and not corrected. NaN if the photo has too few lines.
+    /// below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
+    /// edges, and not corrected. NaN if the photo has too few lines.
     pub distortion: f64,
     /// Standard deviation of distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
@@ -286,7 +286,8 @@ pub(super) struct Inputs {
 pub(super) struct Output {
     pub(super) view: Arc<View>,
     pub(super) unwarped: Option<Arc<Unwarped>>,
-    /// The photo in which the view was found, and the settings. The view is used again as long as both stay the same.
+    /// The photo in which the view was found, and the settings. The view is used again as long as the photo and the
+    /// settings are unchanged.
     found_in: Arc<Pixels>,
     found_with: rectify::Params,
 }
@@ -347,11 +348,11 @@ pub unsafe extern "C" fn luxfer_rectify_set_mask(
 }
 
 /// Starts a job that finds lines, vanishing points and the camera, and unwarps the plane if its mask is set. If an
-/// earlier job with equal settings has found the camera of this photo, it is used again. params may be NULL for the
-/// defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
-/// there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
-/// range.
+/// earlier job with equal settings has found the camera of this photo, the job uses that camera. params may be NULL
+/// for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job is already running. The job may end with
+/// LUXFER_DEGENERATE if there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a
+/// setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_start(
     rectify: *mut luxfer_rectify,

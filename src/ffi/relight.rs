@@ -238,8 +238,8 @@ pub unsafe extern "C" fn luxfer_relight_create(
 }
 
 /// Sets the scene, the emitting material to solve for, and the target mesh, whose mean colour should match;
-/// luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has
-/// in the scene. Any thread.
+/// luxfer_scene_place_emission returns the indices of this material and of a new mesh that has it. The solution is a
+/// factor for the emission that the material has in the scene. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(
@@ -315,11 +315,11 @@ impl Emitter {
     }
 }
 
-/// Starts a job that solves for the factor of the emission. params may be NULL for the defaults. The caller releases
-/// *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
-/// valid or a setting is out of range.
+/// Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
+/// caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
+/// LUXFER_UNREACHABLE if no emitted light can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or a
+/// setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,

@@ -73,7 +73,7 @@ pub struct luxfer_render_params {
     /// Must be 0.
     pub reserved: u32,
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-    /// Default 0: no preview, as for final images. It does not change the other images.
+    /// Default 0: no preview, as for final images. The preview does not change the other images.
     pub preview: f32,
     /// Stop when the field relative_error of luxfer_render_report falls to this value, >= 0; paths then go to the
     /// pixels where they reduce it most. Like the eye, this error weighs noise in dark areas as much as in bright
@@ -135,7 +135,7 @@ pub struct luxfer_render_report {
     pub preview_bias: f64,
     /// Root mean square, over all pixels, of the standard error divided by the pixel's value. The value is the mean of
     /// the pixel's channels, but at least a hundredth of the image's mean. Infinite while a pixel has fewer than two
-    /// paths. With few paths it overestimates: with 8 by about a quarter.
+    /// paths. With few paths this estimate is too high: with 8 paths by about a quarter.
     pub relative_error: f64,
 }
 
@@ -154,7 +154,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// Returns the scene and its current state, and the camera.
+    /// Returns the scene object, a snapshot of the scene as it is now, and the camera.
     pub(super) fn view(&self) -> Result<(Arc<SceneObject>, Arc<Scene>, Camera)> {
         let object = need(&self.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
@@ -165,7 +165,7 @@ impl Inputs {
         Ok((object, scene, camera))
     }
 
-    /// Returns the current scene, the camera and the settings as one rendering; `params` may be NULL for the defaults.
+    /// Returns a snapshot of a rendering's inputs: scene, camera and settings. `params` may be NULL for the defaults.
     pub(super) fn shot(&self, params: *const luxfer_render_params) -> Result<Shot> {
         let (object, scene, camera) = self.view()?;
         let params = render::Params { outputs: self.outputs.clone(), ..params::read(params)?.params()? };
@@ -238,8 +238,8 @@ pub unsafe extern "C" fn luxfer_render_set_camera(
 }
 
 /// Starts a job that renders the scene. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start(
     render: *mut luxfer_render,

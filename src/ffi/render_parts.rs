@@ -97,9 +97,9 @@ pub unsafe extern "C" fn luxfer_render_split(
 /// Starts a job that renders a part, or the whole image if part is NULL, and writes it into a file. path is UTF-8, and
 /// an existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this
 /// part alone. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if a setting leaves the number
-/// of paths open, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if a setting leaves the
+/// number of paths open, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start_part(
     render: *mut luxfer_render,
@@ -152,9 +152,9 @@ pub unsafe extern "C" fn luxfer_render_clear_parts(render: *mut luxfer_render) -
 
 /// Starts a job that merges the files of luxfer_render_add_part. Afterwards the rendering has its images and layers as
 /// after luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
-/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene, if
-/// parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if the scene has no
+/// such camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or another scene,
+/// if parts overlap, or if parts are missing: the message names them; LUXFER_IO or LUXFER_FORMAT if a file cannot be
 /// read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start_merge(

@@ -49,8 +49,8 @@ pub struct luxfer_requirements {
     pub lights: u32,
     /// Number of textures that change the scattering, the emission or the normals of surfaces.
     pub textures: u32,
-    /// Number of bounces that matter: light that is scattered more often is at most the share error of all light that
-    /// surfaces scatter, where error is the argument of luxfer_scene_get_requirements. 0 if the albedos give no such
+    /// Number of bounces that matter. Light with more bounces than this makes up at most the share error of all light
+    /// that surfaces scatter; error is the argument of luxfer_scene_get_requirements. 0 if the albedos give no such
     /// bound. For information only: no rendering ends paths at this number.
     pub bounces: u32,
     /// Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces.

@@ -301,11 +301,11 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
     })
 }
 
-/// Sets the environment, which emits light from all directions, in place of any earlier one. If image is NULL, its
-/// radiance is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise the radiance is an
-/// equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image is towards -z,
-/// its top towards +y, the centre of its right half towards +x. The renderer samples the image in proportion to its
-/// brightness. The image is copied. Any thread.
+/// Sets the environment, which emits light from all directions, in place of any earlier one. If image is NULL, the
+/// radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise the
+/// radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image is
+/// towards -z, its top towards +y, the centre of its right half towards +x. The renderer samples the image in
+/// proportion to its brightness. The image is copied. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 #[unsafe(no_mangle)]

@@ -177,10 +177,11 @@ impl luxfer_luminaire_params {
     }
 }
 
-/// Adds a luminaire to a scene: a punctual light whose luminous intensity by direction is a distribution. *index,
-/// unless NULL, receives its index among the punctual lights. A point is a good model of a luminaire only if the
-/// luminaire is at most a fifth as large as its distance from the surfaces that it lights. No picture shows the
-/// luminaire: rate its glare with luxfer_scene_get_glare. params may be NULL for the defaults. Any thread.
+/// Adds a luminaire to a scene: a punctual light whose luminous intensity in each direction is given by distribution.
+/// *index, unless NULL, receives its index among the punctual lights. A point is a good model of a luminaire only if
+/// the luminaire is at most a fifth as large as its distance from the surfaces that it lights. The luminaire itself is
+/// invisible in renderings: rate its glare with luxfer_scene_get_glare. params may be NULL for the defaults. Any
+/// thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

@@ -22,9 +22,9 @@ use std::path::Path;
 pub struct luxfer_scene_load_params {
     /// sizeof(luxfer_scene_load_params), set by luxfer_scene_load_params_init.
     pub struct_size: u32,
-    /// 1: also read files outside the folder of the scene file, which it names by .. or by an absolute path; 0, the
-    /// default: such a name gives LUXFER_UNSUPPORTED. Set it only for scene files that you trust. Only files are read,
-    /// never devices or addresses on a network.
+    /// 1: also read files outside the folder of the scene file if the scene file names them by .. or by an absolute
+    /// path; 0, the default: such a name gives LUXFER_UNSUPPORTED. Set it only for scene files that you trust. Only
+    /// files are read, never devices or addresses on a network.
     pub allow_external_files: u32,
     /// Length in metres of a unit of the file, in [1e-6, 1e6]; default 1, as glTF defines; 0.001 for a file in
     /// millimetres. It scales positions, but not intensities and luminances.

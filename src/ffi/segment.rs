@@ -40,7 +40,8 @@ pub type luxfer_subject = i32;
 /// luxfer_features makes them; else a surface.
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is judged by its features, and the mask is
-/// restricted to the face of the room that the strokes lie on, or to the parts that strokes touch.
+/// restricted to the face of the room that the strokes lie on, or else to the connected parts of the mask that strokes
+/// touch.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
 /// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
 /// or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
@@ -69,8 +70,8 @@ pub struct luxfer_segment_params {
     pub ridge: f64,
     /// Seed of the samples that are drawn; default 1.
     pub seed: u64,
-    /// Difference of the first three channels below which the refinement treats neighbouring pixels as one surface, in
-    /// the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
+    /// The refinement treats neighbouring pixels as one surface if their first three channels differ by less than
+    /// this, in the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
     /// What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the subject is
     /// lamps, the settings above have no effect.
@@ -224,9 +225,9 @@ pub unsafe extern "C" fn luxfer_segment_set_strokes(
 /// proposes a mask, with LUXFER_WARNING_PROPOSED. For a surface it proposes the face of the room under the positive
 /// strokes, or else the ceiling; for lamps it proposes lamps among the brightest regions of the mask of
 /// luxfer_segment_set_region. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
-/// if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not
-/// finite or a setting is out of range.
+/// LUXFER_INVALID_OPERATION if the features are missing or a job is already running. The job may end with
+/// LUXFER_DEGENERATE if strokes are missing and there is nothing to propose, LUXFER_INVALID_ARGUMENT if sizes differ,
+/// a feature is not finite or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_start(
     segment: *mut luxfer_segment,

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 
-/// Maximum number of threads whose last message is kept: the threads that failed last.
+/// The context keeps the last messages of at most this many threads: of those that failed last.
 const MAX_MESSAGES: usize = 256;
 
 /// The object behind a `luxfer_context` handle, shared by all objects that are created in it.
@@ -53,8 +53,8 @@ impl Context {
         })
     }
 
-    /// Returns an error in a forked child of the process that created the context. Takes no lock: a thread that held
-    /// it during the fork does not exist in the child and would never release it.
+    /// Returns an error in a forked child of the process that created the context. Takes no lock: if another thread
+    /// held the lock during the fork, that thread does not exist in the child and would never release the lock.
     pub(super) fn check_process(&self) -> Result<()> {
         if self.process == std::process::id() {
             Ok(())

@@ -1,7 +1,7 @@
 //! Print sheets
 //!
-//! For artists who paint on paper: draws a sheet that shows the exemplar in pale colours between alignment marks, to
-//! be printed, and aligns a photo or scan of the painted sheet with the exemplar by these marks. These calls are
+//! For artists who paint on paper: draws a sheet to print, which shows the exemplar in pale colours between alignment
+//! marks, and aligns a photo or scan of the painted sheet with the exemplar by these marks. These calls are
 //! synchronous: they do their work before they return.
 
 use super::guard::enter;

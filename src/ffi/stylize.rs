@@ -46,8 +46,8 @@ pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
 /// Flag of luxfer_stylize_add_guides: add the colour code of materials, so that objects of one material are painted
 /// from objects of that material.
 pub const LUXFER_GUIDES_WITH_MATERIALS: u32 = 4;
-/// Flag of luxfer_stylize_add_guides: add the caustics, at the exposure of the light guides, for scenes in which
-/// glossy objects reflect light onto others.
+/// Flag of luxfer_stylize_add_guides: add a guide of the caustics, exposed like the guides of the other kinds of
+/// light. Use it for scenes in which glossy objects reflect light onto others.
 pub const LUXFER_GUIDES_WITH_CAUSTICS: u32 = 8;
 
 #[derive(Clone, Default)]
@@ -157,10 +157,11 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
 }
 
 /// Adds a guide, or replaces the guide with that name. source shows the exemplar scene and target the scene to paint.
-/// Both have the same number of channels, and all guides together have at most 60 channels. target may be NULL to use
-/// source for both, for a half-painted picture (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the
-/// other guides; range is a LUXFER_GUIDE_ value. All sources must have one size, and all targets one size. In a
-/// target, values that are not finite count as 0; pixels of a source with such values are not used. Any thread.
+/// source and target have the same number of channels, and all guides together have at most 60 channels. If target is
+/// NULL, source serves as the target too: for a picture of which one part is painted already
+/// (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value.
+/// All sources must have one size, and all targets one size. In a target, values that are not finite count as 0;
+/// pixels of a source with such values are not used. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the numbers of channels differ or are too large, or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guide(
@@ -301,7 +302,7 @@ pub unsafe extern "C" fn luxfer_stylize_set_motion(
 }
 
 /// Starts a job that paints the target. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job is already running; LUXFER_INVALID_ARGUMENT if a
 /// setting is out of range; LUXFER_NOT_READY if motion is set and there is no previous result. The job may end with
 /// LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels, LUXFER_DEGENERATE if a mask is empty or
 /// leaves no exemplar patch.

@@ -62,7 +62,7 @@ impl Stylised {
         }
     }
 
-    /// Returns a copy of this output whose picture and sources are those of an update.
+    /// Returns a copy of this output with the picture and the sources that an update has made.
     pub(super) fn updated(&self, picture: Image, sources: Image) -> Self {
         let finished = self.finished.clone().map(|f| Finished { sources: Arc::new(sources), ..f });
         Self { picture: Arc::new(picture), finished, ..self.clone() }

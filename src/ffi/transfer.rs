@@ -337,8 +337,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_camera(
     })
 }
 
-/// Sets the strokes on the photo, for both masks. Strokes on lights count as strokes on the plane too. The call copies
-/// the strokes, which replace earlier strokes; strokes may be NULL: no strokes. Any thread.
+/// Sets the strokes on the photo, for the mask of the plane and the mask of the lights. Strokes on lights count as
+/// strokes on the plane too. The call copies the strokes, which replace earlier strokes; strokes may be NULL: no
+/// strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_strokes(
@@ -453,7 +454,7 @@ fn use_segmentation(
 
 /// Starts a job that runs the stages from first to last, both included; first and last are LUXFER_STAGE_ values. The
 /// stages before first must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if a job runs already, or if an input or the result of an earlier stage is missing;
+/// LUXFER_INVALID_OPERATION if a job is already running, or if an input or the result of an earlier stage is missing;
 /// LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
 /// jobs; the message names the stage. It ends at once if the scene does not have the surface. Stages that have ended
 /// keep their results.

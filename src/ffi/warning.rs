@@ -80,18 +80,18 @@ pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;
 pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
 /// The photo clips channels of the target, which are then lower bounds; the severity is the number of these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
-/// A scene is so high, so wide or so small that its unit is hardly the metre; the severity is this extent in metres,
-/// below the limit if the scene is too small. The message names the likely unit.
+/// A scene is so high, so wide or so small that its unit is probably not the metre; the severity is this extent in
+/// metres, below the limit if the scene is too small. The message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
-/// The file of a scene has a feature or an extension that is not rendered, which the message names with the first
-/// objects that have it; the severity is their number.
+/// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
+/// objects that have it; the severity is the number of these objects.
 pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// The painted lamps are hardly brighter than the plane: they are off, or face away; the severity is the probability
 /// that a pixel painted as light is brighter than one painted as plane, below the limit. The place is on the darkest
 /// lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without light would differ less from the photo than this one; the severity is the error of
-/// luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without any light would differ less from the photo than the synthesised texture does; the severity is the
+/// error of luxfer_emission_report. It takes the place of LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is a proposal, because strokes of one class for the plane, or positive strokes for the lights, are missing;
 /// the severity is the share of the mask that is expected to be wrong.
@@ -100,8 +100,8 @@ pub const LUXFER_WARNING_PROPOSED: luxfer_warning_code = 24;
 /// the severity is the distance of that origin in metres, above a limit of 0; if coordinates of its vertices are so
 /// large that floats have rounded them, it is the step of the rounding in metres.
 pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
-/// Luminaires of a scene shine from points: no picture shows them, and luxfer_image_get_glare does not rate them; the
-/// severity is their number, and the message lists the first ones with their positions.
+/// Luminaires of a scene shine from points: they are invisible in renderings, and luxfer_image_get_glare does not rate
+/// them; the severity is their number, and the message lists the first ones with their positions.
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 
 /// A warning: a reason to doubt a result.

@@ -142,7 +142,7 @@ mod tests {
         let [a, b, c, d] = quad;
         let one_side = |s: [bool; 4]| s.iter().all(|&v| v == s[0]);
         assert!(one_side(signs(quad)));
-        // The horizon cuts a quadrilateral that intersects itself or is not convex.
+        // If the quadrilateral intersects itself or is not convex, its corners lie on both sides of the horizon.
         let crossed = signs([a, b, d, c]);
         assert!(crossed[0] == crossed[1] && crossed[2] == crossed[3] && crossed[0] != crossed[2], "{crossed:?}");
         let dented = signs([a, b, DVec2::new(0.8, 0.3), d]);

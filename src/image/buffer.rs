@@ -59,7 +59,7 @@ pub(crate) fn make_room<T>(data: &mut Vec<T>, more: usize) -> Result<()> {
     if reserve::make_room(data, more) { Ok(()) } else { Err(no_memory::<T>(data.len().saturating_add(more))) }
 }
 
-/// Returns the error that there is no memory for `len` items.
+/// Returns the error for a failed allocation of `len` items.
 pub(crate) fn no_memory<T>(len: usize) -> Error {
     let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
     Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))

@@ -12,8 +12,8 @@ const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(0.180_480_788_401_834_3, 0.072_192_315_360_733_7, 0.950_532_152_249_660_5),
 );
 
-/// Decodes one sRGB value to a linear value. The curve continues above 1; a negative value gives the negative of its
-/// mirror image.
+/// Decodes one sRGB value to a linear value. The curve continues above 1 and is odd: the value -v gives minus the
+/// result of v.
 pub fn srgb_to_linear(v: f32) -> f32 {
     let a = v.abs();
     let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };
@@ -43,13 +43,13 @@ pub fn linear_to_xyz(rgb: Vec3) -> DVec3 {
 /// Converts linear RGB with diffuse white at 1 to CIELAB. L* lies in `[0, 100]` for colours inside the gamut.
 #[inline(always)]
 pub fn linear_to_lab(rgb: Vec3) -> Vec3 {
-    // Rows of the matrix from linear RGB to CIE XYZ, divided by the white point [convention: IEC 61966-2-1].
+    // Rows of the matrix from linear RGB to CIE XYZ, divided by the white point. [convention: IEC 61966-2-1]
     const X: [f64; 3] = relative_row(0);
     const Y: [f64; 3] = relative_row(1);
     const Z: [f64; 3] = relative_row(2);
     let of = |row: [f64; 3]| {
         let t = row[0] * f64::from(rgb.x) + row[1] * f64::from(rgb.y) + row[2] * f64::from(rgb.z);
-        // Above DELTA³ CIELAB applies a cube root, below it a straight line [convention: CIE 15, CIELAB].
+        // Above DELTA³ CIELAB applies a cube root, below it a straight line. [convention: CIE 15, CIELAB]
         const DELTA: f64 = 6.0 / 29.0;
         let straight = t * (1.0 / (3.0 * DELTA * DELTA)) + 4.0 / 29.0;
         let root = cube_root(t);

@@ -46,7 +46,7 @@ pub fn riff_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
     })
 }
 
-/// Returns left, top, width and height of the first frame of a GIF within its screen, in pixels.
+/// Returns left, top, width and height of the first frame of a GIF within its logical screen, in pixels.
 pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
     // Skip the header, the logical screen descriptor and the global colour table.

@@ -58,7 +58,7 @@ impl Target {
             Ok(old) if old.is_file() => existing(path, old),
             Ok(_) => Ok(Way::InPlace),
             Err(e) if e.kind() == io::ErrorKind::NotFound => new(path),
-            // On Windows, devices have no metadata.
+            // On Windows, metadata cannot be read for devices such as NUL: write to them in place.
             Err(_) if cfg!(windows) => Ok(Way::InPlace),
             Err(e) => Err(e),
         };
@@ -95,7 +95,7 @@ fn new(path: &Path) -> io::Result<Way> {
     }
 }
 
-/// Maximum number of symbolic links in a chain. A longer chain counts as a loop, as in Linux [convention].
+/// Maximum number of symbolic links in a chain. A longer chain counts as a loop, as in Linux. [convention]
 const MAX_LINKS: usize = 40;
 
 /// Follows a chain of symbolic links and returns the path of its target, which need not exist.
@@ -127,7 +127,7 @@ fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> 
 }
 
 /// Maximum number of names to try for the new file. Other threads, and earlier processes with the same id, may have
-/// taken some.
+/// taken some names.
 const MAX_NEIGHBOURS: usize = 10_000;
 
 /// Creates a new file in the folder of `file`; returns its path and the open file. If `is_private`, only the owner may

@@ -103,7 +103,7 @@ pub(super) fn check_profile(bytes: usize, has_tables: bool) -> Result<()> {
 }
 
 /// Bytes for reading a colour profile: its tables as floating-point numbers, its curves, and, if it has colour tables,
-/// those of the transform made from them (33³ colours, curves of 2^16 values).
+/// the tables of the transform made from them (33³ colours, curves of 2^16 values).
 pub(super) fn profile(bytes: usize, has_tables: bool) -> usize {
     bytes.saturating_mul(32).saturating_add(if has_tables { 8 << 20 } else { 2 << 20 })
 }
@@ -159,7 +159,7 @@ fn tiles(width: usize, height: usize) -> usize {
 }
 
 /// Checks the memory for writing an OpenEXR file: the blocks being compressed and the list of blocks. The caller
-/// checks that of the file itself, [`max_file_bytes`].
+/// checks the memory for the file itself, [`max_file_bytes`].
 pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
     check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
 }

@@ -1,4 +1,5 @@
-//! Stores any number of `f64` values per pixel exactly, in OpenEXR files that each hold a window of a picture.
+//! Stores any number of `f64` values per pixel exactly, in OpenEXR files that each hold a window (a rectangle) of a
+//! picture.
 //!
 //! The channels R, G and B hold the picture itself, so that any program can display it. The display window of the file
 //! is the whole picture, and the data window is the window that the file holds. Each `f64` is stored in two channels
@@ -15,7 +16,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-/// The header of a file of exact numbers.
+/// The header of a file that stores `f64` values per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
     /// Width and height of the whole picture, in pixels.
@@ -96,8 +97,8 @@ pub fn read_head(path: &Path) -> Result<Head> {
     meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.context(path.display()))
 }
 
-/// Decodes a file and passes the position in the window and the numbers of each pixel to `pixel`. The header of the
-/// file must equal `head`; otherwise the file is refused before memory is allocated for its pixels.
+/// Decodes a file and calls `pixel` for each pixel, with its position in the data window and its `f64` values. The
+/// header of the file must equal `head`; otherwise the file is refused before memory is allocated for its pixels.
 pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
     let headers = headers(bytes)?;
     let found = Head::of(&headers)?;

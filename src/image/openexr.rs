@@ -18,7 +18,7 @@ use std::io::Cursor;
 
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// The primaries that a file states if its R, G and B are CIE X, Y and Z [convention].
+/// The primaries that a file states if its R, G and B are CIE X, Y and Z. [convention]
 const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 
 /// Tiles of up to this many bytes are accepted in files of any length. A larger tile is refused if the file is too

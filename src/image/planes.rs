@@ -24,7 +24,7 @@ pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
 }
 
 /// Like [`deinterleave`], but for a constant number of channels, at least four, so that offsets are compile-time
-/// constants. Stores `of(channel, values)` for each four values of a channel.
+/// constants. Stores `of(channel, values)` in place of every four values of a channel.
 #[inline(always)]
 pub fn deinterleave_of<const C: usize, const N: usize>(
     pixels: &[f32],

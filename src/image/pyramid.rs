@@ -33,8 +33,8 @@ pub fn resize(image: &Image, width: usize, height: usize, job: Job) -> Result<Im
     Ok(out)
 }
 
-/// Returns the filter weights along one axis, for each of the `to` new pixels that cover `from` old pixels: the first
-/// old pixel that contributes, and the weights from there on, which sum to 1.
+/// Returns the filter weights along one axis, on which `to` new pixels cover `from` old pixels. For each new pixel:
+/// the first old pixel that contributes, and the weights of this pixel and its successors, which sum to 1.
 fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
     let scale = from as f64 / to as f64;
     (0..to)

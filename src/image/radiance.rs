@@ -4,7 +4,7 @@
 //! The stored values are divided by the factors `EXPOSURE` and `COLORCORR`. Colours in other `PRIMARIES` or in CIE XYZ
 //! are converted to linear Rec.709. Scan lines may run in any of the eight directions.
 //!
-//! Not modelled: `PIXASPECT`, the aspect ratio of the pixels.
+//! Not modelled: `PIXASPECT`, the pixel aspect ratio.
 
 use super::file_colour::{Chromaticities, Space};
 use super::limits::check_size;

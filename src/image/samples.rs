@@ -1,6 +1,6 @@
-//! Receives the samples of an OpenEXR layer from the crate `exr`: allocates memory with an error if it is short, and
-//! checks the position of each line. (The crate's own receiver aborts the process if memory is short, and trusts what
-//! a tile says about its resolution.)
+//! Receives the samples of an OpenEXR layer from the crate `exr`: returns an error if memory is short, and checks the
+//! position of each line. (The crate's own receiver aborts the process if memory is short, and trusts what a tile says
+//! about its resolution.)
 
 use crate::image::try_vec;
 use exr::block::chunk::TileCoordinates;

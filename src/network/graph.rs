@@ -31,7 +31,7 @@ const MAX_NODES: usize = 100_000;
 
 impl Network {
     /// Parses an ONNX file held in memory. Errors: `Format` if the file is damaged or inconsistent, `Unsupported` for
-    /// operators and types that are not implemented. Both name the place in the network.
+    /// operators and types that are not implemented. Both errors name the place in the network.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
         let model = read::model(bytes)?;
         if !(7..=21).contains(&model.opset) {
@@ -95,7 +95,7 @@ impl Network {
     }
 }
 
-/// Numbers the values of a graph by name while its nodes are read.
+/// Assigns an index to each named value of a graph while the nodes of the graph are read.
 struct Values<'a> {
     numbers: HashMap<&'a str, usize>,
     constants: Vec<Option<Tensor>>,

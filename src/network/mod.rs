@@ -8,13 +8,14 @@
 //! Files are not trusted. Shapes are checked where they are used. The output of each node is checked against a
 //! [`MemoryBudget`](tensor::MemoryBudget) before it is allocated, and a value is dropped after its last use.
 //! [`MAX_BYTES`] limits the memory of all values during a run; the weights in the file and the temporary memory of a
-//! node come on top.
+//! node are additional.
 //!
 //! Work is divided independently of the number of threads, so equal input yields equal bits. A cancel request is
 //! answered within one row of the largest layer.
 //!
-//! Existing runtimes are not used because they do not suit a library inside another program's process. They never end
-//! their own threads, print to the console, abort the process when memory runs out, or cannot be cancelled.
+//! Existing runtimes are not used because they do not suit a library inside another program's process. Each of them
+//! has at least one of these faults: it never ends its own threads, prints to the console, aborts the process when
+//! memory runs out, or cannot be cancelled.
 //!
 //! Computations are in `f32`. Doubles and halves in a file are converted to `f32`, all integers and booleans to `i64`.
 //! Operator sets 7 to 21 of ONNX are known.

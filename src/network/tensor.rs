@@ -18,7 +18,7 @@ pub enum Data {
     Integers(Arc<Vec<i64>>),
 }
 
-/// Returns the number of items of a shape, or an error if no memory could hold them.
+/// Returns the number of elements of a shape, or an error if no memory could hold them.
 pub fn count(shape: &[usize]) -> Result<usize> {
     let all = shape.iter().try_fold(1usize, |n, &d| n.checked_mul(d));
     all.filter(|&n| n <= usize::MAX / 16)

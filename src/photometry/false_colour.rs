@@ -257,7 +257,7 @@ fn text(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// In CIELAB, which did not serve to design the scale, lightness also increases nearly uniformly and no two
+    /// In CIELAB, which was not used to design the scale, lightness also increases nearly uniformly and no two
     /// neighbours are equal.
     #[test]
     fn colours_are_in_perceptual_order() {

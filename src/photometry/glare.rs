@@ -18,7 +18,8 @@ pub struct Params {
     /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight is horizontal, through the
     /// centre of the image.
     pub fov_y: f64,
-    /// Luminance in cd/m² from which a pixel belongs to a glare source; 0 selects five times the mean of the image.
+    /// A pixel belongs to a glare source if its luminance in cd/m² is at least this value; 0 selects five times the
+    /// mean of the image.
     pub threshold: f64,
 }
 

@@ -8,7 +8,8 @@ pub const WIDTH: usize = 3;
 pub const HEIGHT: usize = 5;
 pub const ADVANCE: usize = WIDTH + 1;
 
-/// Returns the rows of a glyph from the top. The three low bits of each are its dots, the leftmost dot highest.
+/// Returns the rows of a glyph from the top. The three low bits of each row are its dots; the leftmost dot is the
+/// highest of them.
 fn rows(letter: char) -> [u8; HEIGHT] {
     match letter {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],

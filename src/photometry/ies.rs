@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
 use std::fmt::Write;
 
-/// Metres per foot [convention].
+/// Metres per foot. [convention]
 const FEET: f64 = 0.3048;
 
 /// The words after the line `TILT=`, each with its line number.

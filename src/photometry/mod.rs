@@ -6,11 +6,12 @@
 //! files. [`opening`] is the shape of its luminous area. [`presets`] lists requirements of EN 12464-1 for common
 //! rooms. [`false_colour`] shows luminance and illuminance by a scale of colours.
 //!
-//! Two computations are elsewhere: illuminance in `render::illuminance`, and the glare that observers get from the
-//! luminaires of a scene in `render::glare`.
+//! Two computations are elsewhere: `render::illuminance` computes illuminance, and `render::glare` rates the glare
+//! that the luminaires of a scene cause for observers.
 //!
 //! Not modelled: spectra and colour rendering; maintenance; luminaires with a body or a luminous face. A luminaire
-//! shines from a point, so pictures do not show it, and its light is wrong at distances below five times its size.
+//! shines from a point, so it is invisible in renderings, and its light is wrong at distances below five times its
+//! size.
 
 pub mod false_colour;
 pub mod glare;

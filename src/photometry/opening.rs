@@ -7,7 +7,7 @@
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_4;
 
-/// Distance in metres within which a point counts as inside an opening. [convention]: no eye is closer to a lamp.
+/// A point within this distance in metres of an opening counts as inside it. [convention]: no eye is closer to a lamp.
 const CONTACT: f64 = 1e-3;
 
 /// The shape of an opening, with sizes in metres.

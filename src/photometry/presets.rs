@@ -42,7 +42,7 @@ pub const PRESETS: &[Preset] = &[
     preset("library: reading areas", 2021, [500.0, 19.0, 0.6, 80.0], [100.0, 50.0]),
 ];
 
-/// Minimum uniformity of walls and ceilings [convention: EN 12464-1].
+/// Minimum uniformity of walls and ceilings. [convention: EN 12464-1]
 pub const SURROUND_UNIFORMITY: f64 = 0.1;
 
 /// A requirement that is not met.

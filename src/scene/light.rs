@@ -5,7 +5,7 @@ use crate::image::Image;
 use glam::Vec3;
 
 /// Largest luminance in cd/m², intensity in cd and illuminance in lux of any light, per channel. The square of this
-/// value, and of the multiples of it that occur in pixels near a lamp, stay within the range of `f32`. For comparison,
+/// value, and the squares of its multiples that occur in pixels near a lamp, do not overflow `f32`. For comparison,
 /// the sun's disc has 1.6e9 cd/m².
 // [rounding]
 pub const MAX_LIGHT: f32 = 1e15;
@@ -31,7 +31,8 @@ pub enum PunctualLight {
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
     /// Illuminance per channel in lux on a surface perpendicular to `direction`, along which the light travels.
     Directional { direction: Vec3, illuminance: Vec3 },
-    /// A measured luminaire in the far field: it acts as a point at the distance of the lit surfaces.
+    /// A measured luminaire in the far field: it is treated as a point, which assumes that the lit surfaces are far
+    /// away compared with its size.
     ///
     /// `axis` is the unit direction of γ = 0 (down for a hanging luminaire), and `c0` the unit direction of C = 0,
     /// perpendicular to `axis`. C increases anticlockwise for a viewer who looks along `axis`, from above for a

@@ -45,7 +45,7 @@ impl Mesh {
     /// Each directed edge has a hash, and the function sums the hashes of all edges minus those of the reversed edges.
     /// The sum needs no memory; it is 0 by chance for one open mesh in 2^64.
     pub fn is_closed(&self) -> bool {
-        // Add zero, which turns -0 into +0, so that both hash alike.
+        // Add zero, which turns -0 into +0, so that zeros of either sign hash alike.
         let place = |p: Vec3| hash(0, &(p + Vec3::ZERO).to_array().map(|v| v.to_bits().into()));
         let boundary = (0..self.triangles.len()).fold(0u64, |sum, triangle| {
             let [a, b, c] = self.corners(triangle).map(place);

@@ -6,8 +6,9 @@ use glam::DVec3;
 /// behind at the origin of a national grid. [convention]
 const NEAR_SHARE: f64 = 0.75;
 
-/// Returns the median of the points on each axis, and the largest coordinate difference from it that [`NEAR_SHARE`] of
-/// the points do not exceed. `None` without points. Outliers hardly move the median, however far away they are.
+/// Returns the median of the points on each axis, and a half-extent: [`NEAR_SHARE`] of the points differ from the
+/// median by at most this length along every axis. `None` without points. Outliers hardly move the median, however far
+/// away they are.
 pub fn detail(points: &[DVec3]) -> Option<(DVec3, f64)> {
     if points.is_empty() {
         return None;

@@ -9,7 +9,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use std::fmt::Display;
 
 /// Largest absolute coordinate of a position, in metres. Products of two coordinates, and quantities derived from
-/// them, then stay within the range of `f32` [rounding].
+/// these products, then do not overflow `f32`. [rounding]
 const MAX_COORDINATE: f32 = 1e15;
 
 fn is_place(point: Vec3) -> bool {
@@ -28,8 +28,8 @@ pub fn check_place<W: Display>(what: impl FnOnce() -> W, point: Vec3) -> Result<
     )))
 }
 
-/// Largest deviation of a unit vector's length from 1, and of the dot product of two perpendicular unit vectors from 0
-/// [rounding].
+/// Largest deviation of a unit vector's length from 1, and of the dot product of two perpendicular unit vectors from
+/// 0. [rounding]
 const DIRECTION_TOLERANCE: f32 = 1e-3;
 
 impl Scene {

@@ -8,16 +8,16 @@ use glam::{DVec3, Vec3};
 /// than this, whereas rooms of 2 to 4 m given in inches are 79 to 157 units high, and higher in smaller units.
 pub const MAX_HEIGHT: f64 = 50.0;
 
-/// Width in metres above which the unit of a scene is probably not the metre. It serves for scenes without height,
-/// such as a plan or a ceiling alone. [convention]: few halls are longer than 1 km, and a room of 3 m is 3000 wide in
-/// millimetres.
+/// Width in metres above which the unit of a scene is probably not the metre. This limit serves for scenes without
+/// height, such as a plan or a ceiling alone. [convention]: few halls are longer than 1 km, and a room of 3 m is 3000
+/// wide in millimetres.
 pub const MAX_WIDTH: f64 = 2000.0;
 
 /// Extent in metres below which the unit of a scene is probably not the metre. [convention]: a table lamp is larger.
 pub const MIN_EXTENT: f64 = 0.2;
 
-/// Height and width of a typical room in metres. The suggested unit is the one that brings a scene closest to them.
-/// [convention]
+/// Height and width of a typical room in metres. The suggested unit is the unit in which a scene comes closest to this
+/// size. [convention]
 const USUAL_HEIGHT: f64 = 3.0;
 const USUAL_WIDTH: f64 = 6.0;
 
@@ -80,7 +80,8 @@ impl Scene {
         )
     }
 
-    /// Number of point lights, spot lights and luminaires that emit. They shine from points, so no picture shows them.
+    /// Number of point lights, spot lights and luminaires that emit. They shine from points, so they are invisible in
+    /// renderings.
     pub fn unseen_lights(&self) -> usize {
         let is_unseen = |light: &&PunctualLight| match light {
             PunctualLight::Point { intensity, .. } | PunctualLight::Spot { intensity, .. } => {
@@ -92,8 +93,8 @@ impl Scene {
         self.lights.iter().filter(is_unseen).count()
     }
 
-    /// Warns if the scene has luminaires: they shine from points, so no picture shows them. Point and spot lights
-    /// raise no warning, because nobody expects to see them in a picture.
+    /// Warns if the scene has luminaires: they shine from points, so they are invisible in renderings. Point and spot
+    /// lights raise no warning, because nobody expects to see them in a rendering.
     fn not_in_picture(&self) -> Option<Warning> {
         let luminaire = |(index, light): (usize, &PunctualLight)| match *light {
             PunctualLight::Luminaire { position, colour, .. } if colour.max_element() > 0.0 => Some((index, position)),

@@ -12,7 +12,7 @@ pub struct Canvas {
     pub width: usize,
     pub height: usize,
     colour: Vec<Vec3>,
-    /// Surface texture in `[0, 1]`: ink takes best where it is high.
+    /// Surface texture in `[0, 1]`: ink covers best where this value is high.
     tooth: Vec<f32>,
     /// Thickness of the paint, which is lit as a relief.
     relief: Vec<f32>,

@@ -1,10 +1,10 @@
 //! Artworks of the sphere on a table, drawn by a program in place of an artist: a pen drawing, a stipple drawing and a
 //! painting.
 //!
-//! Each artwork is drawn stroke by stroke on paper or canvas from the guides of the scene, so that both are exactly
-//! aligned. Each responds to light as artists do: highlights stay white, shadows are cross-hatched or take another
-//! colour, and red ink marks the red light that the ball casts onto the table. Stroke sizes are proportional to the
-//! width of the picture. The result is the same to the bit every time.
+//! Each artwork is drawn stroke by stroke on paper or canvas from the guides of the scene, so that artwork and guides
+//! are exactly aligned. Each artwork responds to light as artists do: highlights stay white, shadows are cross-hatched
+//! or take another colour, and red ink marks the red light that the ball casts onto the table. Stroke sizes are
+//! proportional to the width of the picture. The result is the same to the bit every time.
 
 mod canvas;
 mod paint;

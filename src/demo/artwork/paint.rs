@@ -14,7 +14,7 @@ struct Brush {
     /// Half the width of the brush, and the length of its strokes, in units.
     radius: f32,
     length: f32,
-    /// Minimum local detail of the picture at which the brush is used.
+    /// The brush is used where the local detail of the picture is at least this value.
     detail: f32,
 }
 

@@ -50,7 +50,7 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// Maximum distance between dots, in radii of a dot: dots farther apart do not read as a tone [convention].
+/// Maximum distance between dots, in radii of a dot: dots farther apart do not read as a tone. [convention]
 const MAX_SPACING: f32 = 9.0;
 
 fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<()> {

@@ -11,7 +11,7 @@ pub const PQ: u8 = 16;
 pub const HLG: u8 = 18;
 
 /// Reference white of high dynamic range, which becomes the linear value 1. For PQ it is a luminance in cd/m², for HLG
-/// a code value in `[0, 1]` [convention: Recommendation ITU-R BT.2408-7, table 1].
+/// a code value in `[0, 1]`. [convention: Recommendation ITU-R BT.2408-7, table 1]
 const PQ_WHITE: f64 = 203.0;
 const HLG_WHITE: f64 = 0.75;
 

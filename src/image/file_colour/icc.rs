@@ -19,7 +19,7 @@ use std::borrow::Cow;
 pub use crate::image::memory::MAX_PROFILE_BYTES as MAX_BYTES;
 
 /// Maximum total length of a profile's tags, relative to the length of the profile; tags may share data. [convention]:
-/// three curves, three rendering intents and both directions may share theirs.
+/// three curves, three rendering intents and both directions may share their data.
 const MAX_SHARING: usize = 8;
 
 const HEADER_BYTES: usize = 128;

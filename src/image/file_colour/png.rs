@@ -9,7 +9,7 @@ use super::{cicp, icc};
 use crate::error::Result;
 use crate::image::containers::png_chunks;
 
-/// Factor by which `gAMA` and `cHRM` multiply the numbers that they store [convention: PNG].
+/// Factor by which `gAMA` and `cHRM` multiply the numbers that they store. [convention: PNG]
 const UNIT: f64 = 100_000.0;
 
 /// Plausible exponents in `gAMA`; other exponents are ignored. [convention]
@@ -58,8 +58,8 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     }
 }
 
-/// Maps an 8-bit or 16-bit code of video range to `[0, 1]`, where 0 is its black and 1 its white (Recommendation ITU-T
-/// H.273, 8.3).
+/// Maps an 8-bit or 16-bit code of video range to `[0, 1]`: the black of that range to 0 and its white to 1
+/// (Recommendation ITU-T H.273, 8.3).
 fn narrow(code: f64, bits: u8) -> f64 {
     let max = f64::from(if bits == 16 { u16::MAX } else { 255 });
     let unit = (max + 1.0) / 256.0;
@@ -77,7 +77,7 @@ fn chromaticities(chunk: &[u8]) -> Option<Chromaticities> {
     Some(Chromaticities { white: point(0)?, primaries: [point(1)?, point(2)?, point(3)?] })
 }
 
-/// Returns the space with this exponent and these chromaticities. A value that is missing is that of sRGB.
+/// Returns the space with this exponent and these chromaticities. A missing value is taken from sRGB.
 fn by_numbers(exponent: Option<f64>, chromaticities: Option<Chromaticities>) -> Result<Space> {
     let Some(matrix) = chromaticities.unwrap_or(Chromaticities::REC709).to_rec709() else { return Ok(Space::Unusable) };
     let curve = match exponent {

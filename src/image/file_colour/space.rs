@@ -71,5 +71,5 @@ impl ExifColour {
     }
 }
 
-/// Exponent of the transfer curve of Adobe RGB: 2 + 51/256 [convention: Adobe RGB (1998), 4.3.1.2].
+/// Exponent of the transfer curve of Adobe RGB: 2 + 51/256. [convention: Adobe RGB (1998), 4.3.1.2]
 const ADOBE_GAMMA: f64 = 563.0 / 256.0;

@@ -30,8 +30,8 @@ mod tag {
     pub const INTEROPERABILITY_INDEX: u16 = 0x0001;
 }
 
-/// A 16-bit sensitivity tag of this value means that the number is too large for it and stored in another tag
-/// [convention: Exif].
+/// If a 16-bit sensitivity tag has this value, the number is too large for the tag and is stored in another one.
+/// [convention: Exif]
 const SENSITIVITY_ELSEWHERE: f64 = 65_535.0;
 
 /// The metadata that the library uses. `None` if the file lacks a value or states an implausible one.
@@ -94,7 +94,7 @@ impl Exif {
             let tags = [tag::STANDARD_OUTPUT_SENSITIVITY, tag::RECOMMENDED_EXPOSURE_INDEX, tag::ISO_SPEED];
             tags.into_iter().find_map(positive)
         });
-        // Discard values beyond limits that no lens, shutter or sensor of a camera exceeds [convention].
+        // Discard values beyond limits that no lens, shutter or sensor of a camera exceeds. [convention]
         Self {
             orientation,
             focal_35: within(positive(tag::FOCAL_LENGTH_35), 1.0, 1e4),

@@ -10,27 +10,28 @@ pub(super) use exif::{Exif, read};
 pub use orientation::Orientation;
 pub(super) use orientation::Upright;
 
-/// Relative standard deviation of a focal length from EXIF. [convention]: lenses are marked to about 5 %. Besides, the
-/// 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or to the width (4 % apart at 4:3).
+/// Relative standard deviation of a focal length from EXIF. [convention]: the focal length marked on a lens is
+/// accurate to about 5 %. Besides, the 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or
+/// to the width (4 % apart at 4:3).
 const FOCAL_ERROR: f64 = 0.05;
 
-/// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer [convention: CIPA DCG-001].
+/// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer. [convention: CIPA DCG-001]
 const FILM_DIAGONAL: f64 = 43.266_615_305_567_87;
 
 /// Largest difference between the logarithms of two focal lengths that count as equal. [convention]: twice
 /// [`FOCAL_ERROR`].
 const AGREEMENT: f64 = 0.1;
 
-/// Largest difference between the logarithms of two aspect ratios, that of the photo and the recorded one, at which
-/// the photo counts as not cropped. It allows for the rounding of the sides when a photo is resized. [convention]
+/// A photo counts as not cropped if the logarithms of its aspect ratio and of the recorded aspect ratio differ by less
+/// than this value. It allows for the rounding of the sides when a photo is resized. [convention]
 const SAME_SHAPE: f64 = 0.01;
 
-/// The saturation-based ISO speed is this number in lx s, divided by the focal-plane exposure that just saturates
-/// [convention: ISO 12232:2019, 6.2].
+/// The saturation-based ISO speed is this number in lx s, divided by the focal-plane exposure that just saturates.
+/// [convention: ISO 12232:2019, 6.2]
 const SATURATION: f64 = 78.0;
 
 /// The factor q: the focal-plane exposure is q L t / N² for a luminance L, an exposure time t and an f-number N. The
-/// value holds for a lens of 90 % transmittance, 10° off its axis [convention: ISO 12232:2019, annex A].
+/// value holds for a lens of 90 % transmittance, 10° off its axis. [convention: ISO 12232:2019, annex A]
 const LENS: f64 = 0.65;
 
 /// Range of the luminance of white, relative to its value if the ISO speed is saturation-based.

@@ -39,8 +39,8 @@ impl Orientation {
 /// An upright image whose pixels are written in the order in which the file stores them.
 pub struct Upright {
     pub image: Image,
-    /// Index in the image's samples of the pixel that the file stores first, and the index steps to the next column
-    /// and to the next row of the file.
+    /// Index of the first sample of the pixel that the file stores first, and the changes of this index from one
+    /// column, and from one row, of the file to the next.
     start: isize,
     steps: [isize; 2],
 }

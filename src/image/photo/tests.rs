@@ -160,10 +160,11 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let all = [&recorded[..], &sensor].concat();
     let by_sensor = 4.3 * 576.0 * 40.0 / 4032.0;
     assert!(near(metadata(&all).focal, by_sensor), "{:?}", metadata(&all));
-    // If the two estimates agree within 10 %, that of the sensor is used, otherwise the 35 mm equivalent.
+    // If the two estimates agree within 10 %, the estimate from the sensor is used, otherwise the 35 mm equivalent.
     assert!(near(metadata(&[&all[..], &[short(big, 0xa405, 21)]].concat()).focal, by_sensor));
     assert!(near(metadata(&[&all[..], &[film.clone()]].concat()).focal, by_film));
-    // There is no focal length for a photo cropped to another shape, an equivalent of 0, or a denominator of 0.
+    // The focal length is unknown if the photo is cropped to another aspect ratio, if the 35 mm equivalent is 0, or if
+    // a denominator is 0.
     assert_eq!(metadata(&[short(big, 0xa002, 4032), short(big, 0xa003, 2268), film]).focal, None);
     assert_eq!(metadata(&[short(big, 0xa405, 0)]).focal, None);
     assert_eq!(metadata(&[rational(big, 0x920a, 43, 0)]).focal, None);

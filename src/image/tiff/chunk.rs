@@ -7,7 +7,7 @@ use half::f16;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 use weezl::{BitOrder, LzwStatus};
 
-/// Decompresses the stored bytes until `out` is full; returns an error if they end before.
+/// Decompresses the stored bytes until `out` is full; returns an error if they end too early.
 pub fn unpack(stored: &[u8], compression: Compression, out: &mut [u8]) -> Result<()> {
     let needed = out.len();
     let written = match compression {
@@ -72,8 +72,8 @@ fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
     to
 }
 
-/// Undoes the predictor of a row in place; `spare` is as long as the row. Returns the byte order in which the samples
-/// are afterwards.
+/// Undoes the predictor of a row in place; `spare` is as long as the row. Returns the byte order that the samples then
+/// have.
 pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: Order) -> Order {
     let samples = layout.samples;
     match (layout.predictor, layout.depth.bits() / 8) {

@@ -1,8 +1,9 @@
 //! Reads directories of tagged values, as in TIFF files and in the EXIF blocks of other pictures (TIFF 6.0, section
 //! 2).
 //!
-//! The bytes are untrusted. A directory or a value outside of them counts as absent. Chains of directories are not
-//! followed. Reading therefore needs no memory, and it ends after one pass over each directory requested.
+//! The bytes are untrusted. A directory or a value that lies outside these bytes counts as absent. Chains of
+//! directories are not followed. Reading therefore needs no memory, and it ends after one pass over each directory
+//! requested.
 
 /// A block of bytes with directories and a valid header.
 #[derive(Clone, Copy)]

@@ -109,7 +109,7 @@ pub struct Chunk {
     /// Position of its top-left pixel in the picture.
     pub x: usize,
     pub y: usize,
-    /// Size in pixels of its part within the picture.
+    /// Size in pixels of the part of the chunk that lies within the picture.
     pub width: usize,
     pub height: usize,
 }

@@ -72,7 +72,8 @@ pub(super) fn decode_inks(bytes: &[u8], orientation: Orientation) -> Result<Imag
     read(&layout, order, layout.colours(), orientation)
 }
 
-/// Reads the samples of the first picture, still encoded. Inks are converted to RGB unless `channels` is 4.
+/// Reads the samples of the first picture, decompressed but still with their transfer function (not linear). Inks are
+/// converted to RGB unless `channels` is 4.
 fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation) -> Result<Image> {
     memory::check_unpacking()?;
     let mut out = Upright::new(layout.width, layout.height, channels, orientation)?;
@@ -89,7 +90,8 @@ fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation
     Ok(out.image)
 }
 
-/// Writes the samples of one row of a chunk to their positions in the image, still encoded: colours first, alpha last.
+/// Writes the samples of one row of a chunk to their positions in the image, still with their transfer function:
+/// colours first, alpha last.
 fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Chunk) {
     let stored = layout.samples;
     let value = |i: usize| sample(row, i, layout.depth, order);
@@ -133,7 +135,8 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
     }
 }
 
-/// Decodes the colours once all samples are in place. Colours that were multiplied by alpha are first divided by it.
+/// Converts the colours to linear values once all samples are in place. Colours that were multiplied by alpha are
+/// first divided by alpha.
 fn decode_colours(image: &mut Image, layout: &Layout, encoding: Encoding) {
     let is_curved = encoding == Encoding::Srgb && !layout.depth.is_float();
     let is_associated = layout.alpha == Some(Alpha::Associated);

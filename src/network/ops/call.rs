@@ -55,7 +55,8 @@ impl<'a> Settings<'a, '_> {
         self.0.get(name).map(|a| a.integers.clone())
     }
 
-    /// Reads an attribute of exactly `N` integers from 0 to 65536; all of them `default` if it is absent.
+    /// Reads an attribute of exactly `N` integers from 0 to 65536. If the attribute is absent, all of them are
+    /// `default`.
     pub fn sizes<const N: usize>(&self, name: &str, default: usize) -> Result<[usize; N]> {
         let Some(values) = self.integers(name).filter(|values| !values.is_empty()) else { return Ok([default; N]) };
         let wrong = || Error::format(format!("{name} is {values:?}; {N} numbers from 0 to 65536 are needed"));

@@ -7,7 +7,7 @@ use crate::exec;
 use crate::image::try_collect;
 use crate::job::Job;
 
-/// Number of items per unit of parallel work.
+/// Number of elements per unit of parallel work.
 const ROW: usize = 4096;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,8 +143,8 @@ pub fn unary(op: Unary, call: &Call) -> Result<Tensor> {
     }
 }
 
-/// Calls `work` in parallel for rows of [`ROW`] items, with the index of each row's first item. The last row may be
-/// shorter.
+/// Calls `work` in parallel for rows of [`ROW`] elements, with the index of each row's first element. The last row may
+/// be shorter.
 pub fn by_rows<T: Send>(out: &mut [T], job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     let whole = out.len() / ROW * ROW;
     let (rows, rest) = out.split_at_mut(whole);
@@ -324,7 +324,8 @@ impl Spread {
         Ok(Self { shape, strides })
     }
 
-    /// Returns the index in a tensor's items at which row `row` of the common shape (along the last axis) starts.
+    /// Returns the index of the tensor's element at which row `row` starts. A row runs along the last axis of the
+    /// common shape.
     fn start(&self, tensor: usize, mut row: usize) -> usize {
         let outer = self.shape.len().saturating_sub(1);
         let mut start = 0;
@@ -374,7 +375,7 @@ impl Spread {
         Ok(out)
     }
 
-    /// Returns the items of a tensor broadcast to the common shape.
+    /// Returns the elements of a tensor broadcast to the common shape.
     pub fn all<T: Copy + Send + Sync>(&self, tensor: usize, values: &[T], zero: T, call: &Call) -> Result<Vec<T>> {
         let mut out = call.budget.vec(count(&self.shape)?, zero)?;
         let length = self.shape.last().copied().unwrap_or(1);
@@ -404,7 +405,7 @@ pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> 
     Ok(Tensor::floats(x.shape.clone(), out))
 }
 
-/// Returns `condition ? a : b` for each item.
+/// Returns `condition ? a : b` for each element.
 pub fn choose(call: &Call) -> Result<Tensor> {
     let (condition, a, b) = (call.input(0)?, call.input(1)?, call.input(2)?);
     let spread = Spread::of(&[condition, a, b])?;

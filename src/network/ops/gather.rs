@@ -1,4 +1,4 @@
-//! Operators that rearrange items: along each axis, every output index maps to an input index, or to none.
+//! Operators that rearrange elements: along each axis, every output index maps to an input index, or to none.
 
 use super::super::read::unsupported;
 use super::super::tensor::{Data, Tensor, count};
@@ -6,8 +6,8 @@ use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// Returns a tensor of the given shape, with as many axes as `x`. The item at index `i` along an axis is the item of
-/// `x` at index `index(axis, i)`, or `fill` if `index` is `None` for any axis.
+/// Returns a tensor of the given shape, with as many axes as `x`. The element at index `i` along an axis is the
+/// element of `x` at index `index(axis, i)`, or `fill` if `index` is `None` for any axis.
 fn picked(
     x: &Tensor,
     shape: Vec<usize>,
@@ -16,8 +16,8 @@ fn picked(
     index: impl Fn(usize, usize) -> Option<usize>,
 ) -> Result<Tensor> {
     let (total, rank) = (count(&shape)?, shape.len());
-    // Allocate the output first: if its size is refused, the index maps need not be computed, which are as long as the
-    // axes.
+    // Allocate the output first: if its size is refused, the index maps, which are as long as the axes, need not be
+    // computed.
     let data = match &x.data {
         Data::Floats(values) => Values::Floats(values, call.budget.vec(total, fill)?),
         Data::Integers(values) => Values::Integers(values, call.budget.vec(total, fill as i64)?),
@@ -171,7 +171,7 @@ pub fn slice(
     })
 }
 
-/// Selects items along an axis by an input of indices.
+/// Selects elements along an axis by an input of indices.
 pub fn gather(axis: i64, call: &Call) -> Result<Tensor> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
     let axis = x.axis(axis)?;

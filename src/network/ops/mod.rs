@@ -97,7 +97,7 @@ impl Op {
             "LayerNormalization" => {
                 Self::LayerNorm { axis: at.integer("axis", -1), epsilon: at.float("epsilon", 1e-5) }
             }
-            // Before opset 13, softmax normalises over all axes from `axis` on.
+            // Before opset 13, softmax normalises over `axis` and all axes after it.
             "Softmax" if opset < 13 => Self::Softmax { axis: at.integer("axis", 1), flattens: true },
             "Softmax" => Self::Softmax { axis: at.integer("axis", -1), flattens: false },
             "ReduceMean" | "ReduceSum" | "ReduceMax" | "ReduceMin" => {
@@ -108,7 +108,7 @@ impl Op {
         })
     }
 
-    /// Parses an operator that rearranges items or computes shapes.
+    /// Parses an operator that rearranges elements or computes shapes.
     fn read_rearranging(node: &NodeMessage, at: &Settings) -> Result<Self> {
         let axes = || at.integers("axes");
         Ok(match node.kind {

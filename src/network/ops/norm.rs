@@ -31,7 +31,7 @@ fn channel_values(tensor: &Tensor, channels: usize) -> Result<&[f32]> {
     Err(Error::format(format!("{} values for {channels} channels", values.len())))
 }
 
-/// Normalises each channel of each image to zero mean and unit variance, then scales and shifts it.
+/// Normalises each channel of each image to zero mean and unit variance, then scales and shifts the channel.
 pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let channels = x.shape.get(1).copied().unwrap_or(1);
@@ -47,7 +47,7 @@ pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(x.shape.clone(), out))
 }
 
-/// Normalises over all axes from `axis` on to zero mean and unit variance, then scales and shifts each item.
+/// Normalises to zero mean and unit variance over `axis` and all axes after it, then scales and shifts each element.
 pub fn layer(axis: i64, epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let axis = x.axis(axis)?;
@@ -74,7 +74,7 @@ fn standardise(values: &[f32], epsilon: f32, out: &mut [f32]) {
     out.iter_mut().zip(values).for_each(|(out, &v)| *out = ((f64::from(v) - mean) * factor) as f32);
 }
 
-/// Computes `e^x / Σ e^x` along an axis or, if `flattens`, over all axes from this one on.
+/// Computes `e^x / Σ e^x` along an axis or, if `flattens`, over this axis and all axes after it.
 pub fn softmax(axis: i64, flattens: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let axis = x.axis(axis)?;

@@ -64,7 +64,7 @@ impl Window {
                 )));
             };
             let mut last = if rounds_up { steps.div_ceil(stride) } else { steps / stride };
-            // No window may begin in the padding behind the image.
+            // No window may begin in the padding after the end of the image.
             if rounds_up && last * stride >= n + before {
                 last -= 1;
             }

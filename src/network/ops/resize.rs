@@ -37,7 +37,7 @@ pub enum Rounding {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     HalfPixel,
-    /// Like `HalfPixel`, but if the output has a single pixel, it maps to the first input pixel.
+    /// Like `HalfPixel`, but if the output has a single pixel, this pixel maps to the first input pixel.
     PytorchHalfPixel,
     AlignCorners,
     Asymmetric,

@@ -20,9 +20,9 @@ use crate::job::Job;
 use crate::simd::Level;
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Number of clusters to which the clusters of a range are merged before the range is combined with its neighbour.
+/// The clusters of a range are merged until at most this many are left; then the range is combined with its neighbour.
 const FEW_CLUSTERS: usize = 32;
-/// A cluster chooses its partner among this many clusters before it and after it in the list.
+/// A cluster chooses its partner among this many clusters before it and as many after it in the list.
 const SEARCH_RADIUS: usize = 8;
 /// Maximum number of leaves in a range that one thread processes without splitting off parallel work.
 const SERIAL: usize = 1024;
@@ -173,7 +173,7 @@ const BOX_CAPACITY: usize = 2 * FEW_CLUSTERS + 2 * SEARCH_RADIUS;
 struct Boxes([[f32; BOX_CAPACITY]; 6]);
 
 /// Half the side of a sentinel box, larger than any coordinate: scenes are scaled to unit size, though they may lie
-/// 2^24 times as far from the origin [convention].
+/// 2^24 times as far from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
 /// For each cluster `i` (block of eight lanes, lane) and neighbour `i - SEARCH_RADIUS + k`: the bits in which their

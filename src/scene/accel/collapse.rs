@@ -29,7 +29,7 @@ const PAGE_LINES: usize = 64;
 
 /// Collapses the tree of `source` and stores the nodes and packets in `accel`.
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
-    // Compute the costs of the parts in parallel, then those of the tree above the parts.
+    // Compute the costs of the parts in parallel, then the costs of the tree above the parts.
     let cut = source.cut();
     let part = |&root: &u32| Binary::new(source, root, &HashMap::new(), &[], job);
     let mut binaries: Vec<Binary> = cut.par_iter().map(part).collect::<Result<_>>()?;
@@ -211,7 +211,7 @@ impl Choice<'_> {
     }
 
     /// Expected benefit of a child for an any-hit query: surface area found per unit of traversal cost. Children are
-    /// sorted by it, because such a query visits the last lane first.
+    /// sorted by this benefit, because such a query visits the last lane first.
     fn benefit(&self, place: Place) -> f32 {
         let branch = self.branch(place);
         branch.surface / branch.cost[0]

@@ -16,7 +16,7 @@ use obvhs::bvh2::node::Bvh2Node;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Expected cost of intersecting a packet of triangles, relative to that of a node [origin not recorded].
+/// Expected cost of intersecting a packet of triangles, relative to the cost of a node. [origin not recorded]
 const PACKET_COST: f32 = 1.0;
 
 /// Number of branches processed between two checks for cancellation: one part may hold nearly the whole tree.
@@ -35,7 +35,7 @@ pub(super) enum Content {
     Halves(u32),
     /// A leaf of one or two triangles: index of the first.
     Leaf(u32),
-    /// The root of another part of the tree: index of that part.
+    /// The root of another part of the tree, which is cut into parts for parallel work: index of that part.
     Part(u32),
 }
 
@@ -138,7 +138,7 @@ impl Binary {
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
     }
 
-    /// Whether a branch that becomes a single wide subtree is cheapest as a packet of triangles, not as a node.
+    /// If a single wide subtree represents the branch, whether a packet of triangles is at most as costly as a node.
     pub fn is_packet(&self, at: usize) -> bool {
         let branch = &self.branches[at];
         branch.count <= WIDTH as u32

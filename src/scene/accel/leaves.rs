@@ -20,7 +20,7 @@ const CHUNK: usize = 4096;
 /// Bits per coordinate in a Morton code.
 const BITS: u32 = 21;
 /// Lower bound of the extent along an axis, relative to the scene's size. It avoids a division by zero; a scene that
-/// is flat along an axis has one layer of grid cells there [rounding].
+/// is flat along an axis has one layer of grid cells there. [rounding]
 const MIN_EXTENT: f64 = 1e-9;
 
 pub(super) struct Leaves {

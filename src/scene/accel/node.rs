@@ -95,8 +95,8 @@ impl Node {
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &NodeRay<L>, t_max: f32) -> (u32, L) {
         let plane = |start: usize, axis: usize, shift: L| {
-            // SAFETY: `near_start` is the byte offset of one of the six rows; flipping one bit of it gives that of its
-            // neighbour.
+            // SAFETY: `near_start` is the byte offset of one of the six rows; flipping one bit of this offset gives
+            // the offset of the neighbouring row.
             L::load(unsafe { &*self.bounds.as_ptr().byte_add(start) }).mul_add(ray.scale[axis], shift)
         };
         let enter = |axis: usize| plane(ray.near_start[axis], axis, ray.near_shift[axis]);
@@ -107,7 +107,7 @@ impl Node {
     }
 }
 
-/// Relative margin of the box test: sixteen rounding errors of 2^-24 each [rounding].
+/// Relative margin of the box test: sixteen rounding errors of 2^-24 each. [rounding]
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
 /// A ray prepared for box tests. Its distance to an axis-aligned plane is `plane * scale + shift`.

@@ -6,7 +6,7 @@ use super::ray::Hit;
 use glam::Vec3;
 
 /// Smallest distance of a hit, relative to the triangle's largest depth along the ray. Nearer hits are rounding
-/// errors: sixteen errors of 2^-24 each [rounding].
+/// errors: sixteen errors of 2^-24 each. [rounding]
 const MIN_DISTANCE: f32 = 1.0 / (1 << 20) as f32;
 
 /// Maximum number of triangles in a packet.
@@ -47,8 +47,8 @@ impl Packet {
             return (0, PacketHits { t: zero, u: zero, v: zero });
         }
         // Recompute edge functions of zero in `f64`. In either precision, the triangle on the other side of the edge
-        // obtains the same value with the opposite sign, so no ray slips between both. (Lanes whose other two edge
-        // functions have opposite signs stay outside.)
+        // obtains the same value with the opposite sign, so no ray slips between the two triangles. (Lanes whose other
+        // two edge functions have opposite signs stay outside.)
         if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
             edge = self.settled_edges(ray);
             hit = inside(&edge);

@@ -12,7 +12,8 @@ use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// Size in bytes above which one huge page is obtained as fast as the small pages that it replaces.
+/// A huge page is worthwhile for at least this many bytes: it is then obtained as fast as the small pages that it
+/// replaces.
 const MIN_HUGE: usize = HUGE / 4;
 
 /// A finished list. It starts at the boundary of a huge page if it is long enough for one.

@@ -57,7 +57,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// For each share, returns an area threshold that at most this share of all nodes reaches, and hardly fewer.
+    /// Returns an area threshold for each share: at most this share of all nodes, and hardly fewer, have at least this
+    /// area.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];

@@ -296,8 +296,8 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
     assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
 }
 
-/// Builds three million triangles in a room; then the same with one more triangle, so far away that the whole room
-/// lies in a single cell of the Morton grid.
+/// Builds the acceleration structure over three million triangles in a room; then over the same triangles and one more
+/// that is so far away that the whole room lies in a single cell of the Morton grid.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_cancel_is_answered_within_50_ms_while_three_million_triangles_are_built() {

@@ -86,8 +86,8 @@ impl Accel {
     }
 
     /// The AVX2 code compiled with AVX-512 encoding, whose 32 registers and broadcast operands make it slightly
-    /// faster. The wider registers and masks of AVX-512 would not: both bounds of a node's boxes in one register of
-    /// sixteen lanes, leaves of sixteen triangles, and children sorted in a register were all measured to be slower.
+    /// faster. Three uses of the wider registers and masks of AVX-512 were measured to be slower: both bounds of a
+    /// node's boxes in one register of sixteen lanes, leaves of sixteen triangles, and children sorted in a register.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
     fn traverse_avx512<const ANY: bool>(
@@ -180,7 +180,7 @@ impl Accel {
 /// The nearest accepted hit so far, and the distances it allows.
 struct Best {
     hit: Option<Hit>,
-    /// Farthest distance of interest: that of the best hit, or the ray's `t_max` before the first hit.
+    /// Farthest distance of interest: the distance of the best hit, or the ray's `t_max` before the first hit.
     t_max: f32,
     ray_t_max: f32,
 }

@@ -16,7 +16,7 @@ const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: &[u8] = b"JSON";
 const BINARY_CHUNK: &[u8] = b"BIN\0";
 
-/// Where the external files lie that a glTF file refers to.
+/// The location of the external files to which a glTF file refers.
 #[derive(Clone, Copy)]
 pub struct Folder<'a> {
     /// The folder to which external paths are relative; `None` for a glTF file held in memory without a folder.

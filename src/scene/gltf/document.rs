@@ -17,7 +17,7 @@ pub struct Document {
     pub root: Root,
     /// The features that are not rendered.
     pub unrendered: Vec<Unrendered>,
-    /// The translation of each node in f64; the crate rounds translations to f32.
+    /// The translation of each node in f64; the crate `gltf` rounds translations to f32.
     pub translations: Vec<DVec3>,
 }
 
@@ -35,7 +35,7 @@ pub fn parse(json: &[u8]) -> Result<Document> {
     Ok(Document { root: serde_json::from_value(document).map_err(broken)?, unrendered, translations })
 }
 
-/// Returns the translation of each node, which is the last column of its matrix if it has one.
+/// Returns the translation of each node, which is the last column of the node's matrix if the node has a matrix.
 fn translations(document: &Value) -> Result<Vec<DVec3>> {
     let nodes = document.get("nodes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let number = |list: Option<&Value>, at: usize| list.and_then(|list| list.get(at)?.as_f64()).unwrap_or(0.0);
@@ -87,8 +87,8 @@ fn tidy(value: &mut Value) {
     }
 }
 
-/// Adds members that glTF lets files omit but the crate requires. Removes animations, which are not read and whose
-/// targets may lack such members.
+/// Adds members that glTF lets files omit but the crate `gltf` requires. Removes animations, which are not read and
+/// whose targets may lack such members.
 fn complete(root: &mut Map<String, Value>) {
     root.remove("animations");
     for scene in objects(root, "scenes") {

@@ -16,7 +16,7 @@ const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Distance of the cameras' near plane in metres. glTF requires one, but path tracers do not use it [convention].
+/// Distance of the cameras' near plane in metres. glTF requires one, but path tracers do not use it. [convention]
 const NEAR: f32 = 0.01;
 
 /// Encodes a scene as GLB, with one node per mesh, camera and light, and textures as embedded PNG.
@@ -62,7 +62,7 @@ struct Writer {
     meshes: Vec<Value>,
     cameras: Vec<Value>,
     lights: Vec<Value>,
-    /// The IES files of the scene's distributions that are in the file so far; `profile_keys` holds their indices in
+    /// The IES files written so far, one per distribution; `profile_keys` holds the indices of these distributions in
     /// the scene.
     profiles: Vec<Value>,
     profile_keys: Vec<usize>,

@@ -38,15 +38,15 @@ pub const READ: [&str; 15] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions without an effect on the picture, and extensions whose files also hold the image in a format that is
-/// read.
+/// Extensions without an effect on the picture, and an extension for which a file also contains a fallback image in a
+/// format that this importer reads.
 const INVISIBLE: [&str; 4] = ["KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds"];
 
 /// A property of an extension, and the default value with which the extension has no effect.
 type Neutral = (&'static str, f64);
 
-/// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn it
-/// off at their default values.
+/// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn the
+/// effect off if they have their default values.
 const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
     ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),
@@ -133,8 +133,8 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
         Value::Array(numbers) => numbers.iter().all(|number| number.as_f64() == Some(wanted)),
         value => value.as_f64() == Some(wanted),
     };
-    // A texture is multiplied by its factor. With a default factor of 0 it has no effect; with a default factor of 1
-    // it has.
+    // A texture is multiplied by its factor. With a default factor of 0 the texture has no effect; with a default
+    // factor of 1 it has an effect.
     let has_texture = || settings.as_object().is_some_and(|s| s.keys().any(|key| key.ends_with("Texture")));
     let is_factor = neutral.iter().any(|&(_, wanted)| wanted != 0.0);
     !neutral.is_empty()
@@ -177,7 +177,7 @@ fn mesh(list: &mut Vec<Unrendered>, mesh: &Value, place: &dyn Fn() -> String) {
     weights(list, mesh, Some(mesh), place);
 }
 
-/// Returns the JSON of the mesh that a node shows; `None` if it shows none.
+/// Returns the JSON of the mesh to which a node refers; `None` if the node has no mesh.
 fn shown<'a>(document: &'a Value, node: &Value) -> Option<&'a Value> {
     let index = node.get("mesh")?.as_f64()?;
     document.get("meshes")?.get(index as usize)

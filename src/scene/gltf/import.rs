@@ -101,7 +101,7 @@ struct Importer<'a> {
     triangles: u64,
 }
 
-/// Where and in which pose a node shows its mesh.
+/// The transform and the pose of a node's mesh.
 #[derive(Clone, Copy)]
 struct Placement<'a> {
     transform: DMat4,
@@ -257,7 +257,8 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// Reads positions and normals, applies morph targets and the skin, and transforms both to world space.
+    /// Reads positions and normals, applies morph targets and the skin, and transforms positions and normals to world
+    /// space.
     fn pose(&self, vertices: &Vertices, primitive: &Primitive, placement: Placement) -> Result<Posed> {
         let targets = mixed(primitive, placement.weights);
         let mut positions = vertices.vectors(&Semantic::Positions)?.unwrap_or_default();

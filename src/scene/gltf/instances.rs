@@ -28,8 +28,8 @@ fn compose(translation: DVec3, rotation: [f32; 4], scale: [f32; 3]) -> DMat4 {
     DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, translation)
 }
 
-/// Returns the world transforms of all instances of a node's mesh, given that of the node: only the latter, unless the
-/// node has `EXT_mesh_gpu_instancing`.
+/// Returns the world transforms of all instances of a node's mesh. `transform` is the node's own world transform,
+/// which is the only one unless the node has `EXT_mesh_gpu_instancing`.
 pub fn instances(file: &File, node: &json::Node, transform: DMat4) -> Result<Vec<DMat4>> {
     match node.extensions.as_ref().and_then(|e| e.others.get(INSTANCING)) {
         Some(stated) => read(file, stated, transform).map_err(|e| e.context(INSTANCING)),

@@ -277,8 +277,8 @@ fn matrix(transform: &extensions::texture::TextureTransform) -> Mat3 {
 }
 
 /// Returns `translation × rotation × scale`. A positive angle in radians rotates counter-clockwise in an image whose v
-/// axis runs down. This follows the prose of `KHR_texture_transform` and existing renderers; the GLSL code in its text
-/// rotates the other way.
+/// axis runs down. This follows the prose of `KHR_texture_transform` and existing renderers; the GLSL code in the text
+/// of the extension rotates the other way.
 pub fn transform_matrix(offset: Vec2, rotation: f32, scale: Vec2) -> Mat3 {
     let (s, c) = rotation.sin_cos();
     Mat3::from_cols(Vec3::new(c, -s, 0.0) * scale.x, Vec3::new(s, c, 0.0) * scale.y, offset.extend(1.0))

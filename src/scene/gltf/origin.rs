@@ -14,14 +14,14 @@ use glam::{DMat4, DVec3};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 
-/// Distance in metres up to which a scene keeps the origin of its file: `f32` resolves 0.015 mm there. New origins are
-/// multiples of this distance. [convention]
+/// A scene within this distance in metres of the origin of its file keeps that origin: `f32` resolves 0.015 mm there.
+/// New origins are multiples of this distance. [convention]
 pub const GRID: f64 = 256.0;
 
 /// A scene counts as far from the origin if its distance exceeds this multiple of its own extent. [convention]
 const FAR: f64 = 4.0;
 
-/// Number of corners of bounding boxes from which on no further nodes are examined: they would change the origin
+/// Once this many corners of bounding boxes are collected, no further nodes are examined: they would change the origin
 /// little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
 /// The collected corners are thinned out to between this number and twice this number of corners, which fit into the
@@ -54,7 +54,7 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
 }
 
 /// Returns the corners of a primitive's bounding box in the coordinates of its node, as its accessor states them. Both
-/// are zero if the accessor states none, or if its integers are normalised.
+/// corners are zero if the accessor states no bounds, or if its integers are normalised.
 fn bounds(file: &File, primitive: &Primitive) -> [DVec3; 2] {
     let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
     let accessor = positions.and_then(|index| file.root.get(*index)).filter(|accessor| !accessor.normalized);

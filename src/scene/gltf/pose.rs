@@ -1,5 +1,5 @@
-//! Poses meshes at rest: mixes shapes from morph targets, and deforms skins by the joints where the nodes of the file
-//! put them (glTF 2.0, sections 3.7.2.2 and 3.7.3).
+//! Poses meshes at rest: mixes shapes from morph targets, and deforms skins by their joints, whose poses come from the
+//! nodes of the file (glTF 2.0, sections 3.7.2.2 and 3.7.3).
 
 use super::container::{File, missing};
 use super::instances::local_transform;
@@ -128,7 +128,7 @@ fn joints(file: &File, skin: Index<Skin>, nodes: &[Option<DMat4>]) -> Result<Vec
     Ok(out)
 }
 
-/// Iterates over the morph targets of a primitive whose weight is not 0, with their weights.
+/// Iterates over the morph targets of a primitive, each with its weight; targets with a weight of 0 are skipped.
 pub fn mixed<'a>(primitive: &'a Primitive, weights: &'a [f32]) -> impl Iterator<Item = (&'a MorphTarget, f32)> + Clone {
     let targets = primitive.targets.iter().flatten();
     targets.zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)

@@ -1,10 +1,10 @@
 //! Lists the objects and materials of a scene as candidates for the surface that will carry the lights: their area,
 //! height and direction, and how much each resembles a ceiling.
 //!
-//! A ceiling is level, lies high in the scene and covers much of its plan. The score is the product of three shares:
-//! the share of the area that is level, the share of the scene's plan that the level area covers, and the square of
-//! its height relative to the scene's. Only the order of scores has a meaning. Each triangle is read once, so that
-//! large scenes are listed quickly.
+//! A ceiling is level, lies high in the scene and covers much of the scene's floor plan. The score is the product of
+//! three shares: the share of the area that is level, the share of the scene's floor plan that the level area covers,
+//! and the square of the area's height relative to the scene's height. Only the order of scores has a meaning. Each
+//! triangle is read once, so that large scenes are listed quickly.
 //!
 //! Not modelled: whether a surface is visible from the room. The upper side of a roof counts as much as its lower
 //! side.
@@ -32,7 +32,7 @@ pub enum Kind {
     Material,
 }
 
-/// An object or a material of the scene, with the measurements that tell how likely it is the ceiling.
+/// An object or a material of the scene, with the measurements that indicate how likely it is to be the ceiling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     pub kind: Kind,
@@ -253,7 +253,8 @@ mod tests {
         assert_eq!(slab.normal, DVec3::NEG_Y);
         let words = "24.0 of its 24.0 m² are level, at 3.00 m, which is 100 % of the scene's height, and cover 100 % of its plan";
         assert_eq!(slab.reason, words);
-        // For a material of ceiling and wall, the height is that of its level triangles alone.
+        // If the ceiling and a wall share a material, the height of the material is the height of its level triangles
+        // alone.
         let plaster = &list[1];
         assert_eq!((plaster.index, plaster.area, plaster.level_area, plaster.height), (1, 42.0, 24.0, 3.0));
         let find = |name: &str| list.iter().find(|c| c.name == name).unwrap();

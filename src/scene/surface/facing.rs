@@ -1,4 +1,5 @@
-//! Selects, among the planes of an object, the plane that faces the room, and on which of its sides the room lies.
+//! Selects, among the planes of an object, the plane that faces the room, and the side of the plane on which the room
+//! lies.
 
 use super::patch::Patch;
 use crate::error::{Error, Result};
@@ -11,7 +12,7 @@ const RAYS: usize = 128;
 /// Number of triangles in one bounding box.
 const CHUNK: usize = 64;
 /// Weight of the cameras: the score of a side is multiplied by 1 plus this weight times the share of cameras in front
-/// of the side [origin not recorded].
+/// of the side. [origin not recorded]
 const CAMERA_WEIGHT: f64 = 4.0;
 
 /// Returns the index of the plane that faces the room, and its unit normal into the room.
@@ -37,7 +38,7 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     best.map(|(_, i, normal)| (i, normal)).ok_or_else(|| Error::degenerate("the surface has no area"))
 }
 
-/// Returns the plane's normal on its front side, towards which most of its area is wound counter-clockwise.
+/// Returns the normal on the front side of the plane: the side from which most of its area is wound counter-clockwise.
 fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
     let signed: f64 = patch
         .triangles
@@ -56,7 +57,8 @@ fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
     in_front as f64 / scene.cameras.len().max(1) as f64
 }
 
-/// Returns how far one side of a plane sees, in `[0, 1]`: the mean of `min(1, distance / √area)` over [`RAYS`] rays.
+/// Returns how far one can see from one side of a plane, in `[0, 1]`: the mean of `min(1, distance / √area)` over
+/// [`RAYS`] rays.
 fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
     // Accumulate the areas of the triangles, to sample triangles in proportion to area.
     let mut sums = Vec::with_capacity(patch.triangles.len());

@@ -3,13 +3,12 @@
 use crate::geometry::polygon;
 use glam::{DVec2, DVec3};
 
-/// Cosine of 1°: axes within this angle of the aligned axes snap to them [convention].
+/// Cosine of 1°: axes within this angle of the aligned axes snap to them. [convention]
 const COS_SNAP: f64 = 0.999_847_695;
-/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share [origin not
-/// recorded].
+/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. [origin not
+/// recorded]
 const MIN_SAVING: f64 = 1e-3;
-/// Cosine of 45°, compared with the vertical component of a plane's normal: below it, the plane is a wall
-/// [convention].
+/// A plane is a wall if the vertical component of its normal is below this value, the cosine of 45°. [convention]
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 pub struct Frame {
@@ -43,12 +42,12 @@ fn upright(normal: DVec3) -> DVec3 {
     candidate.normalize_or(normal.any_orthonormal_vector())
 }
 
-/// Returns the v axis that belongs to `u`, such that `u × v = -normal`.
+/// Returns the v axis that corresponds to `u`: `u × v = -normal`.
 fn down_of(u: DVec3, normal: DVec3) -> DVec3 {
     u.cross(normal)
 }
 
-/// Returns the bounding rectangle with sides along `u` and the v axis that belongs to it.
+/// Returns the bounding rectangle with sides along `u` and along the corresponding v axis.
 pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
     let v = down_of(u, normal);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);

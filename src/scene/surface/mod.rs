@@ -85,7 +85,7 @@ pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
 }
 
 /// Finds the planar patch that faces the room among the given (mesh, triangle) pairs. The patch need not contain all
-/// of them.
+/// of these triangles.
 ///
 /// Errors: `InvalidArgument` if a pair is not in the scene; `Degenerate` if the triangles have no area.
 pub fn from_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {

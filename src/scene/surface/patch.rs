@@ -6,22 +6,22 @@ use crate::scene::Scene;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Cosine of 2°, the maximum angle between the normals of a triangle and of its plane [origin not recorded].
+/// Cosine of 2°, the maximum angle between the normals of a triangle and of its plane. [origin not recorded]
 const COS_ANGLE: f64 = 0.999_390_827;
 /// Tolerance of planes, relative to the diagonal of the object's bounding box: corners lie within twice this distance
-/// of their plane [origin not recorded].
+/// of their plane. [origin not recorded]
 const OFFSET: f64 = 5e-4;
-/// Side of a cell in the grid of unit normals: the angle of [`COS_ANGLE`] in radians [convention].
+/// Side of a cell in the grid of unit normals: the angle of [`COS_ANGLE`] in radians. [convention]
 const DIRECTION_CELL: f64 = 0.035;
 /// Maximum number of directions along which planes are searched, in order of falling area.
 const DIRECTIONS: usize = 32;
-/// Maximum number of planes returned, and the minimum area of a plane relative to the largest plane [origin not
-/// recorded].
+/// Maximum number of planes returned, and the minimum area of a plane relative to the largest plane. [origin not
+/// recorded]
 const PLANES: usize = 16;
 const MIN_AREA: f64 = 0.05;
 
 /// Cosines of 75 and 5 degrees, between which a triangle is sloped: steeper triangles are the edges of a slab, flatter
-/// triangles belong to the plane [convention: luxfer_surface].
+/// triangles belong to the plane. [convention: luxfer_surface]
 const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
 /// Triangles that lie in one plane, within tolerances.
