@@ -4,8 +4,8 @@
 # --toolchain nightly), clang, and a quarter of an hour.
 #
 #   tests/sanitize.sh thread [HARNESS...]     runs harnesses of tests/cpp; default: those that use threads
-#   tests/sanitize.sh address [HARNESS...]    also detects leaks; default: harnesses that need no other library, then all
-#                                             C examples
+#   tests/sanitize.sh address [HARNESS...]    also detects leaks; default: harnesses that need no other library, then
+#                                             all C examples
 set -eu
 cd "$(dirname "$0")/.."
 target=x86_64-unknown-linux-gnu

@@ -4,8 +4,8 @@
 # information of Rust, so the check compiles a C library of empty functions from the header and analyses that.
 #
 #   check.sh SOURCE WORK            checks; exits with 77 if abidiff is not installed
-#   check.sh SOURCE WORK --record   records the present functions and structs: for a new minor version, or after a struct
-#                                   has grown at its end
+#   check.sh SOURCE WORK --record   records the present functions and structs: for a new minor version, or after a
+#                                   struct has grown at its end
 set -eu
 source="$1" work="$2" record="${3:-}"
 command -v abidiff >/dev/null && command -v abidw >/dev/null || exit 77

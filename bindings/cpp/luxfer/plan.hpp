@@ -38,7 +38,7 @@ public:
 
     Result<luxfer_plan_report> report() const { return value<luxfer_plan_report>(luxfer_plan_get_report); }
 
-    /// The settings to render, to relight and to stylise with.
+    /// The chosen settings for rendering, relighting and stylisation.
     Result<luxfer_render_params> render_params() const {
         return value<luxfer_render_params>(luxfer_plan_get_render_params);
     }
