@@ -1,6 +1,5 @@
 """Tests that whatever a host calls, it gets a status and a message and survives: every function of the C ABI with each
-argument
-wrong in turn, and random programs. `play.py` plays more random programs, for any time."""
+argument wrong in turn, and random programs. `play.py` plays more random programs, for any time."""
 
 import unittest
 

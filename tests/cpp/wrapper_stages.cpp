@@ -108,7 +108,7 @@ void lighting_transfer(const Context &context) {
     CHECK(corner[0] >= 0 && corner[0] <= 96 && corner[1] >= 0 && corner[1] <= 64);
     const Image whole = emission.image(LUXFER_EMISSION_TEXTURE);
 
-    // A style with weight 0 changes nothing, and a tile equals its part of the whole texture.
+    // Add a second style, whose weight is 0 everywhere; then plan the texture and render one tile of it.
     const Image unwarped = rectify.image(LUXFER_RECTIFY_UNWARPED);
     const Image light = rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE));
     const float nothing[] = {0};

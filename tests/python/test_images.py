@@ -9,8 +9,7 @@ from luxfer import _arrays, errors
 
 
 def tiff(picture, pixels, camera=()):
-    """A TIFF file with the entries (tag, type, value) in `picture`, and EXIF entries in `camera`, whose fractions
-    follow."""
+    """A TIFF file with the entries (tag, type, value) of `picture`, and the EXIF entries of `camera`."""
 
     def directory(entries, fractions):
         out = struct.pack("<H", len(entries))

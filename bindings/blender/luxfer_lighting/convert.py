@@ -49,8 +49,8 @@ def drawing(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
 
 def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy.types.Image:
     """Stores pixels (height, width, channels), top row first, as the Blender image of that name: floats if linear,
-    else
-    8-bit sRGB. With pack, the image is packed into the .blend; not needed for images that will soon be replaced."""
+    else 8-bit sRGB. With pack, the image is packed into the .blend; not needed for images that will soon be
+    replaced."""
     height, width, channels = values.shape
     rgba = np.ones((height, width, 4), np.float32)
     rgba[..., :3] = values[::-1] if channels == 3 else values[::-1, :, :1]
@@ -69,8 +69,7 @@ def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy
 
 def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
     """Converts the current scene with modifiers applied, through a temporary glTF file. Adds area lights and the
-    world's
-    colour, which glTF cannot store. One unit of strength becomes one cd/m²."""
+    world's colour, which glTF cannot store. One unit of strength becomes one cd/m²."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.glb")
         bpy.ops.export_scene.gltf(
@@ -100,8 +99,7 @@ def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
 
 def with_specular_levels(glb: bytes) -> bytes:
     """Replaces the specular factors (KHR_materials_specular) in a GLB file, which luxfer does not support, by the
-    index of
-    refraction with equal reflectance at normal incidence."""
+    index of refraction with equal reflectance at normal incidence."""
     length, _ = struct.unpack_from("<II", glb, 12)
     document = json.loads(glb[20 : 20 + length])
     for material in document.get("materials", ()):

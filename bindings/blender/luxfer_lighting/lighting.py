@@ -247,8 +247,7 @@ class LUXFER_OT_apply(bpy.types.Operator):
 
 def lay_out(thing: bpy.types.Object, surface: luxfer.types.Surface) -> list[int]:
     """Finds the faces of an object that lie in a surface, and gives them the UV map "Luxfer", which covers the
-    surface's
-    rectangle. Returns the indices of the faces."""
+    surface's rectangle. Returns the indices of the faces."""
     if thing.data.users > 1:
         thing.data = thing.data.copy()
     mesh = thing.data

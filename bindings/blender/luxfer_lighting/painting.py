@@ -39,8 +39,7 @@ def stylise_steps(
     artwork: luxfer.Image, target: luxfer.Scene | passes.Rendering, params: dict[str, Any], preset: str
 ) -> Generator[work.Step, Any, None]:
     """Steps of a stylisation. The target is a scene, whose guides the library renders, or a running rendering of
-    guides
-    by Cycles."""
+    guides by Cycles."""
     try:
         stylize = luxfer.Stylize(work.context(), artwork)
         source, job = ball(*artwork.size[:2], params["samples"])

@@ -26,8 +26,7 @@ PROGRAM = Path(__file__).with_name("render_passes.py")
 
 class Rendering:
     """A running rendering of guides for a scene's active camera. Only the constructor accesses Blender's data, and it
-    only
-    reads."""
+    only reads."""
 
     def __init__(self, scene: bpy.types.Scene, layer: bpy.types.ViewLayer, samples: int):
         self._folder = tempfile.TemporaryDirectory(prefix="luxfer-")
@@ -115,8 +114,7 @@ def light_of(guides: luxfer.Guides) -> dict[str, np.ndarray]:
 def add_light(stylize: luxfer.Stylize, source: dict[str, np.ndarray], target: dict[str, np.ndarray]) -> None:
     """Adds the guides of two scenes to a stylisation at a common exposure, as Stylize.add_guides does, whichever
     renderer made them. The exposure maps the luminance below which nine tenths of both full pictures lie to 0.8;
-    values above 1
-    become 1."""
+    values above 1 become 1."""
     luma = np.float32((0.2126, 0.7152, 0.0722))
     luminances = np.concatenate([(light["full"] @ luma).ravel() for light in (source, target)])
     luminances = luminances[np.isfinite(luminances)]

@@ -52,8 +52,7 @@ class Work:
 
     def advance(self) -> bool:
         """Continues with the next job if the running one has ended; returns False after the last one. Raises
-        exceptions of
-        the job and of the steps."""
+        exceptions of the job and of the steps."""
         if not self.job.finished:
             return True
         self.job.wait()
@@ -141,15 +140,13 @@ def redraw(pictures: bool = False) -> None:
 
 class Background:
     """Base class of operators whose work comes from make(). Started in the user interface, they run in the background
-    as
-    modal operators, which receive Esc. Called from scripts, they return when the work is done."""
+    as modal operators, which receive Esc. Called from scripts, they return when the work is done."""
 
     title: str
 
     def make(self, context: bpy.types.Context) -> tuple[Generator[Step, Any, None], int]:
         """Returns the steps and the number of their jobs. Reads all of Blender's data that the work needs, because an
-        undo
-        may replace the data while a job runs."""
+        undo may replace the data while a job runs."""
         raise NotImplementedError
 
     @classmethod

@@ -13,7 +13,7 @@ using FalseColourParams = Params<luxfer_false_colour_params, LUXFER_STRUCT_FALSE
 using LuminaireParams = Params<luxfer_luminaire_params, LUXFER_STRUCT_LUMINAIRE_PARAMS>;
 using PlacementParams = Params<luxfer_placement_params, LUXFER_STRUCT_PLACEMENT_PARAMS>;
 
-/// Solves for the powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
+/// Solves for lamp powers that come as near as possible to several goals. See luxfer_lamps.
 class Lamps : public Handle<luxfer_lamps> {
 public:
     using Handle::Handle;
@@ -184,8 +184,8 @@ inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span
     return detail::finish(scene.context().get(), status, std::move(ratings));
 }
 
-/// The unified glare rating of a luminance image. Pixels above threshold, in cd/m², are glare sources; 0 means five
-/// times the mean.
+/// The unified glare rating of a luminance image. Pixels above `threshold` (cd/m²) are glare sources; 0 means five
+/// times the mean luminance.
 inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
     return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_get_glare, image.get(), fov_y,
                                                   threshold);
@@ -204,7 +204,7 @@ struct Mixture {
     luxfer_mixture light;
 };
 
-/// Mixes a linear colour from the primaries (LEDs) of a luminaire, with drive levels of at most max_drive.
+/// Mixes a linear colour from the primaries (LEDs) of a luminaire, with drive levels of at most `max_drive`.
 inline Result<Mixture> mix_primaries(const Context &context, const std::vector<std::array<double, 3>> &primaries,
                                      std::array<double, 3> colour, double max_drive = 1) {
     std::vector<double> flat;

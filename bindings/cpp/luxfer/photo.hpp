@@ -31,7 +31,7 @@ public:
         return make<Job>(luxfer_rectify_start, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_RECTIFY_ value.
+    /// Gets an image of the results; `which` is a LUXFER_RECTIFY_ value.
     Result<Image> image(luxfer_rectify_image which) const { return make<Image>(luxfer_rectify_get_image, which); }
 
     /// Unwarps another image of the photo's size by the homography of the plane.
@@ -113,7 +113,7 @@ public:
         return make<Job>(luxfer_features_start, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_FEATURES_ value.
+    /// Gets an image of the results; `which` is a LUXFER_FEATURES_ value.
     Result<Image> image(luxfer_features_image which) const { return make<Image>(luxfer_features_get_image, which); }
 
     Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
@@ -143,7 +143,7 @@ public:
         return make<Job>(luxfer_segment_start, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_SEGMENT_ value.
+    /// Gets an image of the results; `which` is a LUXFER_SEGMENT_ value.
     Result<Image> image(luxfer_segment_image which) const { return make<Image>(luxfer_segment_get_image, which); }
 
     Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
@@ -197,7 +197,7 @@ public:
         return make<Job>(luxfer_emission_start, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_EMISSION_ value.
+    /// Gets an image of the results; `which` is a LUXFER_EMISSION_ value.
     Result<Image> image(luxfer_emission_image which) const { return make<Image>(luxfer_emission_get_image, which); }
 
     Result<luxfer_emission_report> report() const { return value<luxfer_emission_report>(luxfer_emission_get_report); }

@@ -24,7 +24,7 @@ public:
         return make<Job>(luxfer_plan_start_render, render.get(), &settings, &params);
     }
 
-    /// Plans the stages after EMISSION, which must have run.
+    /// Plans the stages RELIGHT and RENDER of a transfer whose stage EMISSION has run.
     Result<Job> start(const Transfer &transfer, const luxfer_plan_params &params,
                       const luxfer_transfer_params &settings = TransferParams()) const {
         return make<Job>(luxfer_plan_start_transfer, transfer.get(), &settings, &params);

@@ -67,7 +67,7 @@ public:
         return make<Job>(luxfer_render_start_merge, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_RENDER_ value.
+    /// Gets an image of the results; `which` is a LUXFER_RENDER_ value.
     Result<Image> image(luxfer_render_image which = LUXFER_RENDER_BEAUTY) const {
         return make<Image>(luxfer_render_get_image, which);
     }
@@ -108,7 +108,7 @@ public:
         return make<Job>(luxfer_illuminance_start_mesh, mesh, side, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_ILLUMINANCE_ value.
+    /// Gets an image of the results; `which` is a LUXFER_ILLUMINANCE_ value.
     Result<Image> image(luxfer_illuminance_image which = LUXFER_ILLUMINANCE_LUX) const {
         return make<Image>(luxfer_illuminance_get_image, which);
     }

@@ -86,7 +86,7 @@ public:
     /// Lists objects and materials that may be the ceiling, with area, height and direction; the likeliest first.
     Result<Candidates> candidates() const { return make<Candidates>(luxfer_scene_get_candidates); }
 
-    /// Generates a demonstration scene; which is a LUXFER_DEMO_ value.
+    /// Generates a demonstration scene; `which` is a LUXFER_DEMO_ value.
     static Result<Scene> demo(const Context &context, luxfer_demo which) {
         return make_in<Scene>(context, luxfer_demo_create_scene, which);
     }
@@ -171,7 +171,7 @@ public:
         return value<luxfer_surface>(luxfer_scene_find_surface, name.get());
     }
 
-    /// Maps an emissive texture onto the surface of that name; it then emits texture * scale in cd/m².
+    /// Maps an emissive texture onto the surface of that name; it then emits `texture * scale`, in cd/m².
     Result<PlacedEmission> place_emission(Text name, const Image &texture, Rgb scale) const {
         PlacedEmission placed;
         const luxfer_status status =

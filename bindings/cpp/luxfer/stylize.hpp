@@ -34,13 +34,13 @@ public:
         return make<Job>(luxfer_guides_start, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_GUIDES_ value.
+    /// Gets an image of the results; `which` is a LUXFER_GUIDES_ value.
     Result<Image> image(luxfer_guides_image which) const { return make<Image>(luxfer_guides_get_image, which); }
 
-    /// Computes the motion of each pixel since the previous frame, whose guides are before.
+    /// Computes the motion of each pixel since the previous frame, whose guides are `before`.
     Result<Image> motion(const Guides &before) const { return make<Image>(luxfer_guides_get_motion, before.get()); }
 
-    /// Draws an artwork of the scene in place of an artist; style is a LUXFER_ARTWORK_ value.
+    /// Draws an artwork of the scene in place of an artist; `style` is a LUXFER_ARTWORK_ value.
     Result<Image> demo_artwork(luxfer_artwork style) const { return make<Image>(luxfer_demo_create_artwork, style); }
 };
 
@@ -94,7 +94,7 @@ public:
 
     // Results.
 
-    /// Gets an image of the results; which is a LUXFER_STYLIZE_IMAGE_ value.
+    /// Gets an image of the results; `which` is a LUXFER_STYLIZE_IMAGE_ value.
     Result<Image> image(luxfer_stylize_image which = LUXFER_STYLIZE_IMAGE_PICTURE) const {
         return make<Image>(luxfer_stylize_get_image, which);
     }

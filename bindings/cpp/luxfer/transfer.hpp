@@ -77,10 +77,10 @@ public:
 
     // Results, available as soon as their stage has ended.
 
-    /// Gets an image of the results; which is a LUXFER_TRANSFER_ value.
+    /// Gets an image of the results; `which` is a LUXFER_TRANSFER_ value.
     Result<Image> image(luxfer_transfer_image which) const { return make<Image>(luxfer_transfer_get_image, which); }
 
-    /// Gets a scene of the results; which is a LUXFER_SCENE_ value.
+    /// Gets a scene of the results; `which` is a LUXFER_SCENE_ value.
     Result<Scene> scene(luxfer_transfer_scene which = LUXFER_SCENE_LIT) const {
         return make<Scene>(luxfer_transfer_get_scene, which);
     }
@@ -114,7 +114,7 @@ public:
         return make<Job>(luxfer_demo_photo_start, &params);
     }
 
-    /// Gets an image of the results; which is a LUXFER_DEMO_PHOTO_ value.
+    /// Gets an image of the results; `which` is a LUXFER_DEMO_PHOTO_ value.
     Result<Image> image(luxfer_demo_photo_image which) const { return make<Image>(luxfer_demo_photo_get_image, which); }
 };
 

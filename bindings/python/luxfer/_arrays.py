@@ -30,8 +30,7 @@ def is_direct(array: np.ndarray[Any, Any]) -> bool:
 
 def view(array: np.ndarray[Any, Any], colour_space: ColourSpace | str | int) -> tuple[Any, np.ndarray[Any, Any]]:
     """Returns a luxfer_image_view of an array, and the array whose memory the view describes: the given array, or a
-    copy
-    if no view can describe it. A view can describe rows in reverse order, as in array[::-1]."""
+    copy if no view can describe it. A view can describe rows in reverse order, as in array[::-1]."""
     if array.ndim == 2:
         array = array[:, :, None]
     if array.ndim != 3:

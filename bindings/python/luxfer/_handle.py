@@ -34,8 +34,7 @@ if hasattr(os, "register_at_fork"):
 
 def call(context: Context, name: str, *arguments: Any) -> None:
     """Calls a function of the library that returns a status; a failure becomes an exception. Pass objects themselves
-    and
-    not their handles, so that they live until the call ends."""
+    and not their handles, so that they live until the call ends."""
     status = getattr(library, name)(*(a.handle if isinstance(a, Handle) else a for a in arguments))
     if status != _abi.LUXFER_OK:
         raise error(status, context.last_error())
@@ -43,8 +42,7 @@ def call(context: Context, name: str, *arguments: Any) -> None:
 
 class Handle:
     """An object of the library. It may be closed twice; using it after that is an error. A forked child process cannot
-    use
-    an object of its parent; closing the object there does nothing."""
+    use an object of its parent; closing the object there does nothing."""
 
     kind: ClassVar[str]
     _pointer: Any = None

@@ -77,8 +77,7 @@ class Emission(StageBase):
         to_photo: ArrayLike | None = None,
     ) -> None:
         """Adds an exemplar with scale unwarped pixels per texel. The image weights is stretched over the texture; its
-        value
-        at a lamp is the probability that the lamp is taken from this exemplar."""
+        value at a lamp is the probability that the lamp is taken from this exemplar."""
         images = [image_of(self._context, image) for image in (unwarped, light, valid)]
         if (photo is None) != (to_photo is None):
             raise TypeError("a photo needs to_photo, the map from unwarped to photo pixels")

@@ -63,8 +63,7 @@ class Features(StageBase):
     def set_strokes(self, strokes: Strokes | ImageLike | None) -> None:
         """Sets the strokes on the photo, which help to fit the room layout: strokes for the plane show where one of
         its planes is and where it is not, and lights lie on this plane. A drawing is converted by Strokes.from_image.
-        None
-        means no strokes."""
+        None means no strokes."""
         set_strokes(self, strokes)
 
     def start(self, **params: Unpack[FeaturesParams]) -> Job[Features]:

@@ -49,7 +49,7 @@ class Guides(StageBase):
         return self._get_image("get_image", _params.member(GuidesImage, which))
 
     def motion(self, before: Guides) -> Image:
-        """The motion of each pixel since the previous frame, whose guides are before; for Stylize.set_motion."""
+        """The motion of each pixel since the previous frame, whose guides are `before`; for Stylize.set_motion."""
         return self._get_image("get_motion", before)
 
     def demo_artwork(self, style: Artwork | str) -> Image:

@@ -58,8 +58,7 @@ class Illuminance(StageBase):
 
     def start_mesh(self, mesh: int, back: bool = False, **params: Unpack[IlluminanceParams]) -> Job[Illuminance]:
         """Starts a calculation on a mesh, at points that its texture coordinates define. back=True is the back side;
-        the
-        winding of the triangles defines the front side."""
+        the winding of the triangles defines the front side."""
         return self._job("start_mesh", mesh, int(back), _params.fill(_abi.luxfer_illuminance_params, params, []))
 
     def run_mesh(

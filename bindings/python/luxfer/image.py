@@ -105,8 +105,7 @@ class Image(Handle):
 
     def numpy(self, dtype: DTypeLike = np.float32, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> NDArray[Any]:
         """A new array of the shape (height, width, channels). For a display, use uint8 and "srgb". Images with more
-        than 4
-        channels are always float32."""
+        than 4 channels are always float32."""
         height, width, channels = self.shape
         out = np.empty((height, width, channels), dtype)
         for first in range(0, channels, 4):  # read 4 channels at a time, because a view has at most 4

@@ -56,8 +56,7 @@ class Importance(StageBase):
 
     def respond(self, texture: ImageLike, placement: Sequence[float] | None = None) -> ImportanceReport:
         """Computes the light that the target receives from a texture in cd/m². The matrix placement (nine numbers, row
-        by
-        row) maps the texture coordinates of the surface to those of the texture."""
+        by row) maps the texture coordinates of the surface to those of the texture."""
         image = image_of(self._context, texture)
         out = self._read("respond", _abi.luxfer_importance_report, image, _nine(placement))
         return cast(ImportanceReport, out)
@@ -79,8 +78,7 @@ class Importance(StageBase):
         self, texture: ImageLike, progress: Progress | None = None, **params: Unpack[PlacementParams]
     ) -> Placement:
         """Finds the best placement of a texture in cd/m². By default, it varies the offset so that the target gets the
-        most
-        light."""
+        most light."""
         return self.start_placement(texture, **params).wait(progress).placement
 
     @property

@@ -1,4 +1,4 @@
-"""Solves for the powers of the lamps of an emission that come nearest to several goals."""
+"""Solves for lamp powers that come as near as possible to several goals."""
 
 from __future__ import annotations
 
@@ -36,8 +36,7 @@ class Lamps(StageBase):
 
     def set_scene(self, scene: Scene, material: int | None) -> None:
         """Sets the scene and the emitting material whose lamps are solved for; None means the scene's punctual lights,
-        such
-        as luminaires. Removes all goals."""
+        such as luminaires. Removes all goals."""
         self._call("set_scene", scene, _abi.LUXFER_NONE if material is None else material)
 
     def add_mesh(
@@ -49,8 +48,7 @@ class Lamps(StageBase):
 
     def add_grid(self, grid: IlluminanceGrid | Mapping[str, Any], lux: float, weight: float = 1) -> None:
         """Adds a goal: the mean illuminance that a calculation grid should have. Its origin, across and down (in
-        metres) and
-        normal define the grid."""
+        metres) and normal define the grid."""
         self._call("add_grid", _params.fill(_abi.luxfer_illuminance_grid, grid, [], "grid."), lux, weight)
 
     def set_constraint(self, goal: int, constraint: Constraint | str | Sequence[Constraint | str]) -> None:

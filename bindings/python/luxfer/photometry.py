@@ -90,8 +90,7 @@ def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tu
 
 def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0) -> GlareReport:
     """The unified glare rating of a luminance image in cd/m². Pixels above threshold are glare sources; 0 means five
-    times
-    the mean luminance."""
+    times the mean luminance."""
     report = _abi.luxfer_glare_report()
     call(context, "luxfer_image_get_glare", image_of(context, image), fov_y, threshold, report, ctypes.sizeof(report))
     return cast(GlareReport, _params.report(report))
@@ -124,8 +123,7 @@ def fit_temperature(
     context: Context, response: Sequence[float], target: Sequence[float], background: Sequence[float] = (0, 0, 0)
 ) -> TemperatureFit:
     """Finds the blackbody light that brings the mean radiance of a target nearest to a given one. response is the
-    target's
-    radiance for white light of 1 cd/m²."""
+    target's radiance for white light of 1 cd/m²."""
     report = _abi.luxfer_temperature_fit()
     vectors = (_three(v) for v in (response, background, target))
     call(context, "luxfer_fit_temperature", context, *vectors, report, ctypes.sizeof(report))

@@ -41,8 +41,7 @@ class Rectify(StageBase):
 
     def set_mask(self, mask: ImageLike | None) -> None:
         """Sets the mask of the plane to unwarp: of the photo's size, 1 on the plane, 0 elsewhere. With None, only
-        lines and
-        vanishing points are found."""
+        lines and vanishing points are found."""
         self._call("set_mask", None if mask is None else image_of(self._context, mask))
 
     def start(self, **params: Unpack[RectifyParams]) -> Job[Rectify]:

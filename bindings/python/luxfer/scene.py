@@ -68,8 +68,7 @@ class Scene(Handle):
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str], **params: Unpack[SceneLoadParams]) -> Scene:
         """Loads a glTF 2.0 file: a .glb, or a .gltf with the files that it names. unit is the length of the file's
-        unit in
-        metres."""
+        unit in metres."""
         settings = _params.fill(_abi.luxfer_scene_load_params, params, [])
         return cls._made(context, "luxfer_scene_load", _params.text(os.fspath(path), "path"), settings)
 
@@ -227,8 +226,7 @@ class Scene(Handle):
 
     def set_environment(self, colour: Sequence[float], image: ImageLike | None = None) -> None:
         """Sets an environment of uniform radiance colour, in cd/m²; or, with image, an equirectangular image
-        multiplied by
-        colour."""
+        multiplied by colour."""
         sky = None if image is None else image_of(self._context, image)
         self._call("set_environment", sky, *_colour(colour))
 
@@ -339,8 +337,7 @@ class Scene(Handle):
 
     def requirements(self, error: float = 0.01) -> Requirements:
         """The features that the scene requires of a renderer. Its field bounces is the number of bounces beyond which
-        at
-        most the share error of all scattered light remains."""
+        at most the share error of all scattered light remains."""
         out = self._fill("get_requirements", _abi.luxfer_requirements, error)
         return cast(Requirements, _params.report(out))
 

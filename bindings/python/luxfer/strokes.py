@@ -46,8 +46,7 @@ class Strokes(Handle):
 
     def add(self, phase: Phase | str, points: ArrayLike, radius: float, positive: bool) -> None:
         """Adds a stroke along points (n, 2), for the "plane" or the "lights"; points and radius are in pixels. It
-        marks the
-        plane (or lights) if positive, else its surroundings."""
+        marks the plane (or lights) if positive, else its surroundings."""
         array = np.ascontiguousarray(points, np.float32)
         if array.ndim == 1 and array.size == 2:
             array = array[None]
@@ -58,8 +57,7 @@ class Strokes(Handle):
 
     def add_image(self, drawing: ImageLike) -> None:
         """Adds the strokes of a drawing of the same size: green is plane, red not plane, yellow light, blue not light.
-        An
-        array of uint8 is sRGB."""
+        An array of uint8 is sRGB."""
         self._call("add_image", image_of(self._context, drawing, "srgb"))
 
     def add_text(self, description: str) -> None:

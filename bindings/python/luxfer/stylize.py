@@ -64,8 +64,7 @@ class Stylize(StageBase):
         range: GuideRange | str = GuideRange.LIGHT,
     ) -> None:
         """Adds a guide of "light" or "data": source shows the exemplar, target the scene to paint. With None as
-        target,
-        source is used for both, as for a half-painted picture."""
+        target, source is used for both, as for a half-painted picture."""
         first = image_of(self._context, source)
         second = None if target is None else image_of(self._context, target)
         self._call("add_guide", _params.text(name, "name"), first, second, weight, _params.member(GuideRange, range))
@@ -85,29 +84,25 @@ class Stylize(StageBase):
 
     def set_target_mask(self, mask: ImageLike | None, known: ImageLike | None = None) -> None:
         """Sets the mask of the target: pixels above 0.5 are painted; the others come from known, or are black. None
-        means
-        that all pixels are painted."""
+        means that all pixels are painted."""
         images = [None if image is None else image_of(self._context, image) for image in (mask, known)]
         self._call("set_target_mask", *images)
 
     def set_motion(self, motion: ImageLike | None) -> None:
         """Sets the motion since the previous frame (Guides.motion), so that each job starts from the previous result.
-        With
-        None, each job starts from nothing."""
+        With None, each job starts from nothing."""
         self._call("set_motion", None if motion is None else image_of(self._context, motion))
 
     def set_painted(self, painted: ImageLike) -> None:
         """Lets the library complete a half-painted picture, which is the artwork. The mask painted is above 0.5 where
-        the
-        picture is finished."""
+        the picture is finished."""
         self._call("set_painted", image_of(self._context, painted))
 
     # -- work
 
     def start(self, preset: StylizePreset | str = StylizePreset.FULL, **params: Unpack[StylizeParams]) -> Job[Stylize]:
         """Starts the stylisation with a preset, "full", "fast", "preview" or "paper"; keyword arguments replace some
-        of
-        its settings."""
+        of its settings."""
         settings = _preset(preset)
         _params.update(settings, params, [])
         return self._job("start", settings)
@@ -123,8 +118,7 @@ class Stylize(StageBase):
 
     def update(self, artwork: ImageLike, changed: ImageLike) -> Job[Stylize]:
         """Starts a job that updates the picture after the artwork was repainted where changed is above 0.5. The
-        previous
-        run must have had keep_for_update=1."""
+        previous run must have had keep_for_update=1."""
         images = [image_of(self._context, image) for image in (artwork, changed)]
         return self._job("update", *images)
 

@@ -75,8 +75,7 @@ class Transfer(StageBase):
 
     def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
         """Sets the camera of the picture; without arguments, selects the first camera of the scene or, without
-        cameras, one
-        in a corner of the room."""
+        cameras, one in a corner of the room."""
         values = {**(camera or {}), **params}
         self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
 
@@ -86,15 +85,13 @@ class Transfer(StageBase):
 
     def set_zones(self, zones: ArrayLike) -> None:
         """Sets rectangles (n, 4) of the surface that stay without lamps: u0, v0, u1, v1 in metres from the surface's
-        corner
-        along its axes. They replace those of earlier calls."""
+        corner along its axes. They replace those of earlier calls."""
         values = np.ascontiguousarray(zones, np.float64).reshape(-1, 4)
         self._call("set_zones", values.ctypes.data_as(POINTER(ctypes.c_double)), len(values))
 
     def set_triangles(self, triangles: ArrayLike) -> None:
         """Sets the triangles that receive the lights, instead of the named surface: an array (n, 2) with mesh and
-        triangle
-        index. An empty array selects the named surface again."""
+        triangle index. An empty array selects the named surface again."""
         values = np.ascontiguousarray(triangles, np.uint32).reshape(-1, 2)
         self._call("set_triangles", values.ctypes.data_as(POINTER(ctypes.c_uint32)), len(values))
 
@@ -141,14 +138,12 @@ class Transfer(StageBase):
 
     def image(self, which: TransferImage | str = TransferImage.RENDER) -> Image:
         """An image of the results: "features", "plane-mask", "plane-confidence", "lights-mask", "lights-confidence",
-        "unwarped", "unwarped-valid",
-        "emission", "emission-mask", "render", "render-variance" or "render-preview"."""
+        "unwarped", "unwarped-valid", "emission", "emission-mask", "render", "render-variance" or "render-preview"."""
         return self._get_image("get_image", _params.member(TransferImage, which))
 
     def scene(self, which: TransferScene | str = TransferScene.LIT) -> Scene:
         """A scene of the results: "lit" is the result, "unsolved" the scene before relighting, and "white" the scene
-        in
-        white light of equal luminance."""
+        in white light of equal luminance."""
         pointer = POINTER(_abi.luxfer_scene)()
         self._call("get_scene", _params.member(TransferScene, which), pointer)
         return Scene._adopt(self._context, pointer)
@@ -181,6 +176,5 @@ class Transfer(StageBase):
 
     def save_fixtures(self, path: str | os.PathLike[str]) -> None:
         """Writes the lamps to a .csv or .json file. The names of the columns contain the units. A .json file also has
-        the
-        outlines of the lamps."""
+        the outlines of the lamps."""
         self._call("save_fixtures", _params.text(os.fspath(path), "path"))

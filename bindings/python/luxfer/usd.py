@@ -312,8 +312,7 @@ def spread(
     values: NDArray[Any], interpolation: str, vertices: NDArray[Any], points: int, corners: int
 ) -> NDArray[Any] | None:
     """Converts values per point, per corner (if the vertices are the corners) or for the whole mesh to values per
-    vertex.
-    None for other interpolations, or if the lengths do not match."""
+    vertex. None for other interpolations, or if the lengths do not match."""
     if interpolation in ("vertex", "varying") and len(values) == points:
         return values[vertices]
     if interpolation == "faceVarying" and len(values) == corners == len(vertices):
