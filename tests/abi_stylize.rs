@@ -145,7 +145,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         assert_eq!(luxfer_stylize_get_round(stylize, 0, 4, &mut round, size_of_val(&round)), LUXFER_NOT_FOUND);
         assert_eq!(luxfer_stylize_get_level(stylize, 1, null_mut(), null_mut(), null_mut()), LUXFER_NOT_FOUND);
 
-        // Every pixel is copied from the artwork, and the sources state its place.
+        // Every pixel is copied from the artwork, and the image `sources` states from which place.
         let art = artwork(context, 60, 44);
         let (_, _, paint) = pixels(art);
         let images = [get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE), get(stylize, LUXFER_STYLIZE_IMAGE_SOURCES)];

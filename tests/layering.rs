@@ -79,7 +79,7 @@ const UNSAFE: &[&str] = &[
 /// The only allowed thread-local state, and its module: whether the thread is inside the library.
 const PER_THREAD: (&str, &str) = ("thread_local!", "quiet");
 
-/// Modules whose float constants all state their origin (docs/glossary.md, "Tags of constants").
+/// Modules in which every float constant must state its origin (docs/glossary.md, "Tags of constants").
 const TAGGED: &[&str] = &[
     "demo",
     "features",

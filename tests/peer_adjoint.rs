@@ -192,7 +192,7 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
     assert!(widest < 0.3 && (total[0] / total[1] - 1.0).abs() < 0.005, "{widest} {total:?}");
 }
 
-/// The largest component of the gradient of a channel, because one component may be 0.
+/// Size of a channel's gradient: its largest component, because single components may be 0.
 fn slope_size(rows: &[Vec<f64>], number: usize, texels: usize) -> f64 {
     let channel = (number - texels) % 3;
     (0..5).map(|i| statistics::statistics(rows, texels + 3 * i + channel).0.abs()).fold(0.0, f64::max)
