@@ -26,7 +26,7 @@ def tiff(picture, pixels, camera=()):
     return (head.ljust(184, b"\0") + b"".join(fractions)).ljust(200, b"\0") + pixels
 
 
-#: Exposure time, f-number and ISO speed of a white of 240 cd/m².
+#: EXIF entries of exposure time, f-number and ISO speed, by which white has 240 cd/m².
 EXPOSURE = [(0x829A, 5, (1, 50)), (0x829D, 5, (2, 1)), (0x8827, 3, 100)]
 
 

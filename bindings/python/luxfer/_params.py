@@ -24,7 +24,7 @@ INTEGERS = {
 
 
 def nearest(name: str, names: list[str]) -> str:
-    """A hint for a mistyped name: the most similar of the names, if any."""
+    """A hint for a mistyped name: the most similar name, if any, and the list of all names."""
     close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     return (f"did you mean '{close[0]}'? " if close else "") + "There are " + ", ".join(names)
 
