@@ -6,7 +6,7 @@ use super::regions::{Brightness, Regions};
 use super::surroundings::{self, Bounds, Surroundings};
 use super::tree::{Disjoint, Tree};
 use crate::error::Result;
-use crate::image::{Image, try_vec};
+use crate::image::{Image, try_collect, try_push, try_vec};
 use crate::job::Job;
 use std::ops::RangeInclusive;
 
@@ -29,6 +29,12 @@ const LARGER: f64 = 1.6;
 /// The area of a lamp on the plane may be this factor below the smallest or above the largest painted lamp: bloom and
 /// blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
+/// A lamp of a smaller kind, of which no lamp is painted, has at least this share of the minimum area of a painted
+/// kind on the plane, and at least this likeness, and this share of the ring around it lies on the plane.
+/// [bench photos:tune, photos:real]
+const SMALLER_KIND: f64 = 0.25;
+const SURE: f64 = 1.2;
+const SURELY_ON_PLANE: f64 = 0.9;
 /// The aspect of a lamp on the plane may be `ROUNDER` times below the least and `LONGER` times above the largest
 /// aspect of the painted lamps. Blur widens thin lamps, and lengthens distant lamps along the line of sight.
 /// [bench photos:tune]
@@ -84,6 +90,16 @@ pub struct Similar {
     pub beyond: Vec<u32>,
 }
 
+/// The size and aspect of a region, compared with those of the painted lamps.
+#[derive(Clone, Copy, PartialEq)]
+enum Size {
+    /// Like a painted lamp, or like a painted lamp that the photo's border cuts.
+    Painted,
+    /// Smaller than the painted lamps, as lamps of another kind may be.
+    Smaller,
+    Other,
+}
+
 /// The limits that a lamp must meet, derived from the painted lamps.
 struct Model {
     min_area: f64,
@@ -128,35 +144,19 @@ pub struct Search<'a> {
 impl Search<'_> {
     /// Finds regions that are like the `painted` ones; these are not part of the result.
     pub fn run(&self, painted: &[u32], job: Job) -> Result<Similar> {
-        let Self { tree, regions, photo, .. } = *self;
+        let Self { tree, photo, .. } = *self;
         let mut taken = try_vec(tree.node_of.len(), false)?;
         for &node in painted {
             tree.pixels(node).iter().for_each(|&p| taken[p as usize] = true);
         }
         let Some(model) = self.model(painted)? else { return Ok(Similar::default()) };
 
-        // Rate all nodes that neither contain a painted node nor lie inside one.
         let mut chosen = Disjoint::new(tree)?;
         painted.iter().for_each(|&node| chosen.choose(node));
-        let mut is_painted = try_vec(tree.len(), false)?;
-        painted.iter().for_each(|&n| is_painted[n as usize] = true);
-        let mut candidates = Vec::new();
-        for node in 1..tree.len() {
-            is_painted[node] |= is_painted[tree.parent[node] as usize];
-            let likeness = match is_painted[node] || chosen.is_around(node as u32) {
-                true => 0.0,
-                false => self.likeness(&model, node),
-            };
-            if likeness >= NEARLY {
-                candidates.push((node as u32, likeness, regions.contrast(node) * regions.area[node].powf(AREA_POWER)));
-            }
-        }
-
-        // Take the candidates with the sharpest contours first. Regions inside or around a chosen region belong to
-        // that region, so skip them.
-        candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        let candidates = self.candidates(&model, painted, &chosen)?;
         let mut similar = Similar::default();
-        for (k, &(node, likeness, _)) in candidates.iter().enumerate() {
+        let mut smaller = Vec::new();
+        for (k, &(node, likeness)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
                 job.check()?;
             }
@@ -165,6 +165,13 @@ impl Search<'_> {
             }
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
             let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
+            if self.size(&model, node as usize) == Size::Smaller {
+                if likeness >= SURE && ring.on_plane >= SURELY_ON_PLANE {
+                    try_push(&mut smaller, node)?;
+                    chosen.choose(node);
+                }
+                continue;
+            }
             let is_on_plane = ring.on_plane >= ON_PLANE;
             let lamps = || painted.iter().chain(&similar.found);
             let is_beside = likeness >= 1.0 && !is_on_plane && model.is_beside(&ring);
@@ -183,7 +190,36 @@ impl Search<'_> {
                 chosen.choose(node);
             }
         }
+
+        // A single small bright thing may be anything: lamps of a smaller kind are at least two of equal size and shape.
+        for &node in &smaller {
+            if self.like_ones(smaller.iter().filter(|other| **other != node), node as usize).next().is_some() {
+                try_push(&mut similar.found, node)?;
+            }
+        }
         Ok(similar)
+    }
+
+    /// Returns the nodes that may be lamps, each with its likeness, the sharpest contours first. Nodes that contain a
+    /// painted node or lie inside one are left out.
+    fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint) -> Result<Vec<(u32, f64)>> {
+        let Self { tree, regions, .. } = *self;
+        let mut is_painted = try_vec(tree.len(), false)?;
+        painted.iter().for_each(|&n| is_painted[n as usize] = true);
+        let mut candidates = Vec::new();
+        for node in 1..tree.len() {
+            is_painted[node] |= is_painted[tree.parent[node] as usize];
+            if is_painted[node] || chosen.is_around(node as u32) {
+                continue;
+            }
+            let likeness = self.likeness(model, node);
+            if likeness >= NEARLY {
+                let rank = regions.contrast(node) * regions.area[node].powf(AREA_POWER);
+                try_push(&mut candidates, (node as u32, likeness, rank))?;
+            }
+        }
+        candidates.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        try_collect(candidates.into_iter().map(|(node, likeness, _)| (node, likeness)))
     }
 
     fn model(&self, painted: &[u32]) -> Result<Option<Model>> {
@@ -225,21 +261,29 @@ impl Search<'_> {
         }))
     }
 
-    /// Whether a node has the size and aspect of a lamp. They are measured on the plane if the room has a box layout,
-    /// else in the photo. A lamp that the photo's border cuts may be much smaller.
-    fn has_size(&self, model: &Model, node: usize) -> bool {
+    /// Compares the size and aspect of a node with those of the painted lamps. They are measured on the plane if the
+    /// room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
+    fn size(&self, model: &Model, node: usize) -> Size {
         let regions = self.regions;
         let area = regions.area[node];
         let Some((on_surface, surface)) = model.surface.as_ref().zip(regions.surface.as_ref()) else {
-            return (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
+            let is_like =
+                (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
+            return if is_like { Size::Painted } else { Size::Other };
         };
-        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
-        if surface.area[node] > on_surface.area[1] {
-            return false;
+        let [min, max] = on_surface.area;
+        let shown = surface.area[node];
+        if area < model.min_area || shown > max || shown < min * SMALLER_KIND.min(CUT) {
+            return Size::Other;
         }
-        let is_whole = surface.area[node] >= on_surface.area[0]
-            && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
-        area >= model.min_area && (is_whole || surface.area[node] >= CUT * on_surface.area[0] && is_cut())
+        let has_aspect = (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
+        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
+        match has_aspect {
+            true if shown >= min => Size::Painted,
+            _ if shown >= CUT * min && is_cut() => Size::Painted,
+            true if shown >= SMALLER_KIND * min && !is_cut() => Size::Smaller,
+            _ => Size::Other,
+        }
     }
 
     /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
@@ -282,7 +326,7 @@ impl Search<'_> {
     fn likeness(&self, model: &Model, node: usize) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !self.has_size(model, node) || self.negatives[node] > 0.0 {
+        if self.size(model, node) == Size::Other || self.negatives[node] > 0.0 {
             return 0.0;
         }
         let sharpness = sharpness(area);
