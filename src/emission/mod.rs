@@ -25,8 +25,8 @@
 //! drift and cuts lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); zones that must
 //! stay free of lamps ([`compose::placement`]); textures of any size, rendered in tiles of a [`Composition`]; and
 //! textures blended from several exemplars ([`compose::draw`]). Not modelled: lamps that mix the designs of two
-//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in textures that repeat,
-//! where edges may be off by the stretch of a few cells.
+//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in tileable textures, whose
+//! edges may be displaced by the stretch of a few cells.
 
 mod agreement;
 mod compose;

@@ -162,7 +162,8 @@ impl Input<'_> {
     }
 }
 
-/// Maximum number of working pixels of a texture. A larger texture is planned at a smaller working size.
+/// Maximum number of working pixels of a texture, the pixels of its layout. For a larger texture, the layout of lamps
+/// and patches is computed at a lower resolution.
 const MAX_WORKING_PIXELS: f64 = (1 << 28) as f64;
 
 impl Params {

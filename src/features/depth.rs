@@ -18,10 +18,10 @@ pub struct Surface {
     pub confidence: Image,
 }
 
-/// Confidence in the neutral prior [convention].
+/// Confidence in the neutral prior. [convention]
 const NEUTRAL_CONFIDENCE: f32 = 0.05;
-/// Depths are clamped to within this factor of the median; more extreme depths are not meaningful
-/// [origin not recorded].
+/// Depths are clamped to within this factor of the median; more extreme depths are not meaningful.
+/// [origin not recorded]
 const MAX_RATIO: f32 = 1e4;
 /// Maximum number of depth samples from which quantiles are estimated.
 const QUANTILE_SAMPLES: usize = 1 << 16;

@@ -13,18 +13,18 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Maximum number of segments used, the longest ones; further segments do not change the layout.
 pub const MAX_SEGMENTS: usize = 160;
-/// Sample points along each segment, as shares of its length [origin not recorded].
+/// Sample points along each segment, as shares of its length. [origin not recorded]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
-/// Penalty of a segment on a face that cannot contain it, relative to the segment's weight [origin not recorded].
+/// Penalty of a segment on a face that cannot contain it, relative to the segment's weight. [origin not recorded]
 const IMPOSSIBLE: f64 = 1.5;
-/// Additional reward of a segment on a seam, relative to the reward of a segment on a face [origin not recorded].
+/// Additional reward of a segment on a seam, relative to the reward of a segment on a face. [origin not recorded]
 const SEAM: f64 = 2.0;
-/// A segment no longer lies on the seam of two faces if the distances to them along its rays differ by this share
-/// [origin not recorded].
+/// A segment no longer lies on the seam of two faces if the distances to them along its rays differ by this share.
+/// [origin not recorded]
 const SEAM_WIDTH: f64 = 0.03;
 /// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
 /// this face too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes
-/// on the wrong face wins only if the lines rule out nearly all others [origin not recorded].
+/// on the wrong face wins only if the lines rule out nearly all others. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
 /// Number of lanes in which sums run, so that the order of additions does not depend on the processor.

@@ -18,24 +18,24 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Prior of a side of which the photo shows nothing, in units of the distance to the back wall; and cost of the
 /// squared logarithm of the ratio of a side to its prior. The prior is equal for all sides, so that the result does
-/// not depend on the photo's orientation [origin not recorded].
+/// not depend on the photo's orientation. [origin not recorded]
 const PRIOR_SIDE: f64 = 0.4;
 const PRIOR_COST: f64 = 0.01;
-/// Values tried for each side whatever the segments suggest: `MIN_SIDE × RATIO^k` for `k < GRID`
-/// [origin not recorded].
+/// Values tried for each side whatever the segments suggest: `MIN_SIDE × RATIO^k` for `k < GRID`.
+/// [origin not recorded]
 const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;
 /// Maximum number of candidates per side from segments.
 const PEAKS: usize = 24;
 /// Two boxes are clearly different if more than this share of the view meets different faces, or faces whose distances
-/// differ by more than the factor `MIN_RATIO` [origin not recorded].
+/// differ by more than the factor `MIN_RATIO`. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
 /// Number of rays along each side of the photo by which boxes are compared.
 const RAYS: usize = 9;
 /// Number of boxes that are refined; ratio of neighbouring values in each of the two refinements; and number of values
-/// on either side of the current one [origin not recorded].
+/// on either side of the current one. [origin not recorded]
 const STARTS: usize = 6;
 const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
 const VALUES_EITHER_SIDE: i32 = 8;

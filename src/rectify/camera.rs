@@ -11,7 +11,7 @@ use crate::geometry::{FocalSource, Perspective};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
-/// the camera is upright) [convention].
+/// the camera is upright). [convention]
 pub const FREE_ERROR: f64 = 0.5;
 
 /// The estimated camera, with the vanishing point of each room axis.

@@ -105,11 +105,11 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
         }
         aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
     }
-    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio [convention].
+    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio. [convention]
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 
-/// Step of the finite differences as a share of a standard deviation [rounding].
+/// Step of the finite differences as a share of a standard deviation. [rounding]
 const SMALL: f64 = 1e-3;
 
 /// Returns vectors whose outer products sum to the covariance matrix.

@@ -41,8 +41,8 @@ impl Composition {
         Self::of(None, input, styles, params, job)
     }
 
-    /// Like [`Self::new`], but uses an earlier [`Reading`] of the first exemplar if one is given and its settings
-    /// match.
+    /// Like [`Self::new`], but reuses an earlier analysis of the first exemplar ([`Reading`]), if one is given and was
+    /// made with the same settings.
     pub(in crate::emission) fn of(
         mut reading: Option<Reading>,
         input: &Input,

@@ -77,8 +77,8 @@ impl LampList {
         Ok(list)
     }
 
-    /// Groups lamps of equal shape into kinds and numbers the kinds, over all exemplars and the lights that follow
-    /// patches.
+    /// Groups lamps of equal shape into kinds and numbers the kinds, over all exemplars and the lights that are copied
+    /// patch by patch.
     fn number_kinds(&mut self, composition: &Composition) {
         let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
         for (k, instance) in &self.shown {

@@ -32,7 +32,8 @@ const MIN_BLOCK: f64 = 16.0;
 /// Side of a patch on a lattice, as a multiple of the lattice's longer period. [bench emission:knobs]
 const BLOCK_PERIODS: f64 = 1.5;
 
-/// The part of one exemplar that each place of the texture shows.
+/// The plan of one exemplar's share of the texture: which part of the exemplar each place of the texture shows, and
+/// how its lamps are drawn.
 pub struct Layer {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
@@ -77,7 +78,8 @@ impl Layer {
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let setting = Setting::new(&exemplar, found, window, params)?;
 
-        // Compute the metadata, then place patches and lamps.
+        // Compute the metadata of the exemplar, the guide channels of the synthesis: confidence, and signed x and y
+        // distance to the nearest light. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
         let (width, height, job_part) = (working.width, working.height, job.part(0.25, 0.3));
@@ -152,8 +154,8 @@ impl Layer {
     }
 }
 
-/// Minimum score of a lattice on which clean lamps replace a copy of the photo with its ragged outlines.
-/// [bench photos:tune]
+/// A texture that fits inside the exemplar is a copy of the photo, with its ragged outlines. Lamps with clean outlines
+/// replace the copy only if they lie on a lattice with at least this score. [bench photos:tune]
 const SURE: f64 = 0.6;
 
 /// Outlines are ragged if a photo pixel is at least this many unwarped pixels long, so that its steps are visible.

@@ -74,8 +74,9 @@ pub struct Lines<'a> {
     across: usize,
     along: usize,
     widest: usize,
-    /// By which share each pixel is darker than the light beside it, at least 0. Each side's light is the brightest
-    /// lit pixel within `widest` positions; the darker of the two sides counts. NaN if a side has no light.
+    /// Share by which each pixel is darker than the light beside it; at least 0. The light of a side is the brightest
+    /// lit pixel within `widest` positions on that side. The darker of the two sides counts. NaN if a side has no
+    /// light.
     depth: Vec<f32>,
 }
 
@@ -200,12 +201,12 @@ impl<'a> Lines<'a> {
             .collect()
     }
 
-    /// Removes a bar from the light. It keeps the stretches in which the photo shows no bar although its sharpness is
-    /// at least `bluntest`. Returns whether any lit pixel was removed.
+    /// Removes a bar from the light, except in stretches where the photo shows no bar although its sharpness is at
+    /// least `bluntest`. Returns whether any lit pixel was removed.
     pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
-        // Where another bar crosses, the bar does not stand out from it, and the stretch seems to have no bar.
+        // Where another bar crosses, both bars are equally dark, so the stretch seems to have no bar.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
         let mut is_changed = false;

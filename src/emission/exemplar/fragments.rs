@@ -12,7 +12,7 @@ use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// A group of alike pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels.
+/// A group of similar pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels.
 /// [judged on 20 photos]
 const MIN_KIND: f64 = 0.15;
 /// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
@@ -20,7 +20,7 @@ const MAX_FRAGMENT: f64 = 0.2;
 /// Maximum distance from a fragment to the light that it broke off, as a multiple of the longer side of a lamp.
 /// [judged on 20 photos]
 const CLOSE: f64 = 0.35;
-/// Minimum number of alike pieces that are a kind of lamps however small they are, unless they lie close to other
+/// At least this many similar pieces count as a kind of lamps, however small they are, unless they lie close to other
 /// lights. [judged on 20 photos]
 const MANY: usize = 3;
 

@@ -1,7 +1,8 @@
 //! Separates the panes of a luminous ceiling along the bars between them, and fills gaps within each pane.
 //!
-//! The light mask joins panes where bloom covers the bars between them, and cuts panes to pieces along their leading
-//! where the camera is near. The detected bars ([`super::bars`]) define the panes, near and far.
+//! The light mask joins panes where bloom covers the bars between them. Where the camera is near, it cuts panes to
+//! pieces along their leading, the lead strips inside a pane. The detected bars ([`super::bars`]) define the panes,
+//! near and far.
 
 use super::LUMINOUS;
 use super::bars::{self, Bar, Lines, LitPlane};
@@ -21,8 +22,8 @@ const BRIGHT: f32 = 0.5;
 /// [bench photos:real]
 const LEADING: f64 = 0.06;
 
-/// Returns the light mask of the panes without the bars between them. `None` if the plane is no luminous ceiling, or
-/// if the mask covers no bar.
+/// Returns the light mask of the panes without the bars between them. `None` if the plane is not a luminous ceiling,
+/// or if the mask covers no bar.
 pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     let pixels = plane.light.data.len();
     let valid = (0..pixels).filter(|&i| plane.is_valid(i)).count();

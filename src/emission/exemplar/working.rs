@@ -95,7 +95,7 @@ impl Working {
         Ok(Self { width, height, pitch, colour, confidence, coverage, usable, shown, shown_coverage, luminance })
     }
 
-    /// Whether at least half of a pixel is light.
+    /// Whether lamps cover at least half of a pixel.
     pub fn is_lit(&self, pixel: usize) -> bool {
         self.coverage[pixel] >= 0.5
     }

@@ -7,7 +7,7 @@
 //! magnification, and is subtracted as far as the lamps show it. The resulting outline is exact at any resolution.
 //! Lamps of another shape keep their own outline.
 //!
-//! Not modelled: rings; lamps of equal shape but different orientation.
+//! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
 
 use super::luminaire::Luminaire;
 use crate::emission::exemplar::Exemplar;

@@ -1,4 +1,4 @@
-//! Excludes dark lattice sites that the border of the exemplar cuts.
+//! Excludes lattice sites that have no lamp (dark sites) and that the border of the exemplar cuts.
 //!
 //! A lamp that the border cuts is left out of the texture, because only a part of it is visible. Sites without a lamp
 //! that the border cuts must be left out too. If patches could show these dark sites but not the lit ones, the texture

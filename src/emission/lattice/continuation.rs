@@ -1,4 +1,4 @@
-//! The continuation of a texture beyond its exemplar.
+//! How the pattern of a texture continues beyond its exemplar: as a lattice, as a row, by repetition, or freely.
 
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};

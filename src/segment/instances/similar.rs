@@ -1,5 +1,6 @@
-//! Finds regions without a stroke that look like the painted lamps: similar in brightness, colour, size, shape, and in
-//! sharpness against the plane around them. Regions that almost meet these criteria are reported as doubtful.
+//! Finds regions without a stroke that look like the painted lamps, the regions under the user's positive strokes:
+//! similar in brightness, colour, size, shape, and in sharpness against the plane around them. Regions that almost
+//! meet these criteria are reported as doubtful.
 
 use super::painted::MIN_AREA;
 use super::regions::{Brightness, Regions};
@@ -17,7 +18,8 @@ const CHROMA: f64 = 12.0;
 /// Minimum contrast along a lamp's contour, relative to the median of the painted lamps. It is below 1 because distant
 /// lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Minimum contrast to the ring around a lamp, relative to the median of the painted lamps. [judged on 28 photos]
+/// Minimum contrast to the ring of pixels around a lamp, relative to the median of the painted lamps.
+/// [judged on 28 photos]
 const RING: f64 = 0.5;
 /// Minimum solidity (see `Regions::solidity`), relative to the least solid painted lamp. [judged on 28 photos]
 const SOLIDITY: f64 = 0.85;
@@ -26,12 +28,12 @@ const SOLIDITY: f64 = 0.85;
 const SMALLER: f64 = 1.0 / 27.0;
 /// Maximum area in pixels, relative to the largest painted lamp, if the room has no box layout. [judged on 28 photos]
 const LARGER: f64 = 1.6;
-/// The area of a lamp on the plane may be this factor below the smallest or above the largest painted lamp: bloom and
-/// blur enlarge distant lamps. [judged on 44 photos]
+/// The area of a lamp on the plane may be up to this factor smaller than that of the smallest painted lamp, or larger
+/// than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// The aspect of a lamp on the plane may be `ROUNDER` times below the least and `LONGER` times above the largest
-/// aspect of the painted lamps. Blur widens thin lamps, and lengthens distant lamps along the line of sight.
-/// [bench photos:tune]
+/// The aspect of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of the painted lamps,
+/// and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and lengthens distant lamps
+/// along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
 /// Area and shape on the plane are taken from painted lamps with at least this share of the pixels of the largest one.
@@ -94,7 +96,7 @@ struct Model {
     min_lightness: f64,
     min_solidity: f64,
     colours: Vec<[f64; 3]>,
-    /// Colours of the rings around the painted lamps.
+    /// Median colours of the rings of pixels around the painted lamps.
     rings: Vec<[f64; 3]>,
     /// Minimum contrast along the contour, and minimum contrast to the ring, for a lamp so large that blur does not
     /// reduce them.
@@ -103,7 +105,7 @@ struct Model {
 }
 
 impl Model {
-    /// Whether a ring has the colour of the ring around one of the painted lamps.
+    /// Whether a ring has about the colour of the ring around one of the painted lamps.
     fn is_beside(&self, ring: &Surroundings) -> bool {
         let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
@@ -126,7 +128,7 @@ pub struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Finds regions that are like the `painted` ones; these are not part of the result.
+    /// Finds regions that are like the `painted` ones. The result does not include the painted regions themselves.
     pub fn run(&self, painted: &[u32], job: Job) -> Result<Similar> {
         let Self { tree, regions, photo, .. } = *self;
         let mut taken = try_vec(tree.node_of.len(), false)?;
