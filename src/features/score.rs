@@ -27,7 +27,8 @@ const SEAM_WIDTH: f64 = 0.03;
 /// on the wrong face wins only if the lines rule out nearly all others. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
-/// Number of lanes in which sums run, so that the order of additions does not depend on the processor.
+/// Number of partial sums that are computed in parallel. It is fixed, so that the order of additions does not depend
+/// on the processor.
 const LANES: usize = 8;
 
 /// A segment and the room axis that it runs along, which decides which faces can contain it.
@@ -49,8 +50,8 @@ struct Points {
     weight: Vec<f64>,
 }
 
-/// The part of the view towards one side wall and towards either ceiling or floor. The score of this part depends only
-/// on these two sides of the box.
+/// A quarter of the view: the directions towards one side wall, and towards either the ceiling or the floor. The score
+/// of a quadrant depends only on these two sides of the box.
 #[derive(Default)]
 pub struct Quadrant {
     /// Sample points of the segments along each axis.
@@ -63,7 +64,7 @@ pub struct Quadrant {
 /// The evidence of a view about its box: the segments with their axes, and the strokes.
 pub struct Evidence {
     segments: Vec<RoomSegment>,
-    /// The upper left, upper right, lower left and lower right part of the view.
+    /// The upper left, upper right, lower left and lower right quarter of the view.
     pub quadrants: [Quadrant; 4],
     /// Whether any stroke lies on the plane.
     pub has_plane: bool,
@@ -169,7 +170,8 @@ impl Quadrant {
         agreement.sum()
     }
 
-    /// Returns the score of the strokes if the plane is the side wall, the ceiling or floor, or the back wall.
+    /// Returns the score of the strokes for each face that the plane may be: the side wall, the ceiling or floor, and
+    /// the back wall.
     pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
         let mut counts = [0.0; 3];
         for (size, weight) in &self.stroke_samples {

@@ -27,8 +27,8 @@ pub enum Scale {
 /// box. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
-/// Limits for the error that the texels cannot show the pattern of the plane. `MAX_REPEATS` is the ratio of the
-/// surface's length to the length of the plane in the photo, above which the error is possible: for example a hall of
+/// A pattern is refused as too small for the texels if it exceeds this limit and falls below `MIN_SHOWN_TEXELS`. The
+/// limit is the maximum ratio of the surface's length to the length of the plane in the photo: for example a hall of
 /// 600 m and 6 m of a ceiling. [convention]
 const MAX_REPEATS: f64 = 100.0;
 
