@@ -198,7 +198,8 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// The exemplar's metadata, arranged by the patch map as the texture shows them. Pixels without a patch get confidence
+/// The exemplar's metadata (confidence, x and y distance to the nearest light), arranged by the patch map as the
+/// texture shows them. Pixels without a patch get confidence
 /// 0 and the largest distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;

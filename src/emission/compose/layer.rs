@@ -27,7 +27,8 @@ use glam::{DVec2, Vec3};
 /// A piece of light is a crumb if its area is below this share of the smallest lamp's area. Crumbs are broken off
 /// edges by resampling. [judged on 5 photos]
 const CRUMB: f64 = 0.02;
-/// Minimum side of a patch, in working pixels. [bench emission:knobs]
+/// Minimum side of a patch, in working pixels (pixels of the exemplar at the reduced size of the synthesis).
+/// [bench emission:knobs]
 const MIN_BLOCK: f64 = 16.0;
 /// Side of a patch on a lattice, as a multiple of the lattice's longer period. [bench emission:knobs]
 const BLOCK_PERIODS: f64 = 1.5;
@@ -65,7 +66,7 @@ struct Setting<'a> {
     continuation: Continuation,
     /// Position of the lattice's origin in the texture, in unwarped pixels.
     offset: DVec2,
-    /// Size of the texture in working pixels.
+    /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
     canvas: (usize, usize),
     /// Side of a patch, and the distance to a light at which the metadata saturate at 1; both in working pixels.
     block: usize,
@@ -162,10 +163,11 @@ const SURE: f64 = 0.6;
 /// [convention]
 const RAGGED: f64 = 2.0;
 
-/// The exemplar from which a texture is made, and the law by which its pattern continues.
+/// The exemplar from which a texture is made, and the law by which its pattern continues: lattice, row, repetition or
+/// none.
 struct Source {
     exemplar: Exemplar,
-    /// The law by which the pattern continues.
+    /// The continuation found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
     found: Continuation,
     regularity: f64,
     choice: Choice,

@@ -206,7 +206,8 @@ impl<'a> Lines<'a> {
     pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
-        // Where another bar crosses, both bars are equally dark, so the stretch seems to have no bar.
+        // Where another bar crosses, this bar does not stand out from the other one, so the stretch seems to have no
+        // bar.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
         let mut is_changed = false;

@@ -33,7 +33,8 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     lamps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
-    // Find the major kinds, which make up a good part of the light, and the kind with the smallest lamps among them.
+    // Find the major kinds, which have a large share of the lamps' photo pixels, and the major kind with the smallest
+    // lamps.
     let kinds = Evidence::kinds(&lamps);
     let is_major = |kind: &&Vec<Evidence>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {

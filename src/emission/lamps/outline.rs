@@ -16,8 +16,8 @@ const TOLERANCE: f64 = 0.1;
 /// Maximum distance in texels for an outline along the corners of texels, used if each texel is either fully lit or
 /// unlit. It turns a staircase into a line.
 const STAIRCASE: f64 = 1.0;
-/// Maximum width in texels of a lamp whose outline runs along the corners of its texels. An outline through crossings
-/// would enclose only half of a single texel.
+/// Maximum width in texels of a lamp whose outline runs along the corners of its texels. An outline through the
+/// crossings between texel centres would enclose only half of a single texel.
 const NARROW: f64 = 2.0;
 /// Limits for sharp corners, in texels. `SIDE`: minimum length of a side whose direction is used. `BLUNT`: maximum
 /// length of a blunt corner between two sides. `MAX_EXTENDED`: maximum length by which a side is extended. `CORNER`:
