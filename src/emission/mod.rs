@@ -199,8 +199,7 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
 }
 
 /// The exemplar's metadata (confidence, x and y distance to the nearest light), arranged by the patch map as the
-/// texture shows them. Pixels without a patch get confidence
-/// 0 and the largest distance.
+/// texture shows them. Pixels without a patch get confidence 0 and the largest distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {

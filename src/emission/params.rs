@@ -57,8 +57,8 @@ pub struct Params {
     pub candidates: usize,
     /// Longest side, in pixels, of the exemplar at the reduced size at which patches are compared, in `[16, 2048]`.
     pub working_side: usize,
-    /// Weight of the metadata channels (confidence, x and y distance to the nearest light) against colour, in `[0,
-    /// 1e3]`; 0 is plain quilting.
+    /// Weight, in `[0, 1e3]`, of the metadata channels (confidence, x and y distance to the nearest light) against
+    /// colour; 0 is plain quilting.
     pub metadata_weight: f32,
     /// Position of the pattern's origin relative to the texture's top left corner, in texels, each coordinate in
     /// `[-1e6, 1e6]`. A pattern without a lattice has no origin: there the offset shifts the lamps of a tileable

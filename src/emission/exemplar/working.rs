@@ -22,14 +22,13 @@ pub struct Working {
     pub pitch: DVec2,
     /// Linear RGB of lights relative to the brightest light; 0 elsewhere (Fig. 12c).
     pub colour: Image,
-    /// Confidence of each pixel that it is light; 0 for lamps that the border cuts.
+    /// Confidence of each pixel that it is light; 0 for cut lamps ([`super::roles::Role::Cut`]).
     pub confidence: Vec<f32>,
-    /// Share of each pixel that is light, without lamps that the border cuts.
+    /// Share of each pixel that is light, without cut lamps.
     pub coverage: Vec<f32>,
     /// Whether patches may show a pixel: it is shown and not part of a cut lamp ([`super::roles::Role::Cut`]).
     pub usable: Vec<bool>,
-    /// The lattice is found from `shown` and `shown_coverage`, which include lamps that the border cuts: whether a
-    /// pixel is shown, and
+    /// The lattice is found from `shown` and `shown_coverage`, which include cut lamps: whether a pixel is shown, and
     /// the share of it that is light.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,

@@ -5,8 +5,7 @@ use crate::image::Image;
 use glam::{Vec3, Vec4};
 
 /// The features of a pixel: colour and metadata (confidence, distances), scaled by the square roots of their weights,
-/// so that the squared
-/// differences of features add up to the weighted error.
+/// so that the squared differences of features add up to the weighted error.
 pub type Feature = [Vec4; 2];
 
 /// Colour and metadata (confidence, x and y distance to the nearest light) of the exemplar, and the settings of the
