@@ -103,7 +103,7 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
 }
 
 /// Builds the prior for an interior of which nothing is known: farthest at mid-height, nearer towards the ceiling
-/// above and the floor below. `1/z` rises quadratically with height, to twice its central value.
+/// above and the floor below. `1/z` rises quadratically with the distance from mid-height, to twice its central value.
 pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let middle = 1.0 / (frustum.near * frustum.far).sqrt();
     let mut inverse_depth = Image::new(width, height, 1)?;

@@ -19,8 +19,9 @@ const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
-/// Penalty of a focal length one standard deviation from the prior, as a share of the total weight of lines. A triplet
-/// with this focal length is preferred only if it explains that much more weight. [origin not recorded]
+/// Penalty of a focal length that deviates by one standard deviation from the prior, as a share of the total weight of
+/// lines. A triplet with this focal length is preferred only if it explains that much more weight.
+/// [origin not recorded]
 const FOCAL_COST: f64 = 0.004;
 
 /// Numbers of line pairs drawn, of candidates kept, of lines paired with each candidate, of triplets scored a second

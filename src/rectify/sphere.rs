@@ -22,7 +22,7 @@ const SINE_LIMIT: f64 = 0.06;
 const COINCIDENT: f64 = 1e-18;
 
 /// Prior standard deviation of the endpoint noise, in units of half the image's longer side, and the number of
-/// segments that the prior counts as. [origin not recorded]
+/// segments to which the prior is equivalent. [origin not recorded]
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 

@@ -119,7 +119,7 @@ fn deviations(covariance: &DMat3) -> [DVec3; 3] {
     std::array::from_fn(|k| DVec3::from_array(vectors[k]) * values[k].max(0.0).sqrt())
 }
 
-/// Returns the plane coordinates of four photo points relative to their mean, since a translation is no error.
+/// Returns the plane coordinates of four photo points relative to their mean, because a translation is not an error.
 fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
     let inverse = plane.to_photo().inverse();
     let at = corners.map(|c| inverse.apply(c));

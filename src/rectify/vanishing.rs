@@ -145,7 +145,7 @@ fn orthogonal_and_further(
     Ok((found, focal))
 }
 
-/// Returns the direction unchanged, with the covariance with which the lines determine it.
+/// Returns the direction unchanged, with the covariance that the lines imply.
 fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Found {
     let covariance =
         refine(lines, direction, focal).map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);

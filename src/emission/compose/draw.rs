@@ -29,8 +29,8 @@ const DENSE: f64 = 0.1;
 struct Lamp {
     low: DVec2,
     high: DVec2,
-    /// A random number in [0, 1). The weights divide that interval among the exemplars. The lamp is kept if the number
-    /// falls into its own exemplar's part.
+    /// A random number in [0, 1). The weights divide that interval into one subinterval per exemplar. The lamp is kept
+    /// if the number falls into the subinterval of its own exemplar.
     draw: f64,
 }
 

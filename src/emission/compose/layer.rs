@@ -49,7 +49,8 @@ pub struct Layer {
     pub has_pieces: bool,
     /// Colours for the clipped parts of lamps, read from their rims; `None` if the photo shows nothing clipped.
     pub rim_colours: Option<RimColours>,
-    /// The designs from which lamps are drawn; empty if lamps keep the outlines of the photo.
+    /// The designs (one size and one outline per kind of lamp) from which lamps are drawn; empty if lamps keep the
+    /// outlines of the photo.
     pub designs: Designs,
     /// The mean colour of each component, if lamps shine evenly; else `None`.
     pub even: Option<Vec<Vec3>>,
@@ -123,7 +124,7 @@ impl Layer {
         })
     }
 
-    /// Whether lamps are drawn from designs.
+    /// Whether lamps are drawn from designs, one size and one outline for all lamps of a kind.
     pub fn is_clean(&self) -> bool {
         !self.designs.kinds.is_empty()
     }

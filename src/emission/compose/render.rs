@@ -35,8 +35,8 @@ pub struct Frame<'a> {
     pub weights: &'a Weights,
 }
 
-/// Renders a tile of the texture, and the coverage: the share of each texel that is light. Coverage is at least 0.5
-/// for texels of the mask, and less than 0.5 for other texels.
+/// Renders a tile of the texture, and the coverage: the share of each texel that light covers. Coverage is at least
+/// 0.5 for texels of the mask, and less than 0.5 for other texels.
 pub fn run(
     frame: &Frame,
     sources: &[Source],
@@ -134,7 +134,7 @@ impl Row<'_> {
     }
 }
 
-/// Thresholds the coverage to a mask in place: 1 where at least half of a texel is light, else 0.
+/// Thresholds the coverage to a mask in place: 1 where light covers at least half of a texel, else 0.
 pub fn threshold(coverage: &mut Image) {
     coverage.data.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
 }

@@ -104,9 +104,9 @@ impl Exemplar {
         Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }
 
-    /// How much of an unwarped pixel is light: the confidence in `light`. Pixels of components count, and unlit pixels
-    /// beside them, where the confidence fades out. Pixels that are lit but belong to no component give 0, and so does
-    /// an index beyond the last pixel.
+    /// The share of an unwarped pixel that light covers: the confidence in `light`. Pixels of components count, and
+    /// unlit pixels beside them, where the confidence fades out. Pixels that are lit but belong to no component give
+    /// 0, and so does an index beyond the last pixel.
     pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
         let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
         match self.shown.get(pixel) {
