@@ -125,8 +125,8 @@ impl Evidence {
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Returns values of one side (left, right, ceiling, floor) at which a segment could be the back wall's edge, in
-    /// order of falling support.
+    /// Returns candidate distances of one side (left, right, ceiling, floor), at each of which a segment would be an
+    /// edge of the back wall. Sorted by falling support.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.

@@ -173,8 +173,8 @@ pub fn view_from_segments(
     })
 }
 
-/// A plane of the photo, resampled to fronto-parallel view. The directions right and down of the texture run nearly
-/// right and down in the photo.
+/// A plane of the photo, resampled to fronto-parallel view. The x and y axes of the texture run nearly right and down
+/// in the photo.
 #[derive(Clone, Debug)]
 pub struct Unwarped {
     /// Linear RGB.

@@ -23,8 +23,8 @@ pub enum Scale {
     Across,
 }
 
-/// Minimum share of its bounding box that a lamp covers if it counts as rectangular: halfway between a disc and a full
-/// box. [convention]
+/// A lamp counts as rectangular if it covers more than this share of its bounding box: halfway between a disc and a
+/// full box. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
 /// A pattern is refused as too small for the texels if it exceeds this limit and falls below `MIN_SHOWN_TEXELS`. The

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 /// Maximum width of a bar, as a share of the longer side of the unwarped image. [bench photos:tune]
 const WIDEST: f64 = 0.05;
-/// Minimum depth of a bar. The depth is the share of the panes' luminance that the bar lacks, in the median along it.
+/// Minimum depth of a bar: the share of the panes' luminance that the bar lacks, as a median along the bar.
 /// [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
 /// Minimum share of the positions along a bar with light on both sides of the bar. [bench photos:tune]
@@ -146,7 +146,8 @@ impl<'a> Lines<'a> {
         let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };
         let mut excess: Vec<f32> = profile.iter().map(|p| p.map_or(0.0, |p| p - level)).collect();
 
-        // Take the deepest position first. A bar extends as far as the depth is at least half of that.
+        // Take the deepest position first. A bar extends as far as the depth is at least half of the depth at this
+        // position.
         let mut bars = Vec::new();
         while let Some((peak, &depth)) =
             excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)

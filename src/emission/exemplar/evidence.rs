@@ -11,8 +11,9 @@ const LIKE: f64 = 0.2;
 /// photo is magnified more, a photo pixel spans more unwarped pixels. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
-/// Maximum relative difference, and photo pixels of measurement error, for lamps that are possibly of one kind. Other
-/// evidence, such as their position on a lattice, must confirm it. [judged on 20 photos]
+/// Lamps are possibly of one kind if their sides differ by at most the share `MAYBE_LIKE` and, for each of the two
+/// lamps, `MAYBE_BLUR` photo pixels of measurement error. Other evidence, such as their position on a lattice, must
+/// confirm it. [judged on 20 photos]
 const MAYBE_LIKE: f64 = 0.33;
 const MAYBE_BLUR: f64 = 2.5;
 

@@ -87,7 +87,7 @@ impl Exemplar {
         })
     }
 
-    /// The statistics of the pattern in `unwarped`; lengths are in its pixels. `periods` has the meaning of
+    /// The statistics of the pattern, with lengths in unwarped pixels. `periods` has the meaning of
     /// [`Pattern::periods`].
     pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
         // Components that the texture may show as one piece count as lamps.

@@ -135,9 +135,9 @@ fn farthest(points: &[DVec2], from: DVec2) -> usize {
     (0..points.len()).max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// Simplifies a ring of points: drops points that lie close to a line between other points (Douglas and Peucker 1973).
+/// Simplifies a closed outline: drops points that lie close to a line between other points (Douglas and Peucker 1973).
 pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
-    // Split the ring at the point farthest from the first, then simplify both halves.
+    // Split the outline at the point farthest from the first, then simplify both halves.
     let far = points.first().map_or(0, |first| farthest(&points, *first));
     let mut kept = vec![false; points.len() + 1];
     (kept[0], kept[far]) = (true, true);
@@ -164,8 +164,8 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
     }
 }
 
-/// Replaces the blunt corners of a ring by sharp ones, unless the sharp corner would lie outside the texture, which
-/// reaches from `first` to `last`.
+/// Replaces the blunt corners of a closed outline by sharp ones, unless the sharp corner would lie outside the
+/// texture, which reaches from `first` to `last`.
 fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];

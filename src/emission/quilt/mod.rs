@@ -254,9 +254,9 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Chooses at random among the shifts that are equally good as the best one. In a row of lamps, the first block
-    /// takes the shift nearest to the start of the exemplar, and later blocks keep the shift of a neighbour if it is
-    /// equally good.
+    /// Chooses at random among the shifts whose error exceeds the least error by no more than the tolerance. In a row
+    /// of lamps, the first block takes the shift nearest to the start of the exemplar, and later blocks keep the shift
+    /// of a neighbour if its error is within the tolerance.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.patch_map.shifts.is_empty() {

@@ -10,8 +10,8 @@ use crate::image::try_vec;
 const MAX_AREA: f64 = 0.3;
 /// Minimum number of pixels of a lamp; smaller regions are noise. [judged on 28 photos]
 pub const MIN_AREA: f64 = 6.0;
-/// Minimum share of a stroke's pixels that a region under it holds. A region with less is touched by the stroke's edge
-/// only. [judged on 28 photos]
+/// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
+/// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
 /// A region this many times as long as its stroke gets half the gain. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
