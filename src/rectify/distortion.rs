@@ -29,7 +29,7 @@ const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.
 const SEARCH_WIDTH: i32 = 4;
-/// Minimum share of a segment's length along which its edge must be found. [origin not recorded]
+/// The edge must be found along at least this share of a segment's length. [origin not recorded]
 const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of lines for an estimate.
 const MIN_LINES: usize = 12;

@@ -34,7 +34,7 @@ pub fn laid_out_under(features: &Image, mask: &Image) -> Option<Vec3> {
 
 /// The normal of a ceiling. Normals point into the room, and y points down. [convention]
 const CEILING: Vec3 = Vec3::Y;
-/// Minimum share of the photo that a ceiling covers to be proposed. [convention]
+/// A ceiling is proposed only if it covers at least this share of the photo. [convention]
 const MIN_CEILING: f64 = 0.02;
 /// Expected error of a proposed plane: 1 minus the mean intersection over union of proposed and true plane, over
 /// generated rooms. [bench photos:nostrokes:tune:48]

@@ -12,7 +12,7 @@ use glam::{BVec3, DVec3, Vec3};
 /// decoding. In an unwarped photo, whose pixels are means of several photo pixels, clipping begins at lower values
 /// (`emission::Params::clip_level`).
 const CLIPPED: f32 = 0.987;
-/// Minimum share of the pixels that must be unclipped in both channels for a line to be fitted.
+/// A line is fitted only if at least this share of the pixels is unclipped in both channels.
 const LEAST_WHOLE: f64 = 0.02;
 /// Relative standard deviation of a plane's brightness below which the regularisation dominates: the fitted line then
 /// runs nearly through black.

@@ -21,7 +21,7 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, Vec2Swizzles};
 
-/// Minimum area within the texture, in texels, of a lamp that is listed.
+/// A lamp is listed if at least this area of it, in texels, lies within the texture.
 const MIN_SHOWN: f64 = 1e-6;
 
 /// The lamps that a composition shows.

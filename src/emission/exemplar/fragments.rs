@@ -17,8 +17,8 @@ use glam::DVec2;
 const MIN_KIND: f64 = 0.15;
 /// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
 const MAX_FRAGMENT: f64 = 0.2;
-/// Maximum distance from a fragment to the light that it broke off, as a multiple of the longer side of a lamp.
-/// [judged on 20 photos]
+/// A fragment is close to the light that it broke off if their distance is at most this multiple of the longer side of
+/// a lamp. [judged on 20 photos]
 const CLOSE: f64 = 0.35;
 /// At least this many similar pieces count as a kind of lamps, however small they are, unless they lie close to other
 /// lights. [judged on 20 photos]

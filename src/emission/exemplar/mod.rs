@@ -22,14 +22,14 @@ use foreshortening::{LocalMap, MagnificationLimit};
 use roles::Role;
 use working::{Sources, Working};
 
-/// Minimum confidence of a pixel that counts as light. [convention]
+/// A pixel counts as light if its confidence is at least this. [convention]
 pub const LIT: f32 = 0.5;
 
-/// Minimum number of photo pixels that a lamp covers, roughly a disc three pixels across. If all lights are smaller,
-/// the largest light sets the minimum. [judged on 5 photos]
+/// A lamp must cover at least this number of photo pixels, roughly a disc three pixels across. If all lights are
+/// smaller, the largest light sets the minimum. [judged on 5 photos]
 const MIN_LAMP: f64 = 9.0;
 
-/// Minimum lit share of the plane at which it counts as a luminous ceiling. [bench photos:tune]
+/// The plane counts as a luminous ceiling if at least this share of it is lit. [bench photos:tune]
 pub const LUMINOUS: f64 = 0.3;
 
 /// The usable part of the unwarped image with its lights.

@@ -101,7 +101,7 @@ impl Working {
     }
 
     /// Mean luminance of a box minus the mean luminance of its unlit surroundings. The box is given by its centre and
-    /// half its sides in unwarped pixels. `None` if the box or the surroundings are not shown.
+    /// half-extents in unwarped pixels. `None` if the box or the surroundings are not shown.
     pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
         let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
         let mut sums = [(0.0, 0usize); 2];

@@ -16,7 +16,7 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
-/// Minimum share of a lamp that patches with one shift must show for the lamp to be placed.
+/// A lamp is placed only if patches with one shift copy at least this share of it.
 const MIN_SHARE: f64 = 0.3;
 /// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
 /// through rounding.

@@ -26,7 +26,8 @@ const SIDE: f64 = 2.0;
 const BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
 const CORNER: f64 = 0.5;
-/// Maximum distance from the border of the texture, in texels, of a corner that lies on the border up to rounding.
+/// A corner lies on the border of the texture, up to rounding, if its distance from the border is at most this, in
+/// texels.
 const ROUNDING: f64 = 1e-6;
 
 /// The outer boundary of a lamp, walked with the lamp on the right. Each texel edge along the walk gives a crossing,

@@ -28,7 +28,7 @@ use glam::DVec2;
 /// Minimum correlation of a period, relative to the highest correlation: lower ones match lamps of different kinds.
 /// [bench emission:patterns]
 const RELATIVE_CORRELATION: f32 = 0.9;
-/// Minimum share of the valid pixels that must overlap for a correlation to count. [bench emission:patterns]
+/// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
 /// Maximum side of the image that is correlated, in pixels. [bench emission:seconds]
 const SIDE: usize = 160;
