@@ -23,8 +23,8 @@ pub struct Distortion {
     pub lines: usize,
 }
 
-/// Minimum length of the segments used, and the length left out at each end because corners bend edges there, both in
-/// pixels. [origin not recorded]
+/// `MIN_LENGTH`: minimum length of the segments used. `TRIM`: length left out at each end of a segment, because
+/// corners bend edges there. Both are in pixels. [origin not recorded]
 const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.

@@ -18,8 +18,8 @@ const FOCALS: i32 = 2;
 const FOCAL_STEP: f64 = 0.4;
 /// A focal length counts as known if the standard deviation of its logarithm is below this. [bench photos:tune]
 const KNOWN_FOCAL: f64 = 0.1;
-/// Step, in radians and in the logarithm of the focal length, of the finite differences that measure the curvature of
-/// the cost at its minimum. A wide step smooths the kinks that medians and limits make in the cost.
+/// Step of the finite differences that measure the curvature of the cost at its minimum, in radians and in the
+/// logarithm of the focal length. A wide step smooths the kinks that medians and limits make in the cost.
 /// [bench photos:tune]
 const WIDTH: f64 = 0.02;
 /// Number of tilts of the coarse search that are refined. [bench photos:tune]
