@@ -25,8 +25,8 @@
 //! drift and cuts lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); zones that must
 //! stay free of lamps ([`compose::placement`]); textures of any size, rendered in tiles of a [`Composition`]; and
 //! textures blended from several exemplars ([`compose::draw`]). Not modelled: lamps that mix the designs of two
-//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in textures that repeat,
-//! where edges may be off by the stretch of a few cells.
+//! exemplars; a pattern that bends from one plane into another; and nets of crossing lines in tileable textures, whose
+//! edges may be displaced by the stretch of a few cells.
 
 mod agreement;
 mod compose;
@@ -198,8 +198,8 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// The exemplar's metadata, arranged by the patch map as the texture shows them. Pixels without a patch get confidence
-/// 0 and the largest distance.
+/// The exemplar's metadata (confidence, x and y distance to the nearest light), arranged by the patch map as the
+/// texture shows them. Pixels without a patch get confidence 0 and the largest distance.
 fn shown_metadata(patch_map: &PatchMap, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(patch_map.width, patch_map.height, 3)?;
     for (y, row) in out.data.chunks_exact_mut(3 * patch_map.width).enumerate() {

@@ -50,13 +50,15 @@ pub struct Params {
     pub height: usize,
     /// Unwarped pixels per texel, > 0.
     pub scale: f64,
-    /// Side of a patch in working pixels; 0 chooses it from the spacing of the lights.
+    /// Side of a patch in pixels of the working size (see `working_side`); 0 chooses it from the spacing of the
+    /// lights.
     pub block: usize,
     /// Maximum number of patches that are compared for each block where no lattice restricts them, in `[1, 65536]`.
     pub candidates: usize,
-    /// Longest side of the exemplar at the working size of the synthesis, in pixels, in `[16, 2048]`.
+    /// Longest side, in pixels, of the exemplar at the reduced size at which patches are compared, in `[16, 2048]`.
     pub working_side: usize,
-    /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
+    /// Weight, in `[0, 1e3]`, of the metadata channels (confidence, x and y distance to the nearest light) against
+    /// colour; 0 is plain quilting.
     pub metadata_weight: f32,
     /// Position of the pattern's origin relative to the texture's top left corner, in texels, each coordinate in
     /// `[-1e6, 1e6]`. A pattern without a lattice has no origin: there the offset shifts the lamps of a tileable
@@ -65,7 +67,7 @@ pub struct Params {
     /// Minimum autocorrelation at which the lights count as regular, in `[0, 1]`. At 0, any repetition is followed
     /// exactly; at 1, none is, and patches are placed without a lattice.
     pub least_regularity: f32,
-    /// The law by which the lights continue beyond the exemplar.
+    /// The law by which the lights continue beyond the exemplar: lattice, row, repetition or none.
     pub law: Law,
     /// Maximum magnification of the parts of the exemplar that are used, in length and relative to the least magnified
     /// pixel. Parts with a larger magnification count as not shown. In `[1, 1e6]`, or 0 to use the whole exemplar.
@@ -162,7 +164,8 @@ impl Input<'_> {
     }
 }
 
-/// Maximum number of working pixels of a texture. A larger texture is planned at a smaller working size.
+/// Maximum number of working pixels of a texture, the pixels of its layout. For a larger texture, the layout of lamps
+/// and patches is computed at a lower resolution.
 const MAX_WORKING_PIXELS: f64 = (1 << 28) as f64;
 
 impl Params {

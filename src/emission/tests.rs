@@ -199,7 +199,7 @@ fn every_block_size_serves() {
     }
 }
 
-/// Round lamps at random positions, whose centres are more than `gap` apart; and their number.
+/// Returns round lamps at random positions, whose centres are more than `gap` apart, and the number of lamps.
 fn blobs(width: usize, height: usize, gap: f64) -> (Design, usize) {
     let mut rng = Rng::new(21, &[]);
     let mut centres: Vec<(DVec2, f64)> = Vec::new();

@@ -18,10 +18,10 @@ pub struct Surface {
     pub confidence: Image,
 }
 
-/// Confidence in the neutral prior [convention].
+/// Confidence in the neutral prior. [convention]
 const NEUTRAL_CONFIDENCE: f32 = 0.05;
-/// Depths are clamped to within this factor of the median; more extreme depths are not meaningful
-/// [origin not recorded].
+/// Depths are clamped to within this factor of the median; more extreme depths are not meaningful.
+/// [origin not recorded]
 const MAX_RATIO: f32 = 1e4;
 /// Maximum number of depth samples from which quantiles are estimated.
 const QUANTILE_SAMPLES: usize = 1 << 16;
@@ -103,7 +103,7 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
 }
 
 /// Builds the prior for an interior of which nothing is known: farthest at mid-height, nearer towards the ceiling
-/// above and the floor below. `1/z` rises quadratically with height, to twice its central value.
+/// above and the floor below. `1/z` rises quadratically with the distance from mid-height, to twice its central value.
 pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let middle = 1.0 / (frustum.near * frustum.far).sqrt();
     let mut inverse_depth = Image::new(width, height, 1)?;

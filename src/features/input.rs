@@ -62,8 +62,9 @@ pub struct Params {
     pub near: f32,
     /// Far plane of Eq. 1, in `[1.001, 1e6]` times `near`.
     pub far: f32,
-    /// Half-width, in pixels, of the window of the plane fits from which normals are computed, in `[1, 64]`; 0 selects
-    /// one pixel per 100 columns, at least 2. Wider windows suppress more noise and smooth away more small detail.
+    /// Normals come from planes fitted in a square window around each pixel; this is half the width of the window in
+    /// pixels, in `[1, 64]`. 0 selects 1 % of the photo's width, at least 2 pixels and at most 64. Wider windows
+    /// suppress more noise and smooth away more small detail.
     pub normal_radius: usize,
 }
 

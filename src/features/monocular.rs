@@ -47,7 +47,7 @@ const OPEN_SIDE: usize = 384;
 const MULTIPLE: usize = 32;
 /// Maximum number of rows and of columns of a network's input.
 const MAX_INPUT_SIDE: usize = 4096;
-/// Confidence in depth estimated by a network; measured depth has confidence 1 [convention].
+/// Confidence in depth estimated by a network; measured depth has confidence 1. [convention]
 const CONFIDENCE: f32 = 0.5;
 
 impl DepthNetwork {
@@ -134,7 +134,7 @@ impl DepthNetwork {
     }
 }
 
-/// Mean and standard deviation of ImageNet's colours in `[0, 1]` [convention].
+/// Mean and standard deviation of ImageNet's colours in `[0, 1]`. [convention]
 const IMAGENET: [[f32; 3]; 2] = [[0.485, 0.456, 0.406], [0.229, 0.224, 0.225]];
 
 fn not_an_image(shape: &[Option<usize>]) -> Error {

@@ -16,8 +16,8 @@ use crate::simd::widest;
 
 /// Number of rows processed together: the window sums slide from one row to the next.
 const BAND: usize = 64;
-/// Factor on the cost of the centred window: the residual of a shifted window must be smaller than that of the centred
-/// window by this factor to be preferred [origin not recorded].
+/// Factor on the cost of the centred window. A shifted window is preferred only if its cost is below this share of the
+/// cost of the centred window. [origin not recorded]
 const PREFER_CENTRED: f32 = 0.5;
 /// Offsets, in radii, from a pixel to the centres of its windows. Of equally good windows, the first is taken.
 const SHIFTS: [[isize; 2]; 9] = [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [-1, 0], [1, 0], [0, 1]];

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 /// Points count as collinear if the ratio of the determinant to the product of the variances is below this. For
 /// non-collinear points with integer coordinates in the largest window, the ratio is at least 1e-9; rounding yields
-/// 1e-15 [rounding].
+/// 1e-15. [rounding]
 const SINGULAR: f64 = 1e-12;
 
 /// The regression planes of a row, each relative to its own pixel: `w ≈ value + dx i + dy j`, and the mean squared

@@ -13,21 +13,22 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Maximum number of segments used, the longest ones; further segments do not change the layout.
 pub const MAX_SEGMENTS: usize = 160;
-/// Sample points along each segment, as shares of its length [origin not recorded].
+/// Sample points along each segment, as shares of its length. [origin not recorded]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
-/// Penalty of a segment on a face that cannot contain it, relative to the segment's weight [origin not recorded].
+/// Penalty of a segment on a face that cannot contain it, relative to the segment's weight. [origin not recorded]
 const IMPOSSIBLE: f64 = 1.5;
-/// Additional reward of a segment on a seam, relative to the reward of a segment on a face [origin not recorded].
+/// Additional reward of a segment on a seam, relative to the reward of a segment on a face. [origin not recorded]
 const SEAM: f64 = 2.0;
-/// A segment no longer lies on the seam of two faces if the distances to them along its rays differ by this share
-/// [origin not recorded].
+/// A segment no longer lies on the seam of two faces if the distances to them along its rays differ by this share.
+/// [origin not recorded]
 const SEAM_WIDTH: f64 = 0.03;
 /// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
 /// this face too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes
-/// on the wrong face wins only if the lines rule out nearly all others [origin not recorded].
+/// on the wrong face wins only if the lines rule out nearly all others. [origin not recorded]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
-/// Number of lanes in which sums run, so that the order of additions does not depend on the processor.
+/// Number of partial sums that are computed in parallel. It is fixed, so that the order of additions does not depend
+/// on the processor.
 const LANES: usize = 8;
 
 /// A segment and the room axis that it runs along, which decides which faces can contain it.
@@ -49,8 +50,8 @@ struct Points {
     weight: Vec<f64>,
 }
 
-/// The part of the view towards one side wall and towards either ceiling or floor. The score of this part depends only
-/// on these two sides of the box.
+/// A quarter of the view: the directions towards one side wall, and towards either the ceiling or the floor. The score
+/// of a quadrant depends only on these two sides of the box.
 #[derive(Default)]
 pub struct Quadrant {
     /// Sample points of the segments along each axis.
@@ -63,7 +64,7 @@ pub struct Quadrant {
 /// The evidence of a view about its box: the segments with their axes, and the strokes.
 pub struct Evidence {
     segments: Vec<RoomSegment>,
-    /// The upper left, upper right, lower left and lower right part of the view.
+    /// The upper left, upper right, lower left and lower right quarter of the view.
     pub quadrants: [Quadrant; 4],
     /// Whether any stroke lies on the plane.
     pub has_plane: bool,
@@ -124,8 +125,8 @@ impl Evidence {
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Returns values of one side (left, right, ceiling, floor) at which a segment could be the back wall's edge, in
-    /// order of falling support.
+    /// Returns candidate distances of one side (left, right, ceiling, floor), at each of which a segment would be an
+    /// edge of the back wall. Sorted by falling support.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.
@@ -169,7 +170,8 @@ impl Quadrant {
         agreement.sum()
     }
 
-    /// Returns the score of the strokes if the plane is the side wall, the ceiling or floor, or the back wall.
+    /// Returns the score of the strokes for each face that the plane may be: the side wall, the ceiling or floor, and
+    /// the back wall.
     pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
         let mut counts = [0.0; 3];
         for (size, weight) in &self.stroke_samples {

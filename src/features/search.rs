@@ -1,10 +1,10 @@
 //! Searches for the best box over all combinations of candidate sides.
 //!
 //! The face that a ray meets depends on two of the four sides: a side wall, and either the ceiling or the floor. The
-//! score of a box is therefore a sum of four parts (see [`Quadrant`](super::score::Quadrant)), each a table over the
-//! values of two sides. This allows an exact optimum over all combinations of many values: for every pair of left and
-//! right, the best ceiling and the best floor are found independently. The best boxes that clearly differ from each
-//! other are then refined on finer grids of values.
+//! score of a box is therefore a sum over the four quadrants of the view (see [`Quadrant`](super::score::Quadrant)).
+//! The score of a quadrant is a table over the values of its two sides. This allows an exact optimum over all
+//! combinations of many values: for every pair of left and right, the best ceiling and the best floor are found
+//! independently. The best boxes that clearly differ from each other are then refined on finer grids of values.
 
 use super::box_room::{Face, Layout, faces, facing_axes};
 use super::input::RoomView;
@@ -16,30 +16,31 @@ use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Prior of a side of which the photo shows nothing, in units of the distance to the back wall; and cost of the
-/// squared logarithm of the ratio of a side to its prior. The prior is equal for all sides, so that the result does
-/// not depend on the photo's orientation [origin not recorded].
+/// `PRIOR_SIDE`: expected distance of a wall, ceiling or floor of which the photo shows nothing, in units of the
+/// distance to the back wall. It is equal for all sides, so that the result does not depend on the photo's
+/// orientation. `PRIOR_COST`: factor on the squared logarithm of the ratio of a side to `PRIOR_SIDE`.
+/// [origin not recorded]
 const PRIOR_SIDE: f64 = 0.4;
 const PRIOR_COST: f64 = 0.01;
-/// Values tried for each side whatever the segments suggest: `MIN_SIDE × RATIO^k` for `k < GRID`
-/// [origin not recorded].
+/// Values tried for each side whatever the segments suggest: `MIN_SIDE × RATIO^k` for `k < GRID`.
+/// [origin not recorded]
 const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;
 /// Maximum number of candidates per side from segments.
 const PEAKS: usize = 24;
 /// Two boxes are clearly different if more than this share of the view meets different faces, or faces whose distances
-/// differ by more than the factor `MIN_RATIO` [origin not recorded].
+/// differ by more than the factor `MIN_RATIO`. [origin not recorded]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
-/// Number of rays along each side of the photo by which boxes are compared.
+/// Boxes are compared along a grid of rays: number of rays along each side of the photo.
 const RAYS: usize = 9;
 /// Number of boxes that are refined; ratio of neighbouring values in each of the two refinements; and number of values
-/// on either side of the current one [origin not recorded].
+/// on either side of the current one. [origin not recorded]
 const STARTS: usize = 6;
 const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
 const VALUES_EITHER_SIDE: i32 = 8;
-/// Number of lanes in which maxima run.
+/// Number of partial maxima that are computed in parallel.
 const LANES: usize = 8;
 
 /// The sides of a box, and its score.
@@ -115,8 +116,8 @@ fn differ(view: &[DVec3], a: &[f64; 4], b: &[f64; 4]) -> bool {
     view.iter().filter(is_other).count() as f64 > MIN_DIFFERENT_SHARE * view.len() as f64
 }
 
-/// The four parts of the score, each over the values of its two sides: rows for the wall, columns for the ceiling or
-/// floor. There is one set of tables for each face that may be the plane.
+/// The score of each quadrant, as a table over the values of its two sides: rows for the wall, columns for the ceiling
+/// or floor. `parts` holds one set of four tables for each face that may be the plane of the strokes.
 struct Tables {
     values: [Vec<f64>; 4],
     parts: Vec<[Vec<f64>; 4]>,
@@ -124,9 +125,9 @@ struct Tables {
 
 impl Tables {
     fn new(evidence: &Evidence, values: [Vec<f64>; 4], job: Job) -> Result<Self> {
-        // Each face may be the plane of the strokes.
+        // Without strokes on a plane, one set of tables suffices; otherwise each face may be the plane.
         let planes = if evidence.has_plane { &Face::ALL[..] } else { &Face::ALL[..1] };
-        // Fill one row of one part per task.
+        // Each task fills one row of the table of one quadrant.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
         let tasks: Vec<(usize, usize)> = (0..4).flat_map(|part| (0..rows[part]).map(move |row| (part, row))).collect();
         let prior_cost = |value: f64| PRIOR_COST * (value / PRIOR_SIDE).ln().powi(2);
@@ -136,7 +137,8 @@ impl Tables {
             let quadrant = &evidence.quadrants[part];
             let at = values[wall][row];
             let entry = |&height: &f64| {
-                // Each side occurs in two parts: halve the cost of its prior.
+                // Each wall, and each of ceiling and floor, belongs to two quadrants, so each quadrant counts half of
+                // its prior cost.
                 let prior = -0.5 * (prior_cost(at) + prior_cost(height));
                 let lines = quadrant.lines(1.0 / at, 1.0 / height) + prior;
                 let strokes = quadrant.strokes(1.0 / at, 1.0 / height);

@@ -19,7 +19,8 @@ pub struct Biweight {
 /// Number of intervals of the lookup table, which are uniform in `d / (1 + d)` for a standard deviation `d`.
 const INTERVALS: usize = 64;
 
-/// Smallest standard deviation for which the means are integrated, and the number of integration steps [rounding].
+/// `MIN_DEVIATION`: smallest standard deviation for which the means are integrated. `STEPS`: number of integration
+/// steps. [rounding]
 const MIN_DEVIATION: f64 = 1e-3;
 const STEPS: usize = 256;
 

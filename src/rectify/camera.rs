@@ -11,7 +11,7 @@ use crate::geometry::{FocalSource, Perspective};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
-/// the camera is upright) [convention].
+/// the camera is upright). [convention]
 pub const FREE_ERROR: f64 = 0.5;
 
 /// The estimated camera, with the vanishing point of each room axis.
@@ -21,7 +21,8 @@ pub struct Oriented {
     pub squareness: [Option<Squareness>; 3],
     /// The prior of the focal length.
     pub expected: Expected,
-    /// For each input vanishing point, the index of the room axis it became; `None` if it became none.
+    /// For each input vanishing point, the index of the room axis to which it was assigned; `None` if it was not
+    /// assigned.
     pub axis_of: Vec<Option<usize>>,
 }
 
@@ -32,7 +33,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let orthogonal = &found.points[..found.points.len().min(3)];
     let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, expected);
 
-    // Drop each direction that is far from orthogonal to a direction with better support: it is no room axis.
+    // Drop each direction that is far from orthogonal to a direction with better support: it is not a room axis.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, p) in orthogonal.iter().enumerate() {

@@ -23,28 +23,28 @@ pub struct Distortion {
     pub lines: usize,
 }
 
-/// Minimum length of the segments used, and the length left out at each end because corners bend edges there, both in
-/// pixels [origin not recorded].
+/// `MIN_LENGTH`: minimum length of the segments used. `TRIM`: length left out at each end of a segment, because
+/// corners bend edges there. Both are in pixels. [origin not recorded]
 const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.
 const SEARCH_WIDTH: i32 = 4;
-/// Minimum share of a segment's length along which its edge must be found [origin not recorded].
+/// The edge must be found along at least this share of a segment's length. [origin not recorded]
 const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of lines for an estimate.
 const MIN_LINES: usize = 12;
-/// Floor of the position error of an edge in pixels, which averaging does not reduce [origin not recorded].
+/// Floor of the position error of an edge in pixels, which averaging does not reduce. [origin not recorded]
 const POSITION_FLOOR: f64 = 0.01;
-/// Maximum root mean square residual, in pixels, of an edge about its parabola [origin not recorded].
+/// Maximum root mean square residual, in pixels, of an edge about its parabola. [origin not recorded]
 const MAX_RESIDUAL: f64 = 0.25;
-/// Limit of Tukey's biweight in standard deviations (95 % efficiency) [convention].
+/// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;
-/// Number of segments that belong to one physical line: both sides of a frame, or the pieces of one line
-/// [origin not recorded].
+/// Number of segments that belong to one physical line: both sides of a frame, or the pieces of one line.
+/// [origin not recorded]
 const SEGMENTS_PER_LINE: f64 = 2.0;
 /// Error caused by the deviation of real lenses from the model. It is the root mean square of the estimates over views
-/// that were cut out of panoramas and whose lines agree; these views have no lens distortion apart from stitching
-/// [bench: `tests/real_rectify.rs`].
+/// that were cut out of panoramas and whose lines agree; these views have no lens distortion apart from stitching.
+/// [bench: `tests/real_rectify.rs`]
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few

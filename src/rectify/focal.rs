@@ -4,7 +4,7 @@ use super::params::Params;
 use crate::geometry::FocalSource;
 
 /// Prior of the focal length over photos of rooms: its median as a share of the image width, and the standard
-/// deviation of its logarithm [origin not recorded].
+/// deviation of its logarithm. [origin not recorded]
 const USUAL_FOCAL: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 

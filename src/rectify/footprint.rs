@@ -8,7 +8,7 @@ pub const RUN: usize = 128;
 /// more slowly than the position.
 const SHARED: usize = 8;
 
-/// Bound of the derivatives of the map; larger derivatives occur only at the horizon [rounding].
+/// Bound of the derivatives of the map; larger derivatives occur only at the horizon. [rounding]
 const MAX_DERIVATIVE: f32 = 1e8;
 
 /// Source positions of a run of pixels, each with its footprint: the sheared rectangle with the same second moments as

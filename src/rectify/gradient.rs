@@ -7,15 +7,15 @@ use crate::image::{Image, colour, pyramid};
 use crate::job::Job;
 
 /// Standard deviation of the Gaussian in pixels: large enough to suppress JPEG blocks and sensor noise, small enough
-/// to keep thin lines [bench lines].
+/// to keep thin lines. [bench lines]
 pub const SIGMA: f32 = 1.2;
 
 /// Offset inside the square root that encodes luma. It limits the slope of the encoding near black, as the linear toe
-/// of sRGB does [origin not recorded].
+/// of sRGB does. [origin not recorded]
 const TOE: f32 = 0.003;
 
 /// Upper bound of the luminance relative to white, applied before the encoding. Brighter pixels are lamps, of which
-/// only the outlines matter here [origin not recorded].
+/// only the outlines matter here. [origin not recorded]
 const CLIP: f32 = 4.0;
 
 /// Gradients of a photo; they are zero near pixels that are not finite.

@@ -13,16 +13,16 @@ use std::f64::consts::PI;
 /// Number of angle cells of the accumulator over half a turn: one per half degree.
 const ANGLES: usize = 360;
 
-/// Minimum votes of an accumulator maximum, as a share of the image's shorter side, and the maximum number of lines
-/// returned [origin not recorded].
+/// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side. `MAX_LINES`: maximum
+/// number of lines returned. [origin not recorded]
 const MIN_VOTES: f64 = 0.06;
 const MAX_LINES: usize = 600;
 
 /// Half-size, in angle cells and distance cells, of the neighbourhood for non-maximum suppression.
 const SUPPRESSED: (usize, usize) = (4, 4);
 
-/// Maximum distance of an edge pixel from its line, and maximum gap that a piece of a line bridges, both in pixels
-/// [origin not recorded].
+/// `MAX_DISTANCE`: maximum distance of an edge pixel from its line. `MAX_GAP`: maximum gap that a piece of a line
+/// bridges. Both are in pixels. [origin not recorded]
 const MAX_DISTANCE: f64 = 1.5;
 const MAX_GAP: f64 = 6.0;
 

@@ -11,16 +11,17 @@ use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Focal lengths tried in addition to the focal lengths that pairs of candidates imply, in units of half the longer
-/// image side: angles of view from 20 to 110 degrees [origin not recorded].
+/// image side: angles of view from 20 to 110 degrees. [origin not recorded]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
 /// Prior of the focal length in units of half the longer image side (0.85 of the width), and the standard deviation of
-/// its logarithm [origin not recorded].
+/// its logarithm. [origin not recorded]
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
-/// Penalty of a focal length one standard deviation from the prior, as a share of the total weight of lines. A triplet
-/// with this focal length is preferred only if it explains that much more weight [origin not recorded].
+/// Penalty of a focal length that deviates by one standard deviation from the prior, as a share of the total weight of
+/// lines. A triplet with this focal length is preferred only if it explains that much more weight.
+/// [origin not recorded]
 const FOCAL_COST: f64 = 0.004;
 
 /// Numbers of line pairs drawn, of candidates kept, of lines paired with each candidate, of triplets scored a second

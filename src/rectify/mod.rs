@@ -24,8 +24,8 @@
 //! true to reported error is 1.3 with 14 lines per axis and a pixel of noise, and 1.0 to 1.15 with more lines or less
 //! noise.
 //!
-//! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixels that are not
-//! square; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
+//! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixel aspect ratios
+//! other than 1; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
 //! [`View::squareness`] reports their deviation from right angles.
 
 mod biweight;
@@ -173,8 +173,8 @@ pub fn view_from_segments(
     })
 }
 
-/// A plane of the photo, resampled to fronto-parallel view. The directions right and down of the texture run nearly
-/// right and down in the photo.
+/// A plane of the photo, resampled to fronto-parallel view. The x and y axes of the texture run nearly right and down
+/// in the photo.
 #[derive(Clone, Debug)]
 pub struct Unwarped {
     /// Linear RGB.

@@ -39,7 +39,7 @@ pub struct Params {
     pub search: Search,
     pub metric: Metric,
     /// Half-width, in radians, of the range of angles for which an edge pixel votes in the Hough transform, centred on
-    /// its gradient direction; in `(0, pi / 2]`, default 2.5° [paper §5.1].
+    /// its gradient direction; in `(0, pi / 2]`, default 2.5°. [paper §5.1]
     pub hough_band: f64,
     /// Focal length in pixels, if known; > 0.
     pub focal: Option<f64>,

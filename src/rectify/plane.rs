@@ -1,4 +1,4 @@
-//! Chooses the plane of the room that a mask shows, and defines coordinates on the plane.
+//! Determines which of the room's three plane orientations a mask marks, and defines coordinates on that plane.
 
 use super::View;
 use crate::error::{Error, Result};
@@ -10,8 +10,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// Maximum number of mask pixels used; larger masks are subsampled evenly.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// Minimum sine of the angle between the plane and the viewing ray, as a median over the pixels of the mask
-/// [origin not recorded].
+/// Minimum sine of the angle between the plane and the viewing ray, as a median over the pixels of the mask.
+/// [origin not recorded]
 const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.
@@ -133,7 +133,7 @@ fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
         let share_ahead = ahead / pixels.len() as f64;
         let one_sided = (2.0 * share_ahead - 1.0).abs();
         let lines = 1.0 - share[third] + share[i].min(share[j]);
-        // The vertical axis points down, and all rays to a ceiling point up.
+        // The vertical axis points down, and every ray from the camera to the ceiling points up.
         let ceiling = if third == VERTICAL && share_ahead < 0.02 { 1.5 } else { 1.0 };
         one_sided.powi(4) * lines * ceiling
     };

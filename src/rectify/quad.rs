@@ -10,7 +10,7 @@ use glam::DVec2;
 /// Number of grid cells along each side of the area in which the rectangle is searched for.
 const GRID: usize = 96;
 /// Cost of a cell outside the mask relative to the gain of a cell inside it. The cost is low because later stages
-/// ignore holes, whereas a lamp at the rim is lost if the rim is cut off [origin not recorded].
+/// ignore holes, whereas a lamp at the rim is lost if the rim is cut off. [origin not recorded]
 const HOLE: f64 = 0.25;
 
 /// A rectangle in plane coordinates.

@@ -10,38 +10,38 @@ use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Maximum distance of a segment's endpoints from the line through its midpoint and its vanishing point, in units of
-/// half the image's longer side: about 2 pixels in an image of 640 pixels [origin not recorded].
+/// half the image's longer side: about 2 pixels in an image of 640 pixels. [origin not recorded]
 const ENDPOINT_LIMIT: f64 = 0.006;
 
 /// Maximum sine of the angle between a segment and the line through its midpoint and its vanishing point. This second
-/// limit matters for short segments [origin not recorded].
+/// limit matters for short segments. [origin not recorded]
 const SINE_LIMIT: f64 = 0.06;
 
-/// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this
-/// [rounding].
+/// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this.
+/// [rounding]
 const COINCIDENT: f64 = 1e-18;
 
 /// Prior standard deviation of the endpoint noise, in units of half the image's longer side, and the number of
-/// segments that the prior counts as [origin not recorded].
+/// segments to which the prior is equivalent. [origin not recorded]
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
 /// Number of segments that count as one independent observation: both sides of a bar, the pieces of one edge and rows
-/// of equal objects share their errors. Calibrated on photos with exactly known cameras, like the next constants
-/// [bench vp].
+/// of equal objects share their errors. Calibrated on photos with exactly known cameras, like the next constants.
+/// [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
 /// Limits of the estimate of the endpoint noise. The estimate alternates `NOISE_ROUNDS` times between the noise and
 /// the share of the noise that is visible within the biweight's limit. `MIN_SHOWN` is the minimum of this share, and
 /// `MIN_SLOPE` the minimum of the biweight's expected slope: below them, the noise exceeds the limit and cannot be
 /// estimated. `MIN_SLOPE` is the smallest value that loses no vanishing point of the development sets, in which short
-/// lines are more precise than their residuals suggest [bench vp].
+/// lines are more precise than their residuals suggest. [bench vp]
 const NOISE_ROUNDS: usize = 5;
 const MIN_SHOWN: f64 = 0.25;
 const MIN_SLOPE: f64 = 0.3;
 
 /// Standard deviation, in radians, of the error that all lines of a direction share: errors of the lens, of stitching
-/// and of the room's construction. Averaging over more lines does not reduce it [bench vp].
+/// and of the room's construction. Averaging over more lines does not reduce it. [bench vp]
 pub const STRAIGHTNESS: f64 = 0.0035;
 
 /// Image coordinates relative to the principal point, in units of half the longer image side.
@@ -192,7 +192,7 @@ fn iterate(lines: &[WeightedLine], start: DVec3, focal: f64, prior: [[f64; 3]; 3
     Some(direction)
 }
 
-/// The zero matrix, for a least-squares problem without priors [convention].
+/// The zero matrix, for a least-squares problem without priors. [convention]
 const ZERO_MATRIX: [[f64; 3]; 3] = [[0.0; 3]; 3];
 
 fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {

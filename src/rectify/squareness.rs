@@ -9,7 +9,7 @@ use super::focal::Expected;
 use super::sphere::Refined;
 use glam::DVec3;
 
-/// Deviation from a right angle of the angle between two directions.
+/// How far the angle between two directions deviates from a right angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Squareness {
     /// Deviation in radians: > 0 where the angle between the axes is obtuse.

@@ -9,11 +9,11 @@ use super::footprint::{Footprints, RUN};
 use super::lanes::{MAX_READ, TAPS};
 use crate::image::Image;
 
-/// Longest side of a rectangle that the taps cover whatever its sub-pixel position: `TAPS - 1` [convention].
+/// Longest side of a rectangle that the taps cover whatever its sub-pixel position: `TAPS - 1`. [convention]
 pub const MAX_SIDE: f32 = 3.0;
 
 /// The cubic filter fades out over this range of the squared major axis of a pixel's footprint, in source pixels: it
-/// has full weight up to `SHARP` and no weight from `SOFT` on [origin not recorded].
+/// has full weight up to `SHARP` and no weight from `SOFT` on. [origin not recorded]
 const SHARP: f32 = 1.0;
 const SOFT: f32 = 1.5;
 
@@ -130,7 +130,7 @@ fn integer(whole: f64) -> i32 {
 /// Like [`integer`], in single precision; the value is clamped to ±4 million.
 #[inline(always)]
 fn integer_of_single(whole: f32) -> i32 {
-    /// Adding this constant moves a whole number into the low bits of the mantissa [rounding].
+    /// Adding this constant moves a whole number into the low bits of the mantissa. [rounding]
     const SHIFT: f32 = 12_582_912.0;
     (whole.max(-4e6).min(4e6) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }

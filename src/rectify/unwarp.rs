@@ -105,11 +105,11 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
         }
         aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
     }
-    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio [convention].
+    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio. [convention]
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 
-/// Step of the finite differences as a share of a standard deviation [rounding].
+/// Step of the finite differences as a share of a standard deviation. [rounding]
 const SMALL: f64 = 1e-3;
 
 /// Returns vectors whose outer products sum to the covariance matrix.
@@ -119,7 +119,7 @@ fn deviations(covariance: &DMat3) -> [DVec3; 3] {
     std::array::from_fn(|k| DVec3::from_array(vectors[k]) * values[k].max(0.0).sqrt())
 }
 
-/// Returns the plane coordinates of four photo points relative to their mean, since a translation is no error.
+/// Returns the plane coordinates of four photo points relative to their mean, because a translation is not an error.
 fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
     let inverse = plane.to_photo().inverse();
     let at = corners.map(|c| inverse.apply(c));

@@ -1,5 +1,5 @@
-//! Finds vanishing points from line segments (§5.2): up to three room directions and possibly more. Each direction is
-//! refined with its own lines and has its own covariance.
+//! Finds vanishing points from line segments (§5.2): up to three orthogonal room directions and, if more are asked
+//! for, further directions. Each is refined with the lines assigned to it, and has a covariance.
 
 use super::params::{Params, Search};
 use super::sphere::{
@@ -15,12 +15,12 @@ use glam::{DMat3, DVec2, DVec3};
 /// to the points found.
 const MAX_LINES: usize = 2500;
 
-/// Maximum standard deviation of a direction in radians; directions with a larger one are rejected
-/// [origin not recorded].
+/// Maximum standard deviation of a direction in radians; directions with a larger one are rejected.
+/// [origin not recorded]
 const MAX_ERROR: f64 = 0.2;
 
 /// Standard deviations of the priors under which directions are refined: of the angle between two room directions
-/// about a right angle, in radians, and of the logarithm of the focal length [bench vp].
+/// about a right angle, in radians, and of the logarithm of the focal length. [bench vp]
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
 
@@ -40,8 +40,8 @@ pub struct VanishingPoint {
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
 pub struct Vanishing {
-    /// At most the first three points are nearly orthogonal to each other, and these three are sorted by falling
-    /// support.
+    /// With the Manhattan search, the points of the (up to three) orthogonal directions come first. Within them, and
+    /// within the further points, the total weight of the lines that run to a point decreases.
     pub points: Vec<VanishingPoint>,
     /// For each segment, the index of the point it runs to; `None` if it runs to no point.
     pub members: Vec<Option<usize>>,
@@ -145,7 +145,7 @@ fn orthogonal_and_further(
     Ok((found, focal))
 }
 
-/// Returns the direction unchanged, with the covariance with which the lines determine it.
+/// Returns the direction unchanged, with the covariance that the lines imply.
 fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Found {
     let covariance =
         refine(lines, direction, focal).map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);

@@ -8,8 +8,8 @@ use crate::job::Job;
 /// Standard deviation of the blur in photo pixels. The edge of a clipped lamp is a staircase of whole pixels; after a
 /// blur of about a pixel, the 0.5 level of a straight edge is straight again. [convention]
 const EDGE_BLUR: f32 = 0.9;
-/// Widest gap between two lamps that stays open, in photo pixels. The blur would close gaps of up to twice its
-/// standard deviation. [convention]
+/// Gaps between lamps stay open if they are at most this wide, in photo pixels. The blur would close gaps of up to
+/// twice its standard deviation. [convention]
 const GAP: usize = 2;
 /// The directions in which a gap is crossed: along a row, a column and the two diagonals.
 const ACROSS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];

@@ -13,7 +13,7 @@ use glam::Vec3;
 
 /// Minimum cosine of the angle between normals of one face: the angle is at most 45 degrees. [convention]
 const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Minimum share of the given pixels that must have nearly equal normals to count as one face. [judged on 28 photos]
+/// Pixels lie on one face if at least this share of them have nearly equal normals. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
 /// Minimum cosine between normals that differ by rounding only. Normals of a room laid out as a box pass this test,
@@ -34,7 +34,7 @@ pub fn laid_out_under(features: &Image, mask: &Image) -> Option<Vec3> {
 
 /// The normal of a ceiling. Normals point into the room, and y points down. [convention]
 const CEILING: Vec3 = Vec3::Y;
-/// Minimum share of the photo that a ceiling covers to be proposed. [convention]
+/// A ceiling is proposed only if it covers at least this share of the photo. [convention]
 const MIN_CEILING: f64 = 0.02;
 /// Expected error of a proposed plane: 1 minus the mean intersection over union of proposed and true plane, over
 /// generated rooms. [bench photos:nostrokes:tune:48]
@@ -136,16 +136,15 @@ fn normal_at(features: &Image, pixel: usize) -> Vec3 {
     Vec3::new(n[0], n[1], n[2])
 }
 
-/// The normal that nearly all pixels of the positive strokes share; `None` if too few pixels do. `cosine` is the
-/// minimum cosine between this normal and the normal of a pixel.
+/// The common normal of the pixels of the positive strokes, as for [`agreed_normal`].
 fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
     let count = input.features.width * input.features.height;
     let strokes = || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels);
     agreed_normal(input.features, || strokes().map(|&p| p as usize).filter(|p| *p < count), cosine)
 }
 
-/// The normal that a share of at least [`AGREEMENT`] of the given pixels has; `None` if fewer pixels do. `cosine` is
-/// the minimum cosine between this normal and the normal of a pixel.
+/// The common normal of the given pixels. `None` if fewer than the share [`AGREEMENT`] of the pixels have this normal.
+/// `cosine` is the minimum cosine between the common normal and the normal of a pixel that has it.
 fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() -> I, cosine: f32) -> Option<Vec3> {
     if features.channels != CHANNELS {
         return None;

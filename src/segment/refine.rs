@@ -1,5 +1,5 @@
 //! Edge-aware refinement: the guided filter makes the probabilities follow the edges of the photo (He, Sun and Tang
-//! 2013, "Guided Image Filtering"). The guide image is the first three features, the colour.
+//! 2013, "Guided Image Filtering"). The guide image consists of the first three features, which are the colour.
 //!
 //! In the window around each pixel, an affine function of colour is fitted to the probability, `p ≈ a · I + b`. A
 //! penalty keeps `a` small where colour varies by less than the tolerance. The refined probability of a pixel is the

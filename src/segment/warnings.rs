@@ -206,9 +206,10 @@ pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     )
 }
 
-/// Warns if the painted lamps are hardly brighter than the plane. They are compared with all plane strokes, and with
-/// the negative light strokes alone, because a plane stroke may run over lamps whereas negative light strokes lie
-/// beside them. The more favourable comparison counts. The first channel of the features is L*.
+/// Warns if the painted lamps are hardly brighter than the plane. Compares the lamp strokes with two sets: the
+/// positive plane strokes together with the strokes marked "not light", and the "not light" strokes alone. A plane
+/// stroke may cross lamps, whereas "not light" strokes lie beside them. The set that shows the greater difference
+/// counts. The first channel of the features is L*.
 pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Option<Warning> {
     let lamps: Vec<&Stroke> = lights.iter().filter(|s| s.positive).collect();
     let beside = || lights.iter().filter(|s| !s.positive);

@@ -12,13 +12,14 @@ use glam::{BVec3, DVec3, Vec3};
 /// decoding. In an unwarped photo, whose pixels are means of several photo pixels, clipping begins at lower values
 /// (`emission::Params::clip_level`).
 const CLIPPED: f32 = 0.987;
-/// Minimum share of the pixels that must be unclipped in both channels for a line to be fitted.
+/// A line is fitted only if at least this share of the pixels is unclipped in both channels.
 const LEAST_WHOLE: f64 = 0.02;
-/// Relative variation of a plane's brightness below which the fitted line is drawn mainly towards black.
+/// Relative standard deviation of a plane's brightness below which the regularisation dominates: the fitted line then
+/// runs nearly through black.
 const EVEN: f64 = 0.05;
 
-/// Returns the mean colour of some pixels, and for each channel the share of pixels that are only known to be at least
-/// white. If `one_plane` is true, clipped values are replaced by estimates. `None` without pixels.
+/// Returns the mean colour of some pixels, and for each channel the share of pixels in which the channel is clipped
+/// and its value was not estimated. Clipped values are estimated only if `one_plane` is true. `None` without pixels.
 pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) -> Option<(DVec3, DVec3)> {
     let mut moments = [[Moments::default(); 3]; 3];
     let mut count = 0.0;

@@ -23,12 +23,12 @@ pub enum Scale {
     Across,
 }
 
-/// Minimum share of its bounding box that a lamp covers if it counts as rectangular: halfway between a disc and a full
-/// box. [convention]
+/// A lamp counts as rectangular if it covers more than this share of its bounding box: halfway between a disc and a
+/// full box. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
-/// Limits for the error that the texels cannot show the pattern of the plane. `MAX_REPEATS` is the ratio of the
-/// surface's length to the length of the plane in the photo, above which the error is possible: for example a hall of
+/// A pattern is refused as too small for the texels if it exceeds this limit and falls below `MIN_SHOWN_TEXELS`. The
+/// limit is the maximum ratio of the surface's length to the length of the plane in the photo: for example a hall of
 /// 600 m and 6 m of a ceiling. [convention]
 const MAX_REPEATS: f64 = 100.0;
 

@@ -245,8 +245,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// The camera from which a lit scene is rendered: the camera of the input, else the scene's first camera, else a
-    /// chosen camera.
+    /// The camera from which a lit scene is rendered: the camera of the input, else the scene's first camera, else the
+    /// camera that [`viewpoint::choose`] returns.
     pub(crate) fn viewpoint(&self, world: &World, lit: &LitScene) -> Camera {
         let own = self.input.camera.as_ref().or(lit.scene.cameras.first());
         own.cloned().unwrap_or_else(|| viewpoint::choose(world, &lit.surface))

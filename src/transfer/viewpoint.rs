@@ -14,8 +14,8 @@ const HEIGHTS: [f32; 2] = [0.35, 0.5];
 /// Number of rays that measure how open a view is: across and down.
 const RAYS: [usize; 2] = [12, 8];
 
-/// Returns the candidate with the longest mean line of sight. A line of sight counts at most the diagonal of the
-/// surface.
+/// Returns the candidate camera with the longest mean line of sight. Lines of sight longer than the surface's diagonal
+/// count as this diagonal.
 pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
     let depth = depth_below(world.scene(), surface);
     let mut best = (f32::NEG_INFINITY, None);

@@ -1,9 +1,9 @@
 //! Estimates the sampling error of an exemplar's statistics: the exemplar shows only a part of its ceiling, with few
 //! lamps.
 //!
-//! The texture stands in for the whole ceiling (parametric bootstrap; Efron 1979). Parts of the texture, with the size
-//! and shape of the exemplar's shown region, are measured like the exemplar. The difference between a part and the
-//! whole texture is an error that no synthesis could avoid.
+//! The texture stands in for the whole ceiling (parametric bootstrap; Efron 1979). Parts of the texture are measured
+//! like the exemplar; they have the size and shape of the region that the photo shows. The difference between a part
+//! and the whole texture is an error that no synthesis could avoid.
 
 use super::statistics::{Pattern, Statistics};
 use crate::emission::exemplar::{Exemplar, components, roles};

@@ -1,10 +1,11 @@
 //! Statistics of a light pattern. They measure how well a texture agrees with its exemplar.
 //!
-//! The border of a window cuts a pattern anywhere. Plain means in the window vary with the lamps that happen to lie on
-//! the border, and vary more the fewer lamps there are. Every mean here is therefore weighted by position. Along an
-//! axis with a known period, the weights are the average over all positions of a window that holds a whole number of
-//! periods. Each part of the period then has the same total weight, wherever the border cuts the pattern. Along other
-//! axes, the weights are a Hann window, which falls to 0 at the border (Harris 1978).
+//! The border of a window cuts the pattern at an arbitrary place. Plain means in the window vary with the lamps that
+//! happen to lie on the border, and vary more the fewer lamps there are. Every mean here is therefore weighted by
+//! position. Along an axis with a known period, a sub-window of a whole number of periods slides over the window; the
+//! weight of a position is the share of sub-window placements that contain the position. Each part of the period then
+//! has the same total weight, wherever the border cuts the pattern. Along other axes, the weights are a Hann window,
+//! which falls to 0 at the border (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
 use crate::image::colour::luminance;

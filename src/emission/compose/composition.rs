@@ -41,8 +41,8 @@ impl Composition {
         Self::of(None, input, styles, params, job)
     }
 
-    /// Like [`Self::new`], but uses an earlier [`Reading`] of the first exemplar if one is given and its settings
-    /// match.
+    /// Like [`Self::new`], but reuses an earlier analysis of the first exemplar ([`Reading`]), if one is given and was
+    /// made with the same settings.
     pub(in crate::emission) fn of(
         mut reading: Option<Reading>,
         input: &Input,
@@ -88,7 +88,7 @@ impl Composition {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }
 
-    /// The law by which the lights of the first exemplar continue, and how that law was chosen.
+    /// The law by which the lights of the first exemplar continue (lattice, row, repetition or none), and its score.
     pub fn law(&self) -> (Continuation, Choice) {
         let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
         first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))

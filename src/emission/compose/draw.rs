@@ -6,7 +6,7 @@
 //! them is kept; every other lamp has a random number of its own. The mean light per area then blends linearly. If
 //! many lamps overlap several others, neighbouring lamps share a random number too, and the style changes from one
 //! square of the texture to the next. If two kept lamps overlap in that case, the lamp of the later exemplar is
-//! dropped. Lights that run out of their exemplar are not lamps: they are dimmed by the weight instead.
+//! dropped. Lights that run beyond the border of their exemplar do not count as lamps: the weight dims them instead.
 //!
 //! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], all of
 //! them have a site or a midpoint between sites at the texture's centre.
@@ -29,8 +29,8 @@ const DENSE: f64 = 0.1;
 struct Lamp {
     low: DVec2,
     high: DVec2,
-    /// A random number in [0, 1). The weights divide that interval among the exemplars. The lamp is kept if the number
-    /// falls into its own exemplar's part.
+    /// A random number in [0, 1). The weights divide that interval into one subinterval per exemplar. The lamp is kept
+    /// if the number falls into the subinterval of its own exemplar.
     draw: f64,
 }
 

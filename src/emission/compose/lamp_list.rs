@@ -21,7 +21,7 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, Vec2Swizzles};
 
-/// Minimum area within the texture, in texels, of a lamp that is listed.
+/// A lamp is listed if at least this area of it, in texels, lies within the texture.
 const MIN_SHOWN: f64 = 1e-6;
 
 /// The lamps that a composition shows.
@@ -77,8 +77,8 @@ impl LampList {
         Ok(list)
     }
 
-    /// Groups lamps of equal shape into kinds and numbers the kinds, over all exemplars and the lights that follow
-    /// patches.
+    /// Groups lamps of equal shape into kinds and numbers the kinds, over all exemplars and the lights that are copied
+    /// patch by patch.
     fn number_kinds(&mut self, composition: &Composition) {
         let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
         for (k, instance) in &self.shown {

@@ -27,12 +27,14 @@ use glam::{DVec2, Vec3};
 /// A piece of light is a crumb if its area is below this share of the smallest lamp's area. Crumbs are broken off
 /// edges by resampling. [judged on 5 photos]
 const CRUMB: f64 = 0.02;
-/// Minimum side of a patch, in working pixels. [bench emission:knobs]
+/// Minimum side of a patch, in working pixels (pixels of the exemplar at the reduced size of the synthesis).
+/// [bench emission:knobs]
 const MIN_BLOCK: f64 = 16.0;
 /// Side of a patch on a lattice, as a multiple of the lattice's longer period. [bench emission:knobs]
 const BLOCK_PERIODS: f64 = 1.5;
 
-/// The part of one exemplar that each place of the texture shows.
+/// The plan of one exemplar's share of the texture: which part of the exemplar each place of the texture shows, and
+/// how its lamps are drawn.
 pub struct Layer {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
@@ -47,7 +49,8 @@ pub struct Layer {
     pub has_pieces: bool,
     /// Colours for the clipped parts of lamps, read from their rims; `None` if the photo shows nothing clipped.
     pub rim_colours: Option<RimColours>,
-    /// The designs from which lamps are drawn; empty if lamps keep the outlines of the photo.
+    /// The designs (one size and one outline per kind of lamp) from which lamps are drawn; empty if lamps keep the
+    /// outlines of the photo.
     pub designs: Designs,
     /// The mean colour of each component, if lamps shine evenly; else `None`.
     pub even: Option<Vec<Vec3>>,
@@ -64,7 +67,7 @@ struct Setting<'a> {
     continuation: Continuation,
     /// Position of the lattice's origin in the texture, in unwarped pixels.
     offset: DVec2,
-    /// Size of the texture in working pixels.
+    /// Size of the texture in working pixels (pixels at the reduced size of the synthesis).
     canvas: (usize, usize),
     /// Side of a patch, and the distance to a light at which the metadata saturate at 1; both in working pixels.
     block: usize,
@@ -77,7 +80,8 @@ impl Layer {
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let setting = Setting::new(&exemplar, found, window, params)?;
 
-        // Compute the metadata, then place patches and lamps.
+        // Compute the metadata of the exemplar, the guide channels of the synthesis: confidence, and signed x and y
+        // distance to the nearest light. Then place patches and lamps.
         let working = &exemplar.working;
         let is_lit = |pixel: usize| working.is_lit(pixel);
         let (width, height, job_part) = (working.width, working.height, job.part(0.25, 0.3));
@@ -120,7 +124,7 @@ impl Layer {
         })
     }
 
-    /// Whether lamps are drawn from designs.
+    /// Whether lamps are drawn from designs, one size and one outline for all lamps of a kind.
     pub fn is_clean(&self) -> bool {
         !self.designs.kinds.is_empty()
     }
@@ -152,18 +156,19 @@ impl Layer {
     }
 }
 
-/// Minimum score of a lattice on which clean lamps replace a copy of the photo with its ragged outlines.
-/// [bench photos:tune]
+/// A texture that fits inside the exemplar is a copy of the photo, with its ragged outlines. Lamps with clean outlines
+/// replace the copy only if they lie on a lattice with at least this score. [bench photos:tune]
 const SURE: f64 = 0.6;
 
 /// Outlines are ragged if a photo pixel is at least this many unwarped pixels long, so that its steps are visible.
 /// [convention]
 const RAGGED: f64 = 2.0;
 
-/// The exemplar from which a texture is made, and the law by which its pattern continues.
+/// The exemplar from which a texture is made, and the law by which its pattern continues: lattice, row, repetition or
+/// none.
 struct Source {
     exemplar: Exemplar,
-    /// The law by which the pattern continues.
+    /// The continuation found in the exemplar. It becomes `Copy` if the texture is a copied part of the exemplar.
     found: Continuation,
     regularity: f64,
     choice: Choice,

@@ -1,4 +1,4 @@
-//! Finds the lights that are copied patch by patch, without rendering the whole texture, although a light that runs
+//! Finds the lights that are copied patch by patch, without holding the whole texture in memory: a light that runs
 //! through the exemplar is as long as the texture.
 //!
 //! A sweep renders the texture in bands from top to bottom. For every connected light, it keeps running sums, and the
@@ -73,7 +73,7 @@ pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job
         .collect())
 }
 
-/// The lights found so far. Lights that turn out to be parts of one light are joined (union-find).
+/// The lights found so far. Lights that turn out to be connected are merged into one (union-find).
 #[derive(Default)]
 struct Joined {
     parts: Vec<Light>,

@@ -1,8 +1,8 @@
 //! Renders the texels at full resolution: copies every lamp and every patch from the photo or, without a photo, from
 //! the unwarped image ("Lighting Style Transfer", §6, Fig. 12h).
 //!
-//! A texel subtracts its shift, which leads to a point of the unwarped image; the homography maps that point into the
-//! photo, and the colour is averaged over the area that the texel covers. The unwarped image decides whether a texel
+//! The position of a texel minus its shift is a point of the unwarped image. The homography maps that point into the
+//! photo, where the colour is averaged over the area that the texel covers. The unwarped image decides whether a texel
 //! is light. If that image is magnified, its confidence is interpolated between pixels, so that outlines show no
 //! staircase. If it is reduced, the lit share of the texel's area decides.
 
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 /// A float slightly below one half. [rounding]
 const BELOW_HALF: f32 = 0.5 - f32::EPSILON;
 
-/// The lights of a composition that are rendered.
+/// Selects which lights of a composition are rendered.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Lights {
     All,
@@ -35,8 +35,8 @@ pub struct Frame<'a> {
     pub weights: &'a Weights,
 }
 
-/// Renders a tile of the texture, and the coverage: the share of each texel that is light. Coverage is at least 0.5
-/// for texels of the mask, and less than 0.5 for other texels.
+/// Renders a tile of the texture, and the coverage: the share of each texel that light covers. Coverage is at least
+/// 0.5 for texels of the mask, and less than 0.5 for other texels.
 pub fn run(
     frame: &Frame,
     sources: &[Source],
@@ -78,8 +78,8 @@ struct Row<'a> {
     /// Column of the first texel.
     first: usize,
     colours: &'a mut [f32],
-    /// `coverage`: mean confidence at each texel that it is light. `shares`: share of the texel's samples that are
-    /// light.
+    /// `coverage`: for each texel, the mean confidence that it is light. `shares`: share of the texel's samples that
+    /// are light.
     coverage: &'a mut [f32],
     shares: Vec<f32>,
 }
@@ -134,7 +134,7 @@ impl Row<'_> {
     }
 }
 
-/// Thresholds the coverage to a mask in place: 1 where at least half of a texel is light, else 0.
+/// Thresholds the coverage to a mask in place: 1 where light covers at least half of a texel, else 0.
 pub fn threshold(coverage: &mut Image) {
     coverage.data.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
 }

@@ -9,7 +9,7 @@ use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3, Vec4};
 
 /// Range of the number of samples along each side of a texel that is larger than an unwarped pixel. With fewer than
-/// `MIN_SAMPLES`, an edge of the light could not be placed to an eighth of the texel's side. [rounding]
+/// `MIN_SAMPLES`, an edge of the light could not be located to within an eighth of the texel's side. [rounding]
 const MIN_SAMPLES: f64 = 4.0;
 const MAX_SAMPLES: f64 = 16.0;
 

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 /// Maximum width of a bar, as a share of the longer side of the unwarped image. [bench photos:tune]
 const WIDEST: f64 = 0.05;
-/// Minimum depth of a bar. The depth is the share of the panes' luminance that the bar lacks, in the median along it.
+/// Minimum depth of a bar: the share of the panes' luminance that the bar lacks, as a median along the bar.
 /// [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
 /// Minimum share of the positions along a bar with light on both sides of the bar. [bench photos:tune]
@@ -74,8 +74,9 @@ pub struct Lines<'a> {
     across: usize,
     along: usize,
     widest: usize,
-    /// By which share each pixel is darker than the light beside it, at least 0. Each side's light is the brightest
-    /// lit pixel within `widest` positions; the darker of the two sides counts. NaN if a side has no light.
+    /// Share by which each pixel is darker than the light beside it; at least 0. The light of a side is the brightest
+    /// lit pixel within `widest` positions on that side. The darker of the two sides counts. NaN if a side has no
+    /// light.
     depth: Vec<f32>,
 }
 
@@ -145,7 +146,8 @@ impl<'a> Lines<'a> {
         let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };
         let mut excess: Vec<f32> = profile.iter().map(|p| p.map_or(0.0, |p| p - level)).collect();
 
-        // Take the deepest position first. A bar extends as far as the depth is at least half of that.
+        // Take the deepest position first. A bar extends as far as the depth is at least half of the depth at this
+        // position.
         let mut bars = Vec::new();
         while let Some((peak, &depth)) =
             excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)
@@ -200,12 +202,13 @@ impl<'a> Lines<'a> {
             .collect()
     }
 
-    /// Removes a bar from the light. It keeps the stretches in which the photo shows no bar although its sharpness is
-    /// at least `bluntest`. Returns whether any lit pixel was removed.
+    /// Removes a bar from the light, except in stretches where the photo shows no bar although its sharpness is at
+    /// least `bluntest`. Returns whether any lit pixel was removed.
     pub fn cut(&self, bar: &Bar, stretches: &[Stretch], bluntest: f64, light: &mut Image) -> bool {
         let is_absent = |s: &Stretch| s.sharpness >= bluntest && s.depth < ABSENT * bar.depth;
         let absent: Vec<bool> = stretches.iter().map(is_absent).collect();
-        // Where another bar crosses, the bar does not stand out from it, and the stretch seems to have no bar.
+        // Where another bar crosses, this bar does not stand out from the other one, so the stretch seems to have no
+        // bar.
         let is_shown = |from: usize, to: usize| absent[from.min(absent.len())..to.min(absent.len())].contains(&false);
         let crosses = |n: usize| is_shown(n.saturating_sub(CROSSING), n) && is_shown(n + 1, n + 1 + CROSSING);
         let mut is_changed = false;

@@ -7,12 +7,13 @@ use glam::DVec2;
 
 /// Maximum relative difference between the sides of two lamps of one kind. [judged on 20 photos]
 const LIKE: f64 = 0.2;
-/// Photo pixels by which a side may be measured wrongly (`NOISE`), and by which bloom may lengthen it (`BLOOM`). One
-/// photo pixel is more unwarped pixels where the photo is magnified more. [judged on 20 photos]
+/// Measurement error of a side (`NOISE`) and lengthening of a side by bloom (`BLOOM`), both in photo pixels. Where the
+/// photo is magnified more, a photo pixel spans more unwarped pixels. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
-/// Maximum relative difference, and photo pixels of measurement error, for lamps that are possibly of one kind. Other
-/// evidence, such as their position on a lattice, must confirm it. [judged on 20 photos]
+/// Lamps are possibly of one kind if their sides differ by at most the share `MAYBE_LIKE` and, for each of the two
+/// lamps, `MAYBE_BLUR` photo pixels of measurement error. Other evidence, such as their position on a lattice, must
+/// confirm it. [judged on 20 photos]
 const MAYBE_LIKE: f64 = 0.33;
 const MAYBE_BLUR: f64 = 2.5;
 

@@ -30,7 +30,8 @@ impl LocalMap {
         self.jacobian.inverse()
     }
 
-    /// How far edges across x, and edges across y, move in unwarped pixels if they move by one pixel in the photo.
+    /// Distance in unwarped pixels by which edges perpendicular to x, and edges perpendicular to y, move if they move
+    /// by one pixel in the photo.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());
@@ -38,8 +39,8 @@ impl LocalMap {
     }
 }
 
-/// The part of an unwarped image with a limited magnification, measured in length and relative to the least magnified
-/// pixel.
+/// The part of an unwarped image in which the magnification is limited. Magnification is a ratio of lengths, relative
+/// to the least magnified pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     to_photo: Homography,

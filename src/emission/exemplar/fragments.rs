@@ -12,15 +12,15 @@ use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
-/// A group of alike pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels.
+/// A group of similar pieces is a major kind of lamps if it has at least this share of all lamps' photo pixels.
 /// [judged on 20 photos]
 const MIN_KIND: f64 = 0.15;
 /// A fragment covers less than this share of the photo pixels of a lamp. [judged on 20 photos]
 const MAX_FRAGMENT: f64 = 0.2;
-/// Maximum distance from a fragment to the light that it broke off, as a multiple of the longer side of a lamp.
-/// [judged on 20 photos]
+/// A fragment is close to the light that it broke off if their distance is at most this multiple of the longer side of
+/// a lamp. [judged on 20 photos]
 const CLOSE: f64 = 0.35;
-/// Minimum number of alike pieces that are a kind of lamps however small they are, unless they lie close to other
+/// At least this many similar pieces count as a kind of lamps, however small they are, unless they lie close to other
 /// lights. [judged on 20 photos]
 const MANY: usize = 3;
 
@@ -33,7 +33,8 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     lamps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
-    // Find the major kinds, which make up a good part of the light, and the kind with the smallest lamps among them.
+    // Find the major kinds, which have a large share of the lamps' photo pixels, and the major kind with the smallest
+    // lamps.
     let kinds = Evidence::kinds(&lamps);
     let is_major = |kind: &&Vec<Evidence>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {

@@ -22,14 +22,14 @@ use foreshortening::{LocalMap, MagnificationLimit};
 use roles::Role;
 use working::{Sources, Working};
 
-/// Minimum confidence of a pixel that counts as light. [convention]
+/// A pixel counts as light if its confidence is at least this. [convention]
 pub const LIT: f32 = 0.5;
 
-/// Minimum number of photo pixels that a lamp covers, roughly a disc three pixels across. If all lights are smaller,
-/// the largest light sets the minimum. [judged on 5 photos]
+/// A lamp must cover at least this number of photo pixels, roughly a disc three pixels across. If all lights are
+/// smaller, the largest light sets the minimum. [judged on 5 photos]
 const MIN_LAMP: f64 = 9.0;
 
-/// Minimum lit share of the plane at which it counts as a luminous ceiling. [bench photos:tune]
+/// The plane counts as a luminous ceiling if at least this share of it is lit. [bench photos:tune]
 pub const LUMINOUS: f64 = 0.3;
 
 /// The usable part of the unwarped image with its lights.
@@ -87,7 +87,7 @@ impl Exemplar {
         })
     }
 
-    /// The statistics of the pattern in `unwarped`; lengths are in its pixels. `periods` has the meaning of
+    /// The statistics of the pattern, with lengths in unwarped pixels. `periods` has the meaning of
     /// [`Pattern::periods`].
     pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
         // Components that the texture may show as one piece count as lamps.
@@ -104,9 +104,9 @@ impl Exemplar {
         Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }
 
-    /// How much of an unwarped pixel is light: the confidence in `light`. Pixels of components count, and unlit pixels
-    /// beside them, where the confidence fades out. Pixels that are lit but belong to no component give 0, and so does
-    /// an index beyond the last pixel.
+    /// The share of an unwarped pixel that light covers: the confidence in `light`. Pixels of components count, and
+    /// unlit pixels beside them, where the confidence fades out. Pixels that are lit but belong to no component give
+    /// 0, and so does an index beyond the last pixel.
     pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
         let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
         match self.shown.get(pixel) {

@@ -1,7 +1,8 @@
 //! Separates the panes of a luminous ceiling along the bars between them, and fills gaps within each pane.
 //!
-//! The light mask joins panes where bloom covers the bars between them, and cuts panes to pieces along their leading
-//! where the camera is near. The detected bars ([`super::bars`]) define the panes, near and far.
+//! The light mask joins panes where bloom covers the bars between them. Where the camera is near, it cuts panes to
+//! pieces along their leading, the lead strips inside a pane. The detected bars ([`super::bars`]) define the panes,
+//! near and far.
 
 use super::LUMINOUS;
 use super::bars::{self, Bar, Lines, LitPlane};
@@ -12,17 +13,17 @@ use crate::job::Job;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Minimum lit share of a cell between bars that counts as a pane. [bench photos:real]
+/// A cell between bars counts as a pane if at least this share of it is lit. [bench photos:real]
 const PANE: f64 = 0.35;
-/// Minimum luminance, relative to the pane's median, of a pixel outside the mask that is added to its pane.
+/// A pixel outside the mask is added to its pane if it has at least this luminance, relative to the pane's median.
 /// [bench photos:real]
 const BRIGHT: f32 = 0.5;
-/// Maximum width of a dark line inside a pane that counts as leading and is filled, as a share of the cell's side.
-/// [bench photos:real]
+/// A dark line inside a pane counts as leading and is filled if it is at most this wide, as a share of the cell's
+/// side. [bench photos:real]
 const LEADING: f64 = 0.06;
 
-/// Returns the light mask of the panes without the bars between them. `None` if the plane is no luminous ceiling, or
-/// if the mask covers no bar.
+/// Returns the light mask of the panes without the bars between them. `None` if the plane is not a luminous ceiling,
+/// or if the mask covers no bar.
 pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     let pixels = plane.light.data.len();
     let valid = (0..pixels).filter(|&i| plane.is_valid(i)).count();

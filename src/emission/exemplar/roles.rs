@@ -5,9 +5,10 @@ use super::components::{Component, Components};
 /// A light cut by the border resembles a whole lamp if its sides are at most this many times the whole lamp's sides.
 /// [judged on 5 photos]
 const CUT_LAMP_SLACK: f64 = 1.35;
-/// A lamp counts as whole if it touches the border with at most this share of its width, because masks fray. A border
-/// that cuts a rectangular lamp touches all of its width. A border that touches this share of a round lamp's width
-/// cuts off only a twentieth of the lamp. [judged on 5 photos]
+/// A lamp counts as whole if the number of its pixels at the border is at most this share of its width, because masks
+/// fray. Its width is the ratio of its area to the diagonal of its bounding box. A square lamp that the border cuts
+/// exceeds the limit. A disc meets it until the border touches a third of its diameter, which cuts off less than a
+/// hundredth of the disc. [judged on 5 photos]
 const WHOLE_CONTACT: f64 = 0.6;
 /// A light runs through if it covers this share of the shown pixels in the row or column through its centre.
 /// [rounding]
@@ -16,7 +17,7 @@ const RUNS_THROUGH: f64 = 0.97;
 /// The role of a component of the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A lamp that ends inside the shown region.
+    /// A lamp that ends inside the region that the photo shows.
     Whole,
     /// A lamp that counts as whole although a few of its pixels touch the border.
     WholeAtBorder,
@@ -25,12 +26,12 @@ pub enum Role {
     Cut,
     /// A light that the border cuts and that resembles no whole lamp. The visible part is copied as one piece.
     Partial,
-    /// A light that runs through the whole shown region. It is copied patch by patch, not as one piece.
+    /// A light that runs through the whole region that the photo shows. It is copied patch by patch, not as one piece.
     Through,
 }
 
 impl Role {
-    /// Whether the component is a lamp that ends inside the shown region.
+    /// Whether the component is a lamp that ends inside the region that the photo shows.
     pub fn is_whole(self) -> bool {
         matches!(self, Self::Whole | Self::WholeAtBorder)
     }
@@ -63,7 +64,7 @@ pub fn classify(components: &Components, shown: &[bool], width: usize, height: u
     components.list.iter().zip(&whole).zip(&contacts).map(role).collect()
 }
 
-/// Counts the pixels of each component at the border of the image or of the shown region.
+/// Counts the pixels of each component at the border of the image or of the region that the photo shows.
 fn contacts(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<usize> {
     let mut contacts = vec![0usize; components.list.len()];
     for (i, &label) in components.labels.iter().enumerate().filter(|(_, l)| **l != 0) {

@@ -22,7 +22,7 @@ pub struct Working {
     pub pitch: DVec2,
     /// Linear RGB of lights relative to the brightest light; 0 elsewhere (Fig. 12c).
     pub colour: Image,
-    /// Confidence of each pixel that it is light; 0 for cut lamps.
+    /// Confidence of each pixel that it is light; 0 for cut lamps ([`super::roles::Role::Cut`]).
     pub confidence: Vec<f32>,
     /// Share of each pixel that is light, without cut lamps.
     pub coverage: Vec<f32>,
@@ -95,13 +95,13 @@ impl Working {
         Ok(Self { width, height, pitch, colour, confidence, coverage, usable, shown, shown_coverage, luminance })
     }
 
-    /// Whether at least half of a pixel is light.
+    /// Whether lamps cover at least half of a pixel.
     pub fn is_lit(&self, pixel: usize) -> bool {
         self.coverage[pixel] >= 0.5
     }
 
     /// Mean luminance of a box minus the mean luminance of its unlit surroundings. The box is given by its centre and
-    /// half its sides in unwarped pixels. `None` if the box or the surroundings are not shown.
+    /// half-extents in unwarped pixels. `None` if the box or the surroundings are not shown.
     pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
         let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
         let mut sums = [(0.0, 0usize); 2];

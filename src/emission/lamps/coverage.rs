@@ -1,4 +1,4 @@
-//! Computes how much of each texel is light, for areas and outlines of lamps.
+//! Computes the share of each texel that light covers, from which areas and outlines of lamps follow.
 
 use crate::emission::exemplar::components::Components;
 use crate::error::Result;

@@ -7,7 +7,7 @@
 //! magnification, and is subtracted as far as the lamps show it. The resulting outline is exact at any resolution.
 //! Lamps of another shape keep their own outline.
 //!
-//! Not modelled: rings; lamps of equal shape but different orientation.
+//! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
 
 use super::luminaire::Luminaire;
 use crate::emission::exemplar::Exemplar;
@@ -38,7 +38,7 @@ const SAME_WAY: f64 = 0.93;
 const MIN_AGREEMENT: f64 = 0.72;
 /// A side of a rectangle is measured within the middle part of the other side, this share of it. [judged on 20 photos]
 const MIDDLE: f64 = 0.6;
-/// Maximum angle, in radians, between lamps and the axes of the plane at which the lamps count as aligned.
+/// Lamps count as aligned with the axes of the plane if their angle to an axis is at most this, in radians.
 /// [judged on 20 photos]
 const ALIGNED: f64 = 0.07;
 /// Standard deviation of a measured side, and prior standard deviation of the bloom at each edge, both in photo
@@ -342,7 +342,7 @@ impl Design {
         lamp.outline = self.outline(centre);
     }
 
-    /// Half the sides of the outline's axis-aligned bounding box.
+    /// Half-extents of the outline's axis-aligned bounding box.
     pub fn half_box(&self) -> DVec2 {
         let half = self.size / 2.0;
         let (a, b) = (self.axis * half.x, self.axis.perp() * half.y);

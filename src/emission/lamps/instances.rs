@@ -16,7 +16,7 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
-/// Minimum share of a lamp that patches with one shift must show for the lamp to be placed.
+/// A lamp is placed only if patches with one shift copy at least this share of it.
 const MIN_SHARE: f64 = 0.3;
 /// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
 /// through rounding.
@@ -31,8 +31,8 @@ pub struct Rules {
     pub wraps: bool,
 }
 
-/// Finds the lamps that a patch map shows. Lamps with the largest visible share are placed first. A lamp with few
-/// photo pixels is replaced by a similar lamp with many.
+/// Finds the lamps of which a patch map copies enough. Lamps with the largest copied share are placed first. A lamp
+/// with few photo pixels is replaced by a similar lamp with many.
 pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
     let canvas = Canvas { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
     let claims = canvas.claims(exemplar.working.height, job)?;
@@ -64,8 +64,9 @@ impl Canvas<'_> {
         self.footprints[k as usize].iter().filter_map(move |&[x, y]| self.texel(x + dx, y + dy))
     }
 
-    /// Finds the lamps that the patches show, and their shifts. Each entry holds the visible share of the lamp, the
-    /// index of the lamp, and the label of the shift; largest share first.
+    /// Finds the exemplar's lamps of which the patch map copies at least the share `MIN_SHARE`, each with the shift by
+    /// which it is copied. Each entry holds the copied share of the lamp, the index of the lamp, and the label of the
+    /// shift; largest share first.
     fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
         let rows = rows(&self.footprints, exemplar_height);
         let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
@@ -91,8 +92,8 @@ impl Canvas<'_> {
         Ok(claims)
     }
 
-    /// Places the lamps in the order of their claims if their pixels are still free. Lamps without a lattice keep a
-    /// gap of one pixel between them.
+    /// Places the lamps in the order of `claims`, the list from [`Self::claims`], if their pixels are still free.
+    /// Lamps without a lattice keep a gap of one pixel between them.
     fn settle(&self, claims: &[(f64, u32, u32)], is_lattice: bool) -> Result<Vec<Instance>> {
         let PatchMap { width, height, ref shifts, .. } = *self.patch_map;
         let mut taken = Bits::new(width * height)?;

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 const LIKE: f64 = 0.25;
 /// Maximum difference between two lamps of one kind in the share of their enclosing rectangle that they fill.
 const FILL: f64 = 0.1;
-/// Difference between outlines that rounding and simplification may cause, in texels, both sides together.
+/// Difference in each side between equal lamps, in texels, that rounding and simplification of both ends may cause.
 const ROUNDING: f64 = 2.0;
 /// Before comparison, lamps are binned by the logarithms of area and sides: number of bins per factor of e.
 const STEPS: f64 = 20.0;

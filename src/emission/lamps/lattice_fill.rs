@@ -1,4 +1,4 @@
-//! Places lamps at the exact sites of a lattice, and shows each by a lamp that is sharp in the photo.
+//! Places lamps at the exact sites of a lattice, and draws each from a lamp that is sharp in the photo.
 //!
 //! Patches reproduce the disorder of the photo: distant lamps that the mask missed, and positions displaced by
 //! perspective. The sites of the lattice, weighted by photo pixels, give the true positions. A site that nearly always
@@ -15,17 +15,17 @@ use crate::emission::reading::sites::{Site, Sites};
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 
-/// A site gets a lamp in every cell if at least this share of its visible positions, by photo pixels, shine.
-/// [bench emission:perspective]
+/// A site of the lattice cell gets a lamp in every cell if lamps shine in at least this share of its visible copies,
+/// weighted by photo pixels. [bench emission:perspective]
 const ALWAYS: f64 = 0.93;
-/// Minimum share for a site with at most `FEW_DARK` dark positions: something may hide the lamps there.
-/// [judged on 20 photos]
+/// If at most `FEW_DARK` copies of a site are dark, this smaller share of shining copies suffices: something may hide
+/// the lamps at the dark copies. [judged on 20 photos]
 const MOSTLY: f64 = 0.5;
 const FEW_DARK: usize = 2;
 /// A lamp counts as sharp if it has at least this share of the photo pixels of its site's largest lamp.
 /// [judged on 5 photos]
 const SHARP: f64 = 0.4;
-/// Maximum distance between two positions that count as one site, along each axis, as a share of a lamp's side.
+/// Two positions count as one site if their distance along each axis is at most this share of a lamp's side.
 /// [judged on 20 photos]
 const OVERLAP: f64 = 0.5;
 

@@ -1,4 +1,4 @@
-//! The outline of a lamp at sub-texel precision: it runs where half of a texel, centred there, would be light.
+//! The outline of a lamp at sub-texel precision: it runs where light would cover half of a texel centred there.
 //!
 //! The method is marching squares (Lorensen and Cline 1987) between the centres of texels. The outline passes between
 //! a lit texel and an adjacent unlit one. If two texels of the lamp touch at a corner only, the outline keeps them
@@ -16,8 +16,8 @@ const TOLERANCE: f64 = 0.1;
 /// Maximum distance in texels for an outline along the corners of texels, used if each texel is either fully lit or
 /// unlit. It turns a staircase into a line.
 const STAIRCASE: f64 = 1.0;
-/// Maximum width in texels of a lamp whose outline runs along the corners of its texels. An outline through crossings
-/// would enclose only half of a single texel.
+/// Maximum width in texels of a lamp whose outline runs along the corners of its texels. An outline through the
+/// crossings between texel centres would enclose only half of a single texel.
 const NARROW: f64 = 2.0;
 /// Limits for sharp corners, in texels. `SIDE`: minimum length of a side whose direction is used. `BLUNT`: maximum
 /// length of a blunt corner between two sides. `MAX_EXTENDED`: maximum length by which a side is extended. `CORNER`:
@@ -26,7 +26,8 @@ const SIDE: f64 = 2.0;
 const BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
 const CORNER: f64 = 0.5;
-/// Maximum distance from the border of the texture, in texels, of a corner that lies on the border up to rounding.
+/// A corner lies on the border of the texture, up to rounding, if its distance from the border is at most this, in
+/// texels.
 const ROUNDING: f64 = 1e-6;
 
 /// The outer boundary of a lamp, walked with the lamp on the right. Each texel edge along the walk gives a crossing,
@@ -135,9 +136,9 @@ fn farthest(points: &[DVec2], from: DVec2) -> usize {
     (0..points.len()).max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// Simplifies a ring of points: drops points that lie close to a line between other points (Douglas and Peucker 1973).
+/// Simplifies a closed outline: drops points that lie close to a line between other points (Douglas and Peucker 1973).
 pub fn simplified(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
-    // Split the ring at the point farthest from the first, then simplify both halves.
+    // Split the outline at the point farthest from the first, then simplify both halves.
     let far = points.first().map_or(0, |first| farthest(&points, *first));
     let mut kept = vec![false; points.len() + 1];
     (kept[0], kept[far]) = (true, true);
@@ -164,8 +165,8 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
     }
 }
 
-/// Replaces the blunt corners of a ring by sharp ones, unless the sharp corner would lie outside the texture, which
-/// reaches from `first` to `last`.
+/// Replaces the blunt corners of a closed outline by sharp ones, unless the sharp corner would lie outside the
+/// texture, which reaches from `first` to `last`.
 fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];

@@ -15,9 +15,9 @@ use glam::{DVec3, Vec3};
 const MAX_CLIPPED: f32 = 1.05;
 /// A pixel near a lamp counts as lit by the lamp if it has at least this brightness, relative to the clip level.
 const BRIGHT: f32 = 0.5;
-/// Maximum distance from a lamp, in pixels, of a pixel that may belong to the lamp's rim.
+/// A pixel may belong to a lamp's rim if its distance from the lamp is at most this, in pixels.
 const REACH: usize = 2;
-/// Minimum number of rim pixels from which a colour is read.
+/// A colour is read from a rim only if the rim has at least this number of pixels.
 const MIN_RIM: f64 = 8.0;
 /// Minimum ratio of a channel to the strongest channel; a weaker channel is raised to this value.
 const MIN_CHANNEL: f64 = 1.0 / 16.0;

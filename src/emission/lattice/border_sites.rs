@@ -1,4 +1,4 @@
-//! Excludes dark lattice sites that the border of the exemplar cuts.
+//! Excludes lattice sites that have no lamp (dark sites) and that the border of the exemplar cuts.
 //!
 //! A lamp that the border cuts is left out of the texture, because only a part of it is visible. Sites without a lamp
 //! that the border cuts must be left out too. If patches could show these dark sites but not the lit ones, the texture
@@ -10,7 +10,8 @@ use crate::emission::exemplar::{Exemplar, area_sums::AreaSums};
 use crate::error::Result;
 use glam::{DMat2, DVec2};
 
-/// Two lamps lie at one position of the cell if they differ from a lattice vector by less than this, in periods.
+/// Two lamps lie at one position of the cell if their offset deviates from a lattice vector by less than this, in
+/// periods.
 const SAME: f64 = 0.2;
 /// A position of the cell counts as a site of lamps if at least this share of its fully visible copies has a lamp.
 const MADE_FOR: f64 = 0.5;

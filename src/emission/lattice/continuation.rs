@@ -1,9 +1,9 @@
-//! The continuation of a texture beyond its exemplar.
+//! How the pattern of a texture continues beyond its exemplar: as a lattice, as a row, by repetition, or freely.
 
 use crate::error::{Error, Result};
 use glam::{DMat2, DVec2};
 
-/// Maximum slant, as a tangent, of a row of lamps that counts as parallel to an axis. [judged on 5 photos]
+/// A row of lamps counts as parallel to an axis if its slant, as a tangent, is at most this. [judged on 5 photos]
 pub const MAX_SLANT: f64 = 0.04;
 
 /// The law by which a texture continues beyond its exemplar. Vectors are in unwarped pixels.

@@ -66,9 +66,9 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// The period with which a row that ends within the exemplar is repeated along itself: the length of the exemplar
-/// along the row, including the free space at both ends, rounded to whole periods of the row. `None` if the row may
-/// continue beyond the exemplar, because there is no space for another lamp at one of its ends.
+/// Returns the period along a row with which the whole row repeats, if it ends within the exemplar: the length of the
+/// exemplar along the row, including the free space at both ends, rounded to whole periods of the row. `None` if the
+/// row may continue beyond the exemplar, because there is no space for another lamp at one of its ends.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;

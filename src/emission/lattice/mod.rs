@@ -28,7 +28,7 @@ use glam::DVec2;
 /// Minimum correlation of a period, relative to the highest correlation: lower ones match lamps of different kinds.
 /// [bench emission:patterns]
 const RELATIVE_CORRELATION: f32 = 0.9;
-/// Minimum share of the valid pixels that must overlap for a correlation to count. [bench emission:patterns]
+/// A correlation counts only if at least this share of the valid pixels overlaps. [bench emission:patterns]
 const MIN_OVERLAP: f32 = 0.2;
 /// Maximum side of the image that is correlated, in pixels. [bench emission:seconds]
 const SIDE: usize = 160;
@@ -36,9 +36,9 @@ const SIDE: usize = 160;
 /// [bench emission:patterns]
 const PARALLEL: f64 = 0.3;
 
-/// Finds the law of the exemplar's lights from their autocorrelation, and its regularity: the lower correlation of the
-/// two periods, 0 without a period. A shift may be a period if its correlation is at least `least_regularity`; at 1
-/// there are no periods.
+/// Finds how the exemplar's lights continue (the law: lattice, row, repetition or none) from their autocorrelation.
+/// Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be a period
+/// if its correlation is at least `least_regularity`; at 1 there are no periods.
 pub fn law(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> (Continuation, f64) {
     if least_regularity >= 1.0 {
         return (Continuation::Free, 0.0);

@@ -2,7 +2,7 @@
 
 use super::patch_map::NONE;
 
-/// A rectangle of working pixels.
+/// A rectangle of working pixels, the pixels at the reduced size of the synthesis.
 #[derive(Clone, Copy)]
 pub struct Rect {
     pub x: usize,

@@ -4,16 +4,18 @@ use crate::emission::exemplar::working::Working;
 use crate::image::Image;
 use glam::{Vec3, Vec4};
 
-/// The features of a pixel: colour and metadata, scaled by the square roots of their weights, so that the squared
-/// differences of features add up to the weighted error.
+/// The features of a pixel: colour and metadata (confidence, distances), scaled by the square roots of their weights,
+/// so that the squared differences of features add up to the weighted error.
 pub type Feature = [Vec4; 2];
 
-/// Colour and metadata of the exemplar, and the settings of the comparison.
+/// Colour and metadata (confidence, x and y distance to the nearest light) of the exemplar, and the settings of the
+/// comparison.
 pub struct Guide<'a> {
     pub working: &'a Working,
     pub metadata: &'a Image,
     pub metadata_weight: f32,
-    /// Distance to a light at which the metadata saturate at 1, and mean area of a lamp; both in working pixels.
+    /// Distance to a light at which the distances in the metadata saturate at 1, and mean area of a lamp; both in
+    /// working pixels.
     pub cap: f64,
     pub lamp: f64,
     /// Number of candidate shifts per patch if there is no lattice.

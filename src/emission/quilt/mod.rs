@@ -1,4 +1,5 @@
-//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata ("Lighting Style Transfer", §6).
+//! Places patches by image quilting (Efros and Freeman 2001) over colour and metadata, the confidence and the
+//! distances to the nearest light ("Lighting Style Transfer", §6).
 //!
 //! Blocks are filled in scanline order. A patch is a shift of the exemplar. Of the shifts that cover most of a block,
 //! those with the best agreement with the pixels already placed are kept, and one of them is chosen at random. Pixels
@@ -253,9 +254,9 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Chooses at random among the shifts that are equally good as the best one. In a row of lamps, the first block
-    /// takes the shift nearest to the start of the exemplar, and later blocks keep the shift of a neighbour if it is
-    /// equally good.
+    /// Chooses at random among the shifts whose error exceeds the least error by no more than the tolerance. In a row
+    /// of lamps, the first block takes the shift nearest to the start of the exemplar, and later blocks keep the shift
+    /// of a neighbour if its error is within the tolerance.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.patch_map.shifts.is_empty() {

@@ -13,7 +13,7 @@ pub const NONE: u32 = u32::MAX;
 /// A shift of the exemplar: position in the texture minus position in the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
-    /// The shift in working pixels, rounded.
+    /// The shift in working pixels (at the reduced size of the synthesis), rounded.
     pub working: [i32; 2],
     /// The shift before rounding, in unwarped pixels.
     pub exact: DVec2,

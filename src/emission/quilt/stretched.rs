@@ -63,5 +63,5 @@ pub fn stretch(
     Ok(out)
 }
 
-/// Maximum length, in unwarped pixels, of a basis vector that is no period: the lights do not change along it.
+/// A basis vector of at most this length, in unwarped pixels, is not a period: the lights do not change along it.
 const UNCHANGING: f64 = 1.5;

@@ -38,10 +38,11 @@ const CLEARLY: f64 = 0.1;
 /// Laws are compared only if lamps have at least this share of the lights' photo pixels; the rest are lights that run
 /// through the photo. [judged on 20 photos]
 const MIN_LAMPS: f64 = 0.5;
-/// Maximum relative difference between the periods of two lattices or rows that count as equal. [judged on 20 photos]
+/// Two lattices or rows count as equal if the relative difference between their periods is at most this.
+/// [judged on 20 photos]
 const SAME_LAW: f64 = 0.08;
 
-/// The score of the chosen law of continuation, and the best alternative.
+/// The score of the chosen law of continuation (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// How well the law predicts the lamps of the photo, in `[0, 1]`; NaN if too few of the lights are lamps for a
@@ -64,7 +65,8 @@ impl Choice {
     }
 }
 
-/// The analysis of an exemplar: its lamps, and the law by which their pattern continues.
+/// The analysis of an exemplar: its lamps, and the law by which their pattern continues (lattice, row, repetition or
+/// none).
 pub struct Reading {
     pub exemplar: Exemplar,
     pub continuation: Continuation,

@@ -23,7 +23,7 @@ const SHINES: f64 = 0.2;
 const MAX_COMPARED: usize = 5;
 /// Maximum number of predicted positions of a site that are tested. [bench emission:seconds]
 const MAX_SITES: usize = 20_000;
-/// Maximum length of a basis vector, in unwarped pixels, that is not a period: along an axis where the pattern does
+/// A basis vector of at most this length, in unwarped pixels, is not a period: along an axis where the pattern does
 /// not change, the lattice search returns a shift of one pixel. [rounding]
 const UNCHANGING: f64 = 1.5;
 

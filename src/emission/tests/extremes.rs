@@ -64,8 +64,8 @@ fn a_period_longer_than_the_exemplar_is_its_extent() {
     assert!(repeats(&exemplar, &result));
 }
 
-/// Rows that fan out, as on a plane that bends away, form no lattice: their regularity must be lower and their error
-/// larger than those of straight rows.
+/// Rows that fan out, as on a curved ceiling, form no lattice: their regularity must be lower and their error larger
+/// than those of straight rows.
 #[test]
 fn a_pattern_that_bends_is_no_lattice() {
     let straight = Design::new(420, 320, |x, y| x.rem_euclid(30.0) < 10.0 && y.rem_euclid(30.0) < 10.0);

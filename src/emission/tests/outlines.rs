@@ -45,8 +45,8 @@ fn design(width: usize, height: usize, shapes: &[Vec<DVec2>]) -> Design {
     Design { unwarped, light, valid }
 }
 
-/// The maximum distance of a point on the ring `from` to the ring `to` (one-sided Hausdorff distance). Points closer
-/// than `spared` to one of `corners` are ignored.
+/// The maximum distance of a point on the outline `from` to the outline `to` (one-sided Hausdorff distance). Points
+/// closer than `spared` to one of `corners` are ignored.
 fn distance(from: &[DVec2], to: &[DVec2], corners: &[DVec2], spared: f64) -> f64 {
     let sides = || to.iter().copied().zip(to.iter().copied().cycle().skip(1));
     let nearest = |p: DVec2| {

@@ -24,14 +24,14 @@ use likeness::Shape;
 use tilt::{Found, Tilt};
 
 /// Minimum number of shapes: two shapes of one kind give six measurements (the size and the two components of the
-/// stretch of each) for the five unknowns [convention].
+/// stretch of each) for the five unknowns. [convention]
 const MIN_SHAPES: usize = 2;
 /// A tilt is accepted only if it decreases the cost of the shapes by at least this, compared with the tilt that the
-/// lines imply. The cost is on the scale of a chi-square [bench photos:tune].
+/// lines imply. The cost is on the scale of a chi-square. [bench photos:tune]
 const MIN_GAIN: f64 = 15.0;
 /// Maximum cost of an accepted tilt: as a share of the cost of the tilt that the lines imply (`MAX_SHARE`), and per
-/// shape (`MAX_COST`). These limits reject shapes of several kinds, whose cost is high at every tilt
-/// [bench photos:tune].
+/// shape (`MAX_COST`). These limits reject shapes of several kinds, whose cost is high at every tilt.
+/// [bench photos:tune]
 const MAX_SHARE: f64 = 0.3;
 const MAX_COST: f64 = 1.5;
 

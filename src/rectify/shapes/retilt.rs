@@ -8,13 +8,14 @@ use crate::rectify::{VanishingPoint, View, camera, manhattan};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// Limits for accepting the correction of the tilt by the lines: the maximum increase of the shapes' cost, and the
-/// minimum score of the corrected axes, about the share of the lines that run along them [bench photos:tune].
+/// Limits for accepting the correction of the tilt by the lines. `MAX_LOSS`: maximum increase of the shapes' cost.
+/// `MIN_EXPLAINED`: minimum score of the corrected axes; the score is about the share of the lines that run along the
+/// axes. [bench photos:tune]
 const MAX_LOSS: f64 = 2.0;
 const MIN_EXPLAINED: f64 = 0.5;
-/// Number of rotations about the normal that are tried within a right angle [convention].
+/// Number of rotations about the normal that are tried within a right angle. [convention]
 const ROTATIONS: usize = 360;
-/// Minimum number of segments that determine a direction [convention].
+/// Minimum number of segments that determine a direction. [convention]
 const MIN_SUPPORT: usize = 3;
 
 impl View {

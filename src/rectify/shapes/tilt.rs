@@ -10,32 +10,32 @@ use crate::rectify::focal::Expected;
 use crate::rectify::sphere::{STRAIGHTNESS, outer, round_covariance};
 use glam::{DMat3, DVec3};
 
-/// Number of plane normals tried, spread over the sphere about 6 degrees apart [convention].
+/// Number of plane normals tried, spread over the sphere about 6 degrees apart. [convention]
 const DIRECTIONS: usize = 1000;
 /// Number of focal lengths tried on either side of the expected focal length, and the logarithm of the ratio between
-/// neighbouring focal lengths [convention].
+/// neighbouring focal lengths. [convention]
 const FOCALS: i32 = 2;
 const FOCAL_STEP: f64 = 0.4;
-/// A focal length counts as known if the standard deviation of its logarithm is below this [bench photos:tune].
+/// A focal length counts as known if the standard deviation of its logarithm is below this. [bench photos:tune]
 const KNOWN_FOCAL: f64 = 0.1;
-/// Step, in radians and in the logarithm of the focal length, of the finite differences that measure the curvature of
-/// the cost at its minimum. A wide step smooths the kinks that medians and limits make in the cost
-/// [bench photos:tune].
+/// Step of the finite differences that measure the curvature of the cost at its minimum, in radians and in the
+/// logarithm of the focal length. A wide step smooths the kinks that medians and limits make in the cost.
+/// [bench photos:tune]
 const WIDTH: f64 = 0.02;
-/// Number of tilts of the coarse search that are refined [bench photos:tune].
+/// Number of tilts of the coarse search that are refined. [bench photos:tune]
 const STARTS: usize = 12;
-/// First and last step of the refinement, in radians [convention].
+/// First and last step of the refinement, in radians. [convention]
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-4;
 /// Maximum cost of a deviation from the normal that the lines imply, in variances. The cost is limited because the
-/// lines may be entirely wrong [bench photos:tune].
+/// lines may be entirely wrong. [bench photos:tune]
 const MAX_LINES_COST: f64 = 9.0;
 /// Standard deviation of the camera's roll in radians, and the maximum cost of a roll in variances. Most photographers
-/// hold the camera upright [bench photos:tune].
+/// hold the camera upright. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
 /// Minimum cosine of the angle between the normal found and the normal from the lines: both normals must put the plane
-/// on the same side of the camera [bench photos:tune].
+/// on the same side of the camera. [bench photos:tune]
 const MIN_COSINE: f64 = 0.2;
 
 /// The normal of a plane, which points away from the camera, and the focal length in pixels.

@@ -10,13 +10,14 @@ use crate::image::try_vec;
 const MAX_AREA: f64 = 0.3;
 /// Minimum number of pixels of a lamp; smaller regions are noise. [judged on 28 photos]
 pub const MIN_AREA: f64 = 6.0;
-/// Minimum share of a stroke's pixels that a region under it holds. A region with less is touched by the stroke's edge
-/// only. [judged on 28 photos]
+/// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
+/// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
 /// A region this many times as long as its stroke gets half the gain. [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
-/// Exponent of the share of the stroke's pixels in a region's gain. Because it is above 1, one region has a larger
-/// gain than its parts together, at equal contrast. [judged on 44 photos]
+/// Exponent of the share of the stroke's pixels in a region's gain, the score by which regions under a stroke compete.
+/// Because the exponent is above 1, one region has a larger gain than its parts together, at equal contrast.
+/// [judged on 44 photos]
 const COVER_POWER: f64 = 1.1;
 /// Exponent of the purity in a region's gain. Purity is the share of positive pixels among the painted pixels of the
 /// region. The power all but rules out regions with many negative pixels. [judged on 28 photos]

@@ -1,5 +1,6 @@
-//! Finds regions without a stroke that look like the painted lamps: similar in brightness, colour, size, shape, and in
-//! sharpness against the plane around them. Regions that almost meet these criteria are reported as doubtful.
+//! Finds regions without a stroke that look like the painted lamps, the regions under the user's positive strokes:
+//! similar in brightness, colour, size, shape, and in sharpness against the plane around them. Regions that almost
+//! meet these criteria are reported as doubtful.
 
 use super::painted::MIN_AREA;
 use super::regions::{Brightness, Regions};
@@ -10,41 +11,44 @@ use crate::image::{Image, try_collect, try_push, try_vec};
 use crate::job::Job;
 use std::ops::RangeInclusive;
 
-/// Maximum amount by which a lamp may be darker than the darkest painted lamp, in L*. [judged on 28 photos]
+/// Maximum amount by which a lamp may be darker than the darkest lamp under a stroke, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
-/// Maximum distance of a lamp's colour from that of the nearest painted lamp, in a* and b*. [judged on 28 photos]
+/// Maximum distance of a lamp's colour from that of the nearest lamp under a stroke, in a* and b*.
+/// [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Minimum contrast along a lamp's contour, relative to the median of the painted lamps. It is below 1 because distant
-/// lamps are small and blurred. [judged on 28 photos]
+/// Minimum contrast along a lamp's contour, relative to the median of the lamps under the strokes. It is below 1
+/// because distant lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Minimum contrast to the ring around a lamp, relative to the median of the painted lamps. [judged on 28 photos]
+/// Minimum contrast to the ring of pixels around a lamp, relative to the median of the lamps under the strokes.
+/// [judged on 28 photos]
 const RING: f64 = 0.5;
-/// Minimum solidity (see `Regions::solidity`), relative to the least solid painted lamp. [judged on 28 photos]
+/// Minimum solidity (see `Regions::solidity`), relative to the least solid lamp under a stroke. [judged on 28 photos]
 const SOLIDITY: f64 = 0.85;
-/// Minimum area, relative to the smallest painted lamp: at three times the distance, a lamp in a ceiling is a third as
-/// wide and, foreshortened, a ninth as high. [convention]
+/// Minimum area, relative to the smallest lamp under a stroke: at three times the distance, a lamp in a ceiling is a
+/// third as wide and, foreshortened, a ninth as high. [convention]
 const SMALLER: f64 = 1.0 / 27.0;
-/// Maximum area in pixels, relative to the largest painted lamp, if the room has no box layout. [judged on 28 photos]
+/// Maximum area in pixels, relative to the largest lamp under a stroke, if the room has no box layout.
+/// [judged on 28 photos]
 const LARGER: f64 = 1.6;
-/// The area of a lamp on the plane may be this factor below the smallest or above the largest painted lamp: bloom and
-/// blur enlarge distant lamps. [judged on 44 photos]
+/// The area of a lamp on the plane may be up to this factor smaller than that of the smallest lamp under a stroke, or
+/// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
-/// A lamp of a smaller kind, of which no lamp is painted, has at least this share of the minimum area of a painted
-/// kind on the plane, and at least this likeness, and this share of the ring around it lies on the plane.
+/// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind, if it reaches
+/// this share of their minimum area, this likeness, and if this share of the ring around it lies on the plane.
 /// [bench photos:tune, photos:real]
 const SMALLER_KIND: f64 = 0.25;
 const SURE: f64 = 1.2;
 const SURELY_ON_PLANE: f64 = 0.9;
-/// The aspect of a lamp on the plane may be `ROUNDER` times below the least and `LONGER` times above the largest
-/// aspect of the painted lamps. Blur widens thin lamps, and lengthens distant lamps along the line of sight.
-/// [bench photos:tune]
+/// The aspect of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of the lamps under the
+/// strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and lengthens distant
+/// lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// Area and shape on the plane are taken from painted lamps with at least this share of the pixels of the largest one.
-/// [judged on 44 photos]
+/// Area and shape on the plane are taken from lamps under the strokes with at least this share of the pixels of the
+/// largest one. [judged on 44 photos]
 const SHOWN: f64 = 0.01;
-/// Maximum breadth in pixels, relative to the broadest painted lamp, if the room has no box layout. [judged on 28
-/// photos]
+/// Maximum breadth in pixels, relative to the broadest lamp under a stroke, if the room has no box layout.
+/// [judged on 28 photos]
 const BROADER: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
@@ -62,8 +66,8 @@ const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 const IN_ROW: f64 = 0.25;
 /// Maximum aspect of a round lamp. Round lamps are often scattered, other lamps lie in rows. [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a painted
-/// lamp. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
+/// Maximum CIELAB difference between the ring of pixels around a region off the plane and the ring around a lamp under
+/// a stroke. Up to this difference, the region's surroundings count as plane. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
 /// Exponent of a candidate's area in its rank. Of nested regions with almost equally sharp contours, the largest is
 /// tried first. [judged on 44 photos]
@@ -80,27 +84,27 @@ fn sharpness(area: f64) -> f64 {
     1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
 }
 
-/// Regions that no stroke touches but that resemble the painted lamps.
+/// Regions that no stroke touches but that resemble the lamps under the strokes.
 #[derive(Default)]
 pub struct Similar {
     pub found: Vec<u32>,
-    /// Regions on the plane whose likeness to the painted lamps is just below the minimum for a lamp.
+    /// Regions on the plane whose likeness to the lamps under the strokes is just below the minimum for a lamp.
     pub doubtful: Vec<u32>,
     /// Regions off the plane that would count as lamps if the plane continued there.
     pub beyond: Vec<u32>,
 }
 
-/// The size and aspect of a region, compared with those of the painted lamps.
+/// The size and aspect of a region, compared with those of the lamps under the strokes.
 #[derive(Clone, Copy, PartialEq)]
 enum Size {
-    /// Like a painted lamp, or like a painted lamp that the photo's border cuts.
+    /// Like a lamp under a stroke, or like such a lamp cut by the photo's border.
     Painted,
-    /// Smaller than the painted lamps, as lamps of another kind may be.
+    /// Smaller than the lamps under the strokes, as a lamp of another kind may be.
     Smaller,
     Other,
 }
 
-/// The limits that a lamp must meet, derived from the painted lamps.
+/// The limits that a lamp must meet, derived from the lamps under the strokes.
 struct Model {
     min_area: f64,
     max_area: f64,
@@ -110,7 +114,7 @@ struct Model {
     min_lightness: f64,
     min_solidity: f64,
     colours: Vec<[f64; 3]>,
-    /// Colours of the rings around the painted lamps.
+    /// Median colours of the rings of pixels around the lamps under the strokes.
     rings: Vec<[f64; 3]>,
     /// Minimum contrast along the contour, and minimum contrast to the ring, for a lamp so large that blur does not
     /// reduce them.
@@ -119,7 +123,7 @@ struct Model {
 }
 
 impl Model {
-    /// Whether a ring has the colour of the ring around one of the painted lamps.
+    /// Whether a ring has about the colour of the ring around one of the lamps under the strokes.
     fn is_beside(&self, ring: &Surroundings) -> bool {
         let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
@@ -142,7 +146,7 @@ pub struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Finds regions that are like the `painted` ones; these are not part of the result.
+    /// Finds regions that are like the `painted` ones. The result does not include the painted regions themselves.
     pub fn run(&self, painted: &[u32], job: Job) -> Result<Similar> {
         let Self { tree, photo, .. } = *self;
         let mut taken = try_vec(tree.node_of.len(), false)?;
@@ -261,7 +265,7 @@ impl Search<'_> {
         }))
     }
 
-    /// Compares the size and aspect of a node with those of the painted lamps. They are measured on the plane if the
+    /// Compares the size and aspect of a node with those of the lamps under the strokes. They are measured on the plane if the
     /// room has a box layout, else in the photo. A lamp that the photo's border cuts may be much smaller.
     fn size(&self, model: &Model, node: usize) -> Size {
         let regions = self.regions;
@@ -320,7 +324,7 @@ impl Search<'_> {
         surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }
 
-    /// Likeness of a node to the painted lamps, apart from its surroundings: the least of its likenesses in
+    /// Likeness of a node to the lamps under the strokes, apart from its surroundings: the least of its likenesses in
     /// brightness, colour and contour contrast. A value of at least 1 means that the node meets all limits. The
     /// likeness is 0 if size, shape or negative strokes rule the node out.
     fn likeness(&self, model: &Model, node: usize) -> f64 {
