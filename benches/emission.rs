@@ -213,8 +213,8 @@ fn luminance() -> f64 {
 fn patterns() {
     let methods: [(&str, Params); 3] = [
         ("default", Params::default()),
-        ("as in the paper", Params { least_regularity: 1.0, whole_lamps: false, ..Params::default() }),
-        ("quilting", Params { least_regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
+        ("as in the paper", Params { min_regularity: 1.0, whole_lamps: false, ..Params::default() }),
+        ("quilting", Params { min_regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
     ];
     let mut table = Table::new(["design", "method"].into_iter().chain(STATISTICS).chain(["broken", "stated error %"]));
     let (mut ours, mut behind) = (Score::default(), 0);
@@ -278,7 +278,7 @@ fn knobs() {
     let filled = design.filled_in(&exemplar);
     let mut point = |working_side: usize, relative: f64, candidates: usize| {
         let block = (relative * 60.0 * working_side as f64 / 480.0) as usize;
-        let free = Params { width: 1024, height: 1024, least_regularity: 1.0, ..Params::default() };
+        let free = Params { width: 1024, height: 1024, min_regularity: 1.0, ..Params::default() };
         let params = Params { working_side, block, candidates, ..free };
         let (seconds, result) = time(Clock::Wall, || exemplar.run(&params));
         let score = Score::of(&result, design, filled, luminance());

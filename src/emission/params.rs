@@ -30,7 +30,7 @@ pub enum Law {
     /// The law that predicts the lamps of the photo best. The law found by autocorrelation is kept unless another one
     /// scores clearly higher.
     Best,
-    /// The law found by the autocorrelation of the lights, with `least_regularity` as its threshold.
+    /// The law found by the autocorrelation of the lights, with `min_regularity` as its threshold.
     Correlation,
     /// The lattice (for `Row`, the row of lamps) found by the autocorrelation; if there is none, the best of all
     /// proposed ones.
@@ -66,7 +66,7 @@ pub struct Params {
     pub offset: DVec2,
     /// Minimum autocorrelation at which the lights count as regular, in `[0, 1]`. At 0, any repetition is followed
     /// exactly; at 1, none is, and patches are placed without a lattice.
-    pub least_regularity: f32,
+    pub min_regularity: f32,
     /// The law by which the lights continue beyond the exemplar: lattice, row, repetition or none.
     pub law: Law,
     /// Maximum magnification of the parts of the exemplar that are used, in length and relative to the least magnified
@@ -107,7 +107,7 @@ impl Default for Params {
             working_side: 256,
             metadata_weight: 1.0,
             offset: DVec2::ZERO,
-            least_regularity: 0.6,
+            min_regularity: 0.6,
             law: Law::Best,
             max_magnification: 0.0,
             whole_lamps: true,
@@ -133,7 +133,7 @@ impl Params {
         check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
         check_range("emission.offset.x", self.offset.x, -1e6, 1e6)?;
         check_range("emission.offset.y", self.offset.y, -1e6, 1e6)?;
-        check_range("emission.min_regularity", self.least_regularity, 0.0, 1.0)?;
+        check_range("emission.min_regularity", self.min_regularity, 0.0, 1.0)?;
         if self.max_magnification != 0.0 {
             check_range("emission.max_magnification", self.max_magnification, 1.0, 1e6)?;
         }

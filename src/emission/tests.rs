@@ -372,7 +372,7 @@ fn odd_sizes_give_finite_results() {
     // An exemplar that is entirely light.
     let all = Design::new(60, 50, |_, _| true);
     for params in
-        [Params { width: 150, height: 130, ..Params::default() }, Params { least_regularity: 1.0, ..Params::default() }]
+        [Params { width: 150, height: 130, ..Params::default() }, Params { min_regularity: 1.0, ..Params::default() }]
     {
         let result = all.run(&params).unwrap();
         assert!(result.mask.data.iter().all(|&m| m == 1.0) && result.texture.count_non_finite() == 0);

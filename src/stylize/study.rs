@@ -80,8 +80,12 @@ impl Study {
         for i in (0..changed.data.len()).filter(|&i| changed.data[i] > 0.5) {
             self.pending[i] = true;
             let pixel = i * channels..(i + 1) * channels;
-            self.artwork.data[pixel.clone()].copy_from_slice(&artwork.data[pixel.clone()]);
-            self.encoded.data[pixel.clone()].iter_mut().zip(&artwork.data[pixel]).for_each(|(e, v)| *e = encoded(*v));
+            let painted = artwork.data[pixel.clone()].iter().map(|v| if v.is_finite() { *v } else { 0.0 });
+            for ((linear, display), v) in
+                self.artwork.data[pixel.clone()].iter_mut().zip(&mut self.encoded.data[pixel]).zip(painted)
+            {
+                (*linear, *display) = (v, encoded(v));
+            }
         }
         let halved;
         let changed = if self.problem.is_of(artwork) {

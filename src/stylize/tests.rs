@@ -457,6 +457,15 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
         assert_eq!(late.repaint(&art, &changed, stopped.job()).unwrap_err().kind, ErrorKind::Cancelled);
         let nothing = Image::new(80, 60, 1).unwrap();
         assert!(late.repaint(&art, &nothing, Monitor::default().job()).unwrap() == after);
+
+        // Paint that is not finite counts as black.
+        let (mut bad, mut black) = (art.try_clone().unwrap(), art.try_clone().unwrap());
+        for (i, _) in changed.data.iter().enumerate().filter(|(_, c)| **c > 0.5) {
+            bad.data[3 * i..3 * i + 3].copy_from_slice(&[f32::NAN, f32::INFINITY, f32::NEG_INFINITY]);
+            black.data[3 * i..3 * i + 3].fill(0.0);
+        }
+        let picture = study.repaint(&bad, &changed, Monitor::default().job()).unwrap();
+        assert!(picture == late.repaint(&black, &changed, Monitor::default().job()).unwrap());
     }
 }
 

@@ -38,12 +38,12 @@ const PARALLEL: f64 = 0.3;
 
 /// Finds how the exemplar's lights continue (the law: lattice, row, repetition or none) from their autocorrelation.
 /// Also returns the regularity: the lower correlation of the two periods, 0 without a period. A shift may be a period
-/// if its correlation is at least `least_regularity`; at 1 there are no periods.
-pub fn law(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> (Continuation, f64) {
-    if least_regularity >= 1.0 {
+/// if its correlation is at least `min_regularity`; at 1 there are no periods.
+pub fn law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> (Continuation, f64) {
+    if min_regularity >= 1.0 {
         return (Continuation::Free, 0.0);
     }
-    let periods = periods(exemplar, correlated, least_regularity);
+    let periods = periods(exemplar, correlated, min_regularity);
     let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let extent = extent::of(exemplar);
     match periods[..] {
@@ -102,9 +102,9 @@ impl Correlated {
 
 /// At most two shifts that map the pattern of lights onto itself, with their correlations: the shortest one, and the
 /// next that is not parallel to it.
-fn periods(exemplar: &Exemplar, correlated: &Correlated, least_regularity: f32) -> Vec<(DVec2, f64)> {
+fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
-    for (shift, value) in shifts(exemplar, correlated, least_regularity, RELATIVE_CORRELATION, usize::MAX) {
+    for (shift, value) in shifts(exemplar, correlated, min_regularity, RELATIVE_CORRELATION, usize::MAX) {
         if periods.len() < 2 && !periods.iter().any(|p| is_parallel(p.0, shift)) {
             periods.push((shift, value));
         }

@@ -74,7 +74,7 @@ pub struct Reading {
     pub choice: Choice,
     /// The settings with which the exemplar was analysed.
     working_side: f64,
-    least_regularity: f32,
+    min_regularity: f32,
     law: Law,
     max_magnification: f64,
 }
@@ -104,22 +104,22 @@ impl Reading {
     /// Finds the law of continuation for an exemplar that has been built already.
     pub fn of(exemplar: Exemplar, input: &Input, params: &Params, job: Job) -> Result<Self> {
         let working_side = working_side(input, params);
-        let least_regularity = params.least_regularity;
+        let min_regularity = params.min_regularity;
         let whole = Correlated::new(&exemplar, |_| true, job.part(0.4, 0.6))?;
-        let (continuation, regularity) = lattice::law(&exemplar, &whole, least_regularity);
+        let (continuation, regularity) = lattice::law(&exemplar, &whole, min_regularity);
         let mut reading = Self {
             choice: Choice::only(continuation),
             exemplar,
             continuation,
             regularity,
             working_side,
-            least_regularity,
+            min_regularity,
             law: params.law,
             max_magnification: params.max_magnification,
         };
         match params.law {
             Law::Correlation => {}
-            Law::Best if least_regularity >= 1.0 => {}
+            Law::Best if min_regularity >= 1.0 => {}
             Law::Best => reading.compare(&whole, job.part(0.6, 1.0))?,
             Law::Whole => reading.set(Proposal::lawless(extent::as_period(&reading.exemplar))),
             Law::Free => reading.set(Proposal::lawless(Continuation::Free)),
@@ -133,7 +133,7 @@ impl Reading {
         let Exemplar { width, height, .. } = self.exemplar;
         [width, height] == [input.unwarped.width, input.unwarped.height]
             && self.working_side == working_side(input, params)
-            && self.least_regularity == params.least_regularity
+            && self.min_regularity == params.min_regularity
             && self.law == params.law
             && self.max_magnification == params.max_magnification
     }
@@ -192,7 +192,7 @@ impl Reading {
         Ok(())
     }
 
-    /// Proposes laws from the whole exemplar and from its sharper parts: the law at threshold `least_regularity`, and
+    /// Proposes laws from the whole exemplar and from its sharper parts: the law at threshold `min_regularity`, and
     /// rows and lattices at looser thresholds. A luminous ceiling also gets lattices from the distances between
     /// neighbouring panes.
     fn propose(&self, evidence: &[Evidence], whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
@@ -208,7 +208,7 @@ impl Reading {
         let mut proposals = Vec::new();
         let extent = extent::of(exemplar);
         for correlated in std::iter::once(whole).chain(&parts) {
-            let (continuation, regularity) = lattice::law(exemplar, correlated, self.least_regularity);
+            let (continuation, regularity) = lattice::law(exemplar, correlated, self.min_regularity);
             proposals.push(Proposal { continuation, regularity, score: 0.0 });
             let shifts = lattice::shifts(exemplar, correlated, PROPOSED, PROPOSED_RELATIVE, MAX_SHIFTS);
             for (n, &(a, goodness)) in shifts.iter().enumerate() {
