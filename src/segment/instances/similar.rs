@@ -34,10 +34,9 @@ const LARGER: f64 = 1.6;
 /// larger than that of the largest: bloom and blur enlarge distant lamps. [judged on 44 photos]
 const SURFACE: f64 = 4.0;
 /// A region that is smaller on the plane than the lamps under the strokes may be a lamp of another kind, if it reaches
-/// this share of their minimum area, this likeness, and if this share of the ring around it lies on the plane.
+/// this share of their minimum area, and if this share of the ring around it lies on the plane.
 /// [bench photos:tune, photos:real]
 const SMALLER_KIND: f64 = 0.25;
-const SURE: f64 = 1.2;
 const SURELY_ON_PLANE: f64 = 0.9;
 /// The aspect of a lamp on the plane may be up to `ROUNDER` times smaller than the least aspect of the lamps under the
 /// strokes, and up to `LONGER` times larger than their largest aspect. Blur widens thin lamps, and lengthens distant
@@ -170,7 +169,7 @@ impl Search<'_> {
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
             let likeness = likeness.min(ring.contrast / (model.ring * sharpness(self.regions.area[node as usize])));
             if self.size(&model, node as usize) == Size::Smaller {
-                if likeness >= SURE && ring.on_plane >= SURELY_ON_PLANE {
+                if likeness >= 1.0 && ring.on_plane >= SURELY_ON_PLANE {
                     try_push(&mut smaller, node)?;
                     chosen.choose(node);
                 }
