@@ -27,7 +27,7 @@ ADVICE = {
     "IMPLAUSIBLE_SIZE": "try --units with the unit of the file",
     "FOCAL_ASSUMED": "try a photo that shows two walls",
     "UNSEEN": "try one more stroke there; --preview-masks masks.png shows the place",
-    "UNCERTAIN_MASK": "try a stroke on each surface that the mask takes for another; --preview-masks masks.png shows it",
+    "UNCERTAIN_MASK": "try a stroke on what the mask takes for another surface; --preview-masks masks.png shows it",
     "MAGNIFIED": "try a photo of more pixels, or one that looks more towards the plane",
     "NO_LATTICE": "try strokes on the lamps that the mask leaves out, if the lamps are regular",
     "UNREACHABLE": "try --white with a higher luminance, or a scene with less other light",

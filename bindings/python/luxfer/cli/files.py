@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import values
-from .console import doubt, described
+from .console import described, doubt
 from .exits import failed, unreadable, usage
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ DEMO_IMAGES = ("photo", "strokes")
 USD = (".usd", ".usda", ".usdc", ".usdz")
 GLTF = (".glb", ".gltf")
 
-#: Light of the demonstration photo's noise: it is small, so that it is quickly made.
-DEMO_PHOTO = {"width": 600, "height": 400}
+#: Size of the demonstration photo.
+DEMO_PHOTO: Any = {"width": 600, "height": 400}
 
 
 def context_of(args: argparse.Namespace) -> Context:
@@ -180,4 +180,6 @@ def likeliest_surface(scene: Scene, name: str | None) -> tuple[str, list[dict[st
         return best.name, []
     others = ", ".join(c.name for c in candidates[1:4])
     message = f'"{best.name}" was taken for the ceiling, which it hardly resembles ({best.reason})'
-    return best.name, [doubt("scene", "surface-guessed", message, f"try --surface NAME ({others}); `luxfer surfaces` lists all")]
+    return best.name, [
+        doubt("scene", "surface-guessed", message, f"try --surface NAME ({others}); `luxfer surfaces` lists all")
+    ]

@@ -81,18 +81,25 @@ def scene_words(found: dict[str, Any]) -> list[str]:
     if found["low_m"] is not None:
         size = found["high_m"] - found["low_m"]
         lines.append(
-            f"size {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m (x, y up, z), from {point(found['low_m'])} to {point(found['high_m'])}"
+            f"size {size[0]:.2f} x {size[1]:.2f} x {size[2]:.2f} m (x, y up, z), "
+            f"from {point(found['low_m'])} to {point(found['high_m'])}"
         )
-    lines.append(f"light: {found['lights']} punctual lights and luminaires, {found['emitting_materials']} emitting materials")
+    lines.append(
+        f"light: {found['lights']} punctual lights and luminaires, {found['emitting_materials']} emitting materials"
+    )
     for index, camera in enumerate(found["camera_list"][:LISTED]):
         degrees = math.degrees(camera["fov_y"])
-        lines.append(f"camera {index}: at {point(camera['position'])}, towards {point(camera['target'])}, {degrees:.0f}°")
+        lines.append(
+            f"camera {index}: at {point(camera['position'])}, towards {point(camera['target'])}, {degrees:.0f}°"
+        )
     if not found["camera_list"]:
         lines.append("no camera: give --camera POSITION/TARGET to render it")
     if found["likeliest_ceiling"]:
         lines.append(f'likeliest ceiling: "{found["likeliest_ceiling"]}" (`luxfer surfaces` lists all)')
     largest = sorted(found["mesh_list"], key=lambda mesh: -mesh["triangles"])[:LISTED]
-    lines.append("largest meshes: " + ", ".join(f"{mesh['name'] or '(no name)'} ({mesh['triangles']})" for mesh in largest))
+    lines.append(
+        "largest meshes: " + ", ".join(f"{mesh['name'] or '(no name)'} ({mesh['triangles']})" for mesh in largest)
+    )
     return lines
 
 
@@ -129,9 +136,13 @@ def image_words(found: dict[str, Any]) -> list[str]:
     """A picture in lines."""
     data = found["metadata"]
     colours = {
-        "none": "generated", "assumed": "not stated, taken as sRGB", "stated": "as stated", "converted": "converted to Rec.709",
-        "unconverted": "in a colour space that cannot be converted: export it as sRGB", "data": "taken as data",
-    }  # fmt: skip
+        "none": "generated",
+        "assumed": "not stated, taken as sRGB",
+        "stated": "as stated",
+        "converted": "converted to Rec.709",
+        "unconverted": "in a colour space that cannot be converted: export it as sRGB",
+        "data": "taken as data",
+    }
     lines = [
         f"picture: {found['width']} x {found['height']}, {found['channels']} channels; colours "
         f"{colours.get(data['colour'].name.lower(), data['colour'].name.lower())}",
@@ -184,8 +195,10 @@ def luminaire_words(found: dict[str, Any]) -> list[str]:
     size = " x ".join(f"{abs(side):.3g}" for side in found["size"])
     return [
         f"luminaire: {found['name'] or '(no name)'}",
-        f"{found['flux']:.0f} lm{power}; lamps {found['lamp_flux']:.0f} lm" if found["lamp_flux"] else f"{found['flux']:.0f} lm{power}",
+        f"{found['flux']:.0f} lm{power}; lamps {found['lamp_flux']:.0f} lm"
+        if found["lamp_flux"]
+        else f"{found['flux']:.0f} lm{power}",
         f"{found['planes']} planes of {found['angles']} angles; luminous opening {size} m",
-        f"{found['intensity_down_cd']:.0f} cd straight down, {found['peak_cd']:.0f} cd at C {found['peak_c_degrees']}, "
-        f"gamma {found['peak_gamma_degrees']} degrees",
+        f"{found['intensity_down_cd']:.0f} cd straight down, {found['peak_cd']:.0f} cd at C "
+        f"{found['peak_c_degrees']}, gamma {found['peak_gamma_degrees']} degrees",
     ]

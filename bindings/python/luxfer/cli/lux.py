@@ -1,7 +1,7 @@
 """Calculate illuminance in lux on a surface, or on a plane at the height of a desk.
 
-Prints mean, minimum, maximum and the uniformity U0 = minimum / mean. Without --surface and --rect the plane lies above the
-floor under the likeliest ceiling, 0.5 m off its walls."""
+Prints mean, minimum, maximum and the uniformity U0 = minimum / mean. Without --surface and --rect the plane lies above
+the floor under the likeliest ceiling, 0.5 m off its walls."""
 
 from __future__ import annotations
 
@@ -39,14 +39,26 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="LENGTH",
         help="height of the plane above the floor; default 0.75 m; with --rect it is y in the scene's coordinates",
     )
-    parser.add_argument("--spacing", type=values.above_zero, default=0.25, metavar="LENGTH", help="between points; default 0.25 m")
     parser.add_argument(
-        "--error", type=values.share, default=0.01, metavar="SHARE", help="standard error of the mean, relative to it; default 1%%"
+        "--spacing", type=values.above_zero, default=0.25, metavar="LENGTH", help="between points; default 0.25 m"
+    )
+    parser.add_argument(
+        "--error",
+        type=values.share,
+        default=0.01,
+        metavar="SHARE",
+        help="standard error of the mean, relative to it; default 1%%",
     )
     parser.add_argument("--out", metavar="FILE.png", help="draw the values in false colours")
-    parser.add_argument("--csv", metavar="FILE.csv", help="write x, y, z in metres, lux and its standard error for each point")
-    parser.add_argument("--sky", type=values.number(0, 1e9, "a luminance in cd/m²"), metavar="CD", help="add light from everywhere")
-    parser.add_argument("--seed", type=values.whole(0, 2**32 - 1, "a seed"), default=1, metavar="N", help="seed of the paths")
+    parser.add_argument(
+        "--csv", metavar="FILE.csv", help="write x, y, z in metres, lux and its standard error for each point"
+    )
+    parser.add_argument(
+        "--sky", type=values.number(0, 1e9, "a luminance in cd/m²"), metavar="CD", help="add light from everywhere"
+    )
+    parser.add_argument(
+        "--seed", type=values.whole(0, 2**32 - 1, "a seed"), default=1, metavar="N", help="seed of the paths"
+    )
     options.add_units(parser)
     options.add_common(parser)
 
@@ -89,8 +101,8 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     }
     lines = [
         f"{plane.words}: {report.points} points, {columns} x {rows_}",
-        f"mean {report.mean:.4g} lux ± {2 * report.mean_error:.2g}, minimum {report.minimum:.4g}, maximum {report.maximum:.4g}, "
-        f"U0 {uniformity:.2f}",
+        f"mean {report.mean:.4g} lux ± {2 * report.mean_error:.2g}, minimum {report.minimum:.4g}, "
+        f"maximum {report.maximum:.4g}, U0 {uniformity:.2f}",
     ]
     return console.finish(result, lines, files.scene_warnings(scene) + warnings + doubts(found, args.error))
 

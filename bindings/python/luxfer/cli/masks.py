@@ -88,15 +88,17 @@ class Masks:
             "plane_error": self.plane_error,
             "lights_share": float((self.lights > 0.5).mean()),
             "lights_error": self.lights_error,
-            "next_stroke": None if self.place is None else {"x": self.place[0], "y": self.place[1], "for": self.place_for},
+            "next_stroke": None
+            if self.place is None
+            else {"x": self.place[0], "y": self.place[1], "for": self.place_for},
         }
 
     def words(self) -> list[str]:
         """The masks in lines."""
         facts = self.facts()
         lines = [
-            f"green: the plane, {percent(facts['plane_share'])} of the photo (expected to be wrong in {percent(self.plane_error)} of it)",
-            f"yellow: lamps, {percent(facts['lights_share'])} of the photo (wrong in {percent(self.lights_error)})",
+            f"green: the plane, {percent(facts['plane_share'])} of the photo; wrong in {percent(self.plane_error)}",
+            f"yellow: lamps, {percent(facts['lights_share'])} of the photo; wrong in {percent(self.lights_error)}",
         ]
         if self.place is not None:
             x, y = self.place
@@ -105,8 +107,8 @@ class Masks:
 
 
 def next_stroke(transfer: Transfer, strokes: Strokes | None, plane: Pixels) -> tuple[tuple[int, int] | None, str]:
-    """The pixel of the most doubtful neighbourhood, and the mask that the stroke is for. With strokes doubt is how unlike
-    every stroke a pixel is, without how near to one half its confidence is."""
+    """The pixel of the most doubtful neighbourhood, and the mask that the stroke is for. With strokes, the doubt of a
+    pixel is how unlike every stroke it is; without strokes, how near its confidence is to one half."""
     import numpy as np
 
     if strokes is None:
@@ -130,7 +132,8 @@ def unseen(transfer: Transfer, strokes: Strokes, plane: Pixels) -> dict[str, Pix
 
     features, out = transfer.image("features"), {}
     # As the transfer segments: lamps by colour alone, within the plane.
-    for name, settings in (("plane", {}), ("lights", {"channels": 7})):
+    parts: Any = (("plane", {}), ("lights", {"channels": 7}))
+    for name, settings in parts:
         segment = Segment(transfer.context, features)
         segment.set_strokes(strokes, name)
         if name == "lights":
@@ -154,7 +157,7 @@ def strangest(doubt: Pixels) -> tuple[float, tuple[int, int]]:
     padded = np.zeros((rows * side, columns * side), np.float32)
     padded[:height, :width] = doubt
     cells = np.pad(padded.reshape(rows, side, columns, side).mean((1, 3)), 1)
-    around = sum(cells[i : i + rows, j : j + columns] for i in range(3) for j in range(3)) / 9
+    around: Any = sum(cells[i : i + rows, j : j + columns] for i in range(3) for j in range(3)) / 9
     row, column = np.unravel_index(int(np.argmax(around * (cells[1:-1, 1:-1] > 0))), (rows, columns))
     part = doubt[row * side : (row + 1) * side, column * side : (column + 1) * side]
     y, x = np.unravel_index(int(np.argmax(part)), part.shape)

@@ -108,13 +108,24 @@ class Picture:
         """Reasons to doubt it."""
         out = []
         if self.is_black:
-            out.append(doubt("render", "black", "the picture is black: the scene has no light", "try another camera or --sky 100"))
+            out.append(
+                doubt(
+                    "render",
+                    "black",
+                    "the picture is black: the scene has no light",
+                    "try another camera or --sky 100",
+                )
+            )
         elif not self.report.error <= (ROUGH if self.is_filtered else max(ROUGH / 2, self.goal.error)):
             message = f"the picture has {percent(self.report.error)} of noise"
             out.append(doubt("render", "noise", message, "try a longer --time, or --quality best"))
         elif self.goal.error and self.report.error > 1.2 * self.goal.error:
             message = f"the picture has {percent(self.report.error)} of noise instead of {percent(self.goal.error)}"
-            out.append(doubt("render", "noise", message, f"try --error {100 * self.goal.error:g}%, which has no limit of time"))
+            out.append(
+                doubt(
+                    "render", "noise", message, f"try --error {100 * self.goal.error:g}%, which has no limit of time"
+                )
+            )
         return out
 
     def save(self, path: Path, white: float) -> None:
@@ -125,7 +136,9 @@ class Picture:
             self.exact.save(path)
 
 
-def plan_render(render: Render, args: argparse.Namespace, goal: Goal, passed: float, console: Console) -> dict[str, Any]:
+def plan_render(
+    render: Render, args: argparse.Namespace, goal: Goal, passed: float, console: Console
+) -> dict[str, Any]:
     """The settings of a rendering by a plan."""
     from ..plan import Plan
 

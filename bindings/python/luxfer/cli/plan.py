@@ -1,7 +1,7 @@
 """Predict how long a rendering takes, or how much noise it has, before it is made.
 
-Without a goal, prints the time of several errors. With --photo the plan covers relighting and rendering of a transfer, whose
-earlier stages it runs."""
+Without a goal, prints the time of several errors. With --photo the plan covers relighting and rendering of a transfer,
+whose earlier stages it runs."""
 
 from __future__ import annotations
 
@@ -28,9 +28,13 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--strokes", metavar="FILE", help="strokes on the photo, as for `luxfer transfer`")
     parser.add_argument("--surface", metavar="NAME", help="what receives the lights; default: the likeliest ceiling")
     goal = parser.add_mutually_exclusive_group()
-    goal.add_argument("--error", type=values.share, metavar="SHARE", help="noise of the picture, such as 2%%: how long?")
+    goal.add_argument(
+        "--error", type=values.share, metavar="SHARE", help="noise of the picture, such as 2%%: how long?"
+    )
     goal.add_argument("--time", type=values.seconds, metavar="TIME", help="time such as 30s: how much noise?")
-    parser.add_argument("--seed", type=values.whole(0, 2**32 - 1, "a seed"), default=1, metavar="N", help="seed of the paths")
+    parser.add_argument(
+        "--seed", type=values.whole(0, 2**32 - 1, "a seed"), default=1, metavar="N", help="seed of the paths"
+    )
     options.add_camera(parser)
     options.add_units(parser)
     options.add_common(parser)
@@ -50,7 +54,10 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     rows = [row(plan) for plan in plans]
     result = {"command": "plan", "width": args.size[0], "height": args.size[1], "plans": rows}
     lines = [f"{args.size[0]} x {args.size[1]} pixels"]
-    lines += [f"{percent(r['error']):>8} of noise in {clock(r['seconds']):>8}, {r['paths_per_pixel']} paths per pixel" for r in rows]
+    lines += [
+        f"{percent(r['error']):>8} of noise in {clock(r['seconds']):>8}, {r['paths_per_pixel']} paths per pixel"
+        for r in rows
+    ]
     return console.finish(result, lines, warnings)
 
 
@@ -66,7 +73,9 @@ def row(plan: Plan) -> dict[str, Any]:
     }
 
 
-def of_render(args: argparse.Namespace, console: Console, goals: list[dict[str, Any]]) -> tuple[list[Plan], list[dict[str, Any]]]:
+def of_render(
+    args: argparse.Namespace, console: Console, goals: list[dict[str, Any]]
+) -> tuple[list[Plan], list[dict[str, Any]]]:
     """Plans of a rendering."""
     from .. import Plan, Render
     from . import files, picture
@@ -80,7 +89,9 @@ def of_render(args: argparse.Namespace, console: Console, goals: list[dict[str, 
     return plans, files.scene_warnings(scene)
 
 
-def of_transfer(args: argparse.Namespace, console: Console, goals: list[dict[str, Any]]) -> tuple[list[Plan], list[dict[str, Any]]]:
+def of_transfer(
+    args: argparse.Namespace, console: Console, goals: list[dict[str, Any]]
+) -> tuple[list[Plan], list[dict[str, Any]]]:
     """Plans of a transfer, whose stages up to the texture are run."""
     from .. import Plan
     from . import files, picture, transfer

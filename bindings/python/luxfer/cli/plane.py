@@ -60,7 +60,9 @@ def on_surface(scene: Scene, name: str) -> Plane:
 def level(height: float, rectangle: tuple[float, ...]) -> Plane:
     """A level rectangle X0, Z0, X1, Z1 at a height in the coordinates of the scene."""
     x0, z0, x1, z1 = rectangle
-    return Plane((x0, height, z0), (x1 - x0, 0, 0), (0, 0, z1 - z0), (0, 1, 0), f"the level plane at y = {height:.2f} m")
+    return Plane(
+        (x0, height, z0), (x1 - x0, 0, 0), (0, 0, z1 - z0), (0, 1, 0), f"the level plane at y = {height:.2f} m"
+    )
 
 
 def above_floor(scene: Scene, ceiling: str, height: float = DESK, border: float = BORDER) -> Plane:
@@ -92,7 +94,9 @@ def floor_below(scene: Scene, surface: Surface) -> float:
     hits = scene.intersect(start, np.tile([0.0, -1.0, 0.0], (len(start), 1)))
     below = np.isfinite(hits["t"])
     if not below.any():
-        raise usage("--height: there is no floor under the ceiling; give --rect with --height in the scene's coordinates")
+        raise usage(
+            "--height: there is no floor under the ceiling; give --rect with --height in the scene's coordinates"
+        )
     return float(np.quantile(start[below, 1] - hits["t"][below], 0.1))
 
 

@@ -21,15 +21,25 @@ from .exits import TABLE, Exit, Failure
 SUBCOMMANDS = ("transfer", "render", "lux", "stylise", "sheet", "inspect", "surfaces", "plan", "studio")
 
 DESCRIPTION = """Lighting from one photo onto a 3D scene, rendering, lux, and pictures in the style of an artwork.
-`luxfer SUBCOMMAND --help` explains each; demo: names stand for input that the library makes itself:
+
+`luxfer SUBCOMMAND --help` explains each. Names such as demo:photo stand for input that the library makes itself:
+
   luxfer transfer demo:photo demo:target-room --strokes demo:strokes --out out"""
+
+
+class Paragraphs(argparse.HelpFormatter):
+    """Fills each paragraph of a description, but leaves commands, which are set in."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        fill = super()._fill_text
+        return "\n\n".join(p if p.startswith("  ") else fill(p, width, indent) for p in text.split("\n\n"))
 
 
 class Parser(argparse.ArgumentParser):
     """Errors are one line on stderr; options cannot be abbreviated."""
 
     def __init__(self, **settings: Any) -> None:
-        settings.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        settings.setdefault("formatter_class", Paragraphs)
         super().__init__(allow_abbrev=False, **settings)
 
     def error(self, message: str) -> NoReturn:

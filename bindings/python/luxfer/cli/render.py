@@ -18,18 +18,34 @@ if TYPE_CHECKING:
 
 SUMMARY = "render a scene"
 
-LAYERS = ("depth", "distance", "position", "normal", "geometric-normal", "albedo", "object", "material", "alpha", "luminance")
+LAYERS = (
+    "depth",
+    "distance",
+    "position",
+    "normal",
+    "geometric-normal",
+    "albedo",
+    "object",
+    "material",
+    "alpha",
+    "luminance",
+)
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """The options."""
     parser.add_argument("scene", metavar="SCENE", help=options.SCENE)
-    parser.add_argument("--out", action="append", metavar="FILE", help="the picture, .png or .exr; may be given for both")
+    parser.add_argument(
+        "--out", action="append", metavar="FILE", help="the picture, .png or .exr; may be given for both"
+    )
     options.add_camera(parser)
     options.add_units(parser)
     options.add_white(parser, "luminance shown as white in the PNG, in cd/m²; default: by the picture")
     parser.add_argument(
-        "--sky", type=values.number(0, 1e9, "a luminance in cd/m²"), metavar="CD", help="add light from everywhere around, in cd/m²"
+        "--sky",
+        type=values.number(0, 1e9, "a luminance in cd/m²"),
+        metavar="CD",
+        help="add light from everywhere around, in cd/m²",
     )
     parser.add_argument(
         "--layers",

@@ -1,13 +1,14 @@
 """Print a picture as a sheet to paint on, and read a photo of the painted sheet.
 
-`luxfer sheet print SOURCE --out sheet.png` draws the exemplar pale, between marks: print it without scaling, and paint over it.
-`luxfer sheet read PHOTO --out artwork.png` aligns a photo or scan of it; `luxfer stylise artwork.png` then paints with it. Give
-both the same --paper, --dpi and --size."""
+`luxfer sheet print SOURCE --out sheet.png` draws the exemplar pale, between marks: print it without scaling, and paint
+over it. `luxfer sheet read PHOTO --out artwork.png` aligns a photo or scan of it; `luxfer stylise artwork.png` then
+paints with it. Give both the same --paper, --dpi and --size."""
 
 from __future__ import annotations
 
 import argparse
 import re
+from typing import Any
 
 from . import options, values
 from .console import Console, doubt
@@ -29,13 +30,21 @@ def add(parser: argparse.ArgumentParser) -> None:
         what = f"what to paint: {options.SCENE}; or {options.IMAGE}" if name == "print" else options.IMAGE
         own.add_argument("source", metavar="SOURCE" if name == "print" else "PHOTO", help=what)
         own.add_argument("--out", metavar="FILE.png", help="the sheet, or the artwork")
-        own.add_argument("--paper", type=paper, default=PAPERS["a4"], metavar="PAPER", help="a5, a4, a3, letter, or WxH in mm")
+        own.add_argument(
+            "--paper", type=paper, default=PAPERS["a4"], metavar="PAPER", help="a5, a4, a3, letter, or WxH in mm"
+        )
         own.add_argument("--dpi", type=values.number(20, 1200, "dots per inch"), default=300.0, help="default 300")
-        own.add_argument("--size", type=values.size, default=(640, 480), metavar="WxH", help="of the picture; default 640x480")
+        own.add_argument(
+            "--size", type=values.size, default=(640, 480), metavar="WxH", help="of the picture; default 640x480"
+        )
         if name == "print":
-            own.add_argument("--contrast", type=values.number(0, 1, "a contrast"), default=0.25, help="of the picture; default 0.25")
+            own.add_argument(
+                "--contrast", type=values.number(0, 1, "a contrast"), default=0.25, help="of the picture; default 0.25"
+            )
             options.add_white(own, "luminance of a scene that is shown as paper white; default: by the picture")
-            own.add_argument("--samples", type=values.whole(1, 65536, "paths per pixel"), default=64, help="of a scene; default 64")
+            own.add_argument(
+                "--samples", type=values.whole(1, 65536, "paths per pixel"), default=64, help="of a scene; default 64"
+            )
             options.add_units(own)
         options.add_common(own)
         own.set_defaults(parser=own)
@@ -62,7 +71,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     return draw(args, console) if args.part == "print" else read(args, console)
 
 
-def settings(args: argparse.Namespace) -> dict[str, float]:
+def settings(args: argparse.Namespace) -> dict[str, Any]:
     """What print and read must have in common."""
     return {"paper_width": args.paper[0], "paper_height": args.paper[1], "dpi": args.dpi}
 
@@ -78,8 +87,13 @@ def draw(args: argparse.Namespace, console: Console) -> Exit:
         scene = files.load_scene(context, args.source, args.units)
         render = Render(context, scene)
         render.set_camera(picture.camera_of(scene, None))
-        found = picture.run(render, {"width": width, "height": height, "samples": args.samples}, picture.Goal(), console)
-        image = found.exact.numpy() / (args.white or picture.automatic_white(found))
+        found = picture.run(
+            render,
+            {"width": width, "height": height, "samples": args.samples, "preview": picture.FILTER},
+            picture.Goal(),
+            console,
+        )
+        image = found.shown.numpy() / (args.white or picture.automatic_white(found))
     else:
         image = files.load_image(context, args.source).numpy()
         height, width, _ = image.shape
@@ -87,9 +101,16 @@ def draw(args: argparse.Namespace, console: Console) -> Exit:
     sheet.save(args.out)
     console.wrote(args.out)
     pixels = sheet.size[:2]
-    result = {"command": "sheet", "width": pixels[0], "height": pixels[1], "picture": [width, height], **settings(args)}
+    result = {
+        "command": "sheet",
+        "width": pixels[0],
+        "height": pixels[1],
+        "picture": [width, height],
+        **settings(args),
+    }
     lines = [
-        f"{pixels[0]} x {pixels[1]} pixels: print it at {args.dpi:g} dpi on {args.paper[0]:g} x {args.paper[1]:g} mm, without scaling",
+        f"{pixels[0]} x {pixels[1]} pixels: print it at {args.dpi:g} dpi, without scaling, "
+        f"on {args.paper[0]:g} x {args.paper[1]:g} mm",
         f"read it with --size {width}x{height}",
     ]
     return console.finish(result, lines)
@@ -105,11 +126,17 @@ def read(args: argparse.Namespace, console: Console) -> Exit:
     artwork.save(args.out)
     console.wrote(args.out)
     result = {
-        "command": "sheet", "width": args.size[0], "height": args.size[1], "marks": report.marks,
-        "error_pixels": report.error, "residual_pixels": report.residual,
-    }  # fmt: skip
+        "command": "sheet",
+        "width": args.size[0],
+        "height": args.size[1],
+        "marks": report.marks,
+        "error_pixels": report.error,
+        "residual_pixels": report.residual,
+    }
     doubts = []
     if report.residual > UNEVEN:
-        message = f"the marks are {report.residual:.1f} pixels off their places: the paper is not flat, or the lens distorts"
+        message = (
+            f"the marks are {report.residual:.1f} pixels off their places: the paper is not flat, or the lens distorts"
+        )
         doubts.append(doubt("sheet", "uneven", message, "try a scanner, or flatten the paper"))
     return console.finish(result, [f"{report.marks} of 10 marks; aligned within {report.error:.2f} pixels"], doubts)

@@ -1,7 +1,7 @@
 """Paint a scene in the style of an artwork.
 
-ARTWORK is a painting of the exemplar scene, aligned with it, such as `luxfer sheet read` makes, or demo:NAME of pen, stipple,
-paint. Both scenes need a camera."""
+ARTWORK is a painting of the exemplar scene, aligned with it, such as `luxfer sheet read` makes, or demo:NAME of pen,
+stipple, paint. Both scenes need a camera."""
 
 from __future__ import annotations
 
@@ -35,24 +35,44 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("artwork", metavar="ARTWORK", help=f"{options.IMAGE}, or demo:pen, demo:stipple, demo:paint")
     parser.add_argument("target", metavar="TARGET", help=f"what to paint, {options.SCENE}")
     parser.add_argument(
-        "--exemplar", default="demo:sphere-on-table", metavar="SCENE", help="the scene that was painted; default demo:sphere-on-table"
+        "--exemplar",
+        default="demo:sphere-on-table",
+        metavar="SCENE",
+        help="the scene that was painted; default demo:sphere-on-table",
     )
     parser.add_argument("--out", metavar="FILE", help="the painting, .png or .exr")
-    parser.add_argument("--size", type=values.size, default=(640, 480), metavar="WxH", help="size of the painting; default 640x480")
-    parser.add_argument("--camera", type=values.camera, metavar="CAMERA", help="camera of the target, as for `luxfer render`")
     parser.add_argument(
-        "--guides", type=extras, default=["materials"], metavar="NAME,...",
-        help=f"besides light: {', '.join(EXTRAS)}, or none; default materials",
-    )  # fmt: skip
-    parser.add_argument(
-        "--guide-weight", type=values.number(0, 1e6, "a weight"), default=1.0, metavar="W", help="weight of --guides; default 1"
+        "--size", type=values.size, default=(640, 480), metavar="WxH", help="size of the painting; default 640x480"
     )
-    parser.add_argument("--samples", type=values.whole(1, 65536, "paths per pixel"), default=32, help="paths per pixel of the guides")
+    parser.add_argument(
+        "--camera", type=values.camera, metavar="CAMERA", help="camera of the target, as for `luxfer render`"
+    )
+    parser.add_argument(
+        "--guides",
+        type=extras,
+        default=["materials"],
+        metavar="NAME,...",
+        help=f"besides light: {', '.join(EXTRAS)}, or none; default materials",
+    )
+    parser.add_argument(
+        "--guide-weight",
+        type=values.number(0, 1e6, "a weight"),
+        default=1.0,
+        metavar="W",
+        help="weight of --guides; default 1",
+    )
+    parser.add_argument(
+        "--samples", type=values.whole(1, 65536, "paths per pixel"), default=32, help="paths per pixel of the guides"
+    )
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument("--preset", choices=PRESETS, default="full", help="default full")
     goal.add_argument("--time", type=values.seconds, metavar="TIME", help="time for the painting, without its guides")
-    goal.add_argument("--error", type=values.share, metavar="SHARE", help="difference of patches in colours and guides to reach")
-    parser.add_argument("--seed", type=values.whole(0, 2**32 - 1, "a seed"), default=1, metavar="N", help="seed of the search")
+    goal.add_argument(
+        "--error", type=values.share, metavar="SHARE", help="difference of patches in colours and guides to reach"
+    )
+    parser.add_argument(
+        "--seed", type=values.whole(0, 2**32 - 1, "a seed"), default=1, metavar="N", help="seed of the search"
+    )
     options.add_units(parser)
     options.add_common(parser)
 
@@ -90,14 +110,23 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     report = stylize.report
     width, height, _ = stylize.image().size
     result = {
-        "command": "stylise", "width": width, "height": height, "guide_error": report.guide_error,
-        "error": report.energy**0.5, "used": report.used, "seconds": time.monotonic() - began,
-    }  # fmt: skip
-    lines = [f"{width} x {height}; guides off by {percent(report.guide_error)}; {percent(report.used)} of the artwork used"]
+        "command": "stylise",
+        "width": width,
+        "height": height,
+        "guide_error": report.guide_error,
+        "error": report.energy**0.5,
+        "used": report.used,
+        "seconds": time.monotonic() - began,
+    }
+    lines = [
+        f"{width} x {height}; guides off by {percent(report.guide_error)}; {percent(report.used)} of the artwork used"
+    ]
     doubts = []
     if report.guide_error > POOR:
         message = f"the guides of the painting are {percent(report.guide_error)} off the artwork's"
-        doubts.append(doubt("stylise", "guides", message, "try an exemplar scene in light and materials like the target's"))
+        doubts.append(
+            doubt("stylise", "guides", message, "try an exemplar scene in light and materials like the target's")
+        )
     return console.finish(result, lines, doubts)
 
 
@@ -109,18 +138,28 @@ def exemplar(context: Context, args: argparse.Namespace, console: Console) -> tu
     if args.artwork.startswith(files.DEMO):
         style = args.artwork.removeprefix(files.DEMO)
         if style not in ARTWORKS:
-            raise usage(f"{args.artwork} is not generated input: there are {', '.join(files.DEMO + a for a in ARTWORKS)}")
+            raise usage(
+                f"{args.artwork} is not generated input: there are {', '.join(files.DEMO + a for a in ARTWORKS)}"
+            )
         source = guides(context, args.exemplar, args, console, args.size, None, title)
         return source.demo_artwork(style), source
     artwork = files.load_image(context, args.artwork)
     width, height, _ = artwork.size
     if max(width, height) > LONGEST:
-        raise usage(f"ARTWORK: {args.artwork} has {width} x {height} pixels; at most {LONGEST} a side, so scale it down")
+        raise usage(
+            f"ARTWORK: {args.artwork} has {width} x {height} pixels; at most {LONGEST} a side, so scale it down"
+        )
     return artwork, guides(context, args.exemplar, args, console, (width, height), None, title)
 
 
 def guides(
-    context: Context, name: str, args: argparse.Namespace, console: Console, size: tuple[int, int], camera: Any, title: str
+    context: Context,
+    name: str,
+    args: argparse.Namespace,
+    console: Console,
+    size: tuple[int, int],
+    camera: Any,
+    title: str,
 ) -> Guides:
     """The guides of a scene."""
     from .. import Guides
@@ -133,7 +172,9 @@ def guides(
     if index >= scene.counts.cameras:
         raise usage(f"--camera: {name} has no camera {index}, it has {scene.counts.cameras}")
     made = Guides(context, scene)
-    return made.run(console.step(title), width=size[0], height=size[1], samples=args.samples, camera=index, seed=args.seed)
+    return made.run(
+        console.step(title), width=size[0], height=size[1], samples=args.samples, camera=index, seed=args.seed
+    )
 
 
 def settings(stylize: Stylize, args: argparse.Namespace, console: Console) -> dict[str, Any]:

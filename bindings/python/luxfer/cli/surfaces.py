@@ -18,7 +18,11 @@ def add(parser: argparse.ArgumentParser) -> None:
     """The options."""
     parser.add_argument("scene", metavar="SCENE", help=options.SCENE)
     parser.add_argument(
-        "--count", type=values.whole(1, 10**6, "a number of lines"), default=10, metavar="N", help="how many; default 10"
+        "--count",
+        type=values.whole(1, 10**6, "a number of lines"),
+        default=10,
+        metavar="N",
+        help="how many; default 10",
     )
     options.add_units(parser)
     options.add_common(parser)

@@ -126,8 +126,16 @@ class Lit:
         lines = [COLUMNS]
         for lamp in self.lamps:
             numbers = (
-                *lamp.position, *lamp.normal, *lamp.axis, *lamp.size, lamp.area, *lamp.radiance, lamp.flux, lamp.cct, lamp.duv
-            )  # fmt: skip
+                *lamp.position,
+                *lamp.normal,
+                *lamp.axis,
+                *lamp.size,
+                lamp.area,
+                *lamp.radiance,
+                lamp.flux,
+                lamp.cct,
+                lamp.duv,
+            )
             lines.append(",".join(f"{n:.7g}" for n in numbers) + f",{lamp.kind}")
         files.write_text(path, "\n".join(lines) + "\n")
 

@@ -1,12 +1,12 @@
 """Light a scene as in a photo.
 
-Strokes show where the plane with the lights and its lamps are: a drawing of the photo's size (green: plane, red: not plane,
-yellow: lamp, blue: not lamp), or a text file with lines such as `light 3 310.5 30 320 31` (plane, not-plane, light or
-not-light, radius, points). Without strokes both masks are proposed; look at them with --preview-masks.
+Strokes show where the plane with the lights and its lamps are: a drawing of the photo's size (green: plane, red: not
+plane, yellow: lamp, blue: not lamp), or a text file with lines such as `light 3 310.5 30 320 31` (plane, not-plane,
+light or not-light, radius, points). Without strokes both masks are proposed; look at them with --preview-masks.
 
-Writes into --out, each as soon as it is finished: masks.png (the photo with its masks), emission.exr (the emissive texture),
-lit.glb (the scene in its new light), luminaires.csv (every lamp in metres, cd/m² and lumens), render.exr (cd/m²), render.png
-and report.json."""
+Writes into --out, each as soon as it is finished: masks.png (the photo with its masks), emission.exr (the emissive
+texture), lit.glb (the scene in its new light), luminaires.csv (every lamp in metres, cd/m² and lumens), render.exr
+(cd/m²), render.png and report.json."""
 
 from __future__ import annotations
 
@@ -38,10 +38,14 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("photo", metavar="PHOTO", help=f"{options.IMAGE}, or demo:photo")
     parser.add_argument("scene", metavar="SCENE", help=options.SCENE)
     parser.add_argument("--strokes", metavar="FILE", help="a drawing, a text (.txt), or demo:strokes")
-    parser.add_argument("--surface", metavar="NAME", help="object or material that receives the lights; default: the likeliest ceiling")
+    parser.add_argument(
+        "--surface", metavar="NAME", help="object or material that receives the lights; default: the likeliest ceiling"
+    )
     parser.add_argument("--out", metavar="FOLDER", help="folder for the files; it is made if it is missing")
     parser.add_argument(
-        "--preview-masks", metavar="FILE.png", help="only draw the photo with its masks and the place where one more stroke helps most"
+        "--preview-masks",
+        metavar="FILE.png",
+        help="only draw the photo with its masks and the place where one more stroke helps most",
     )
     options.add_camera(parser)
     options.add_units(parser)
@@ -56,17 +60,27 @@ def add_light(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--lux",
         type=values.number(0.1, 1e6, "a mean illuminance in lux"),
-        help="dim all lamps together, so that a plane of desks has this mean illuminance: 0.75 m above the floor, 0.5 m off the walls",
+        help="dim all lamps together, so that a plane of desks has this mean illuminance: 0.75 m above the floor, "
+        "0.5 m off the walls",
     )
     group.add_argument(
-        "--colour", "--color", type=values.colour, metavar="COLOUR", help="colour of the lamps together, in place of the photo's: "
-        "4000K, #RRGGBB (sRGB) or linear R,G,B; their luminous flux stays"
-    )  # fmt: skip
-    options.add_white(group, f"luminance of the photo's white in cd/m²; default {WHITE:g}; the light is proportional to it")
+        "--colour",
+        "--color",
+        type=values.colour,
+        metavar="COLOUR",
+        help="colour of the lamps together, in place of the photo's: "
+        "4000K, #RRGGBB (sRGB) or linear R,G,B; their luminous flux stays",
+    )
+    options.add_white(
+        group, f"luminance of the photo's white in cd/m²; default {WHITE:g}; the light is proportional to it"
+    )
     group.add_argument(
-        "--distance", type=values.above_zero, metavar="LENGTH", help="from the photo's camera to the plane of its lamps, which sets "
-        "the size of the pattern; default: by the size of the lamps"
-    )  # fmt: skip
+        "--distance",
+        type=values.above_zero,
+        metavar="LENGTH",
+        help="from the photo's camera to the plane of its lamps, which sets "
+        "the size of the pattern; default: by the size of the lamps",
+    )
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:
@@ -79,7 +93,9 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         raise usage("--preview-masks only draws the masks: leave --out out")
     inputs = files.shared_input(args.photo, args.scene, args.strokes)
     out = files.check_folder("--out", args.out, inputs, FILES) if args.out else None
-    preview = files.check_file("--preview-masks", args.preview_masks, inputs, (".png",)) if args.preview_masks else None
+    preview = (
+        files.check_file("--preview-masks", args.preview_masks, inputs, (".png",)) if args.preview_masks else None
+    )
 
     context = files.context_of(args)
     transfer, start = prepare(context, args)
@@ -180,7 +196,8 @@ def solve(args: argparse.Namespace, console: Console, transfer: Transfer, start:
         progress=console.step("solving for the light"),
         **{**start.settings, "relight": plan.relight_params},
     )
-    return goal.settings(plan.render_params, args)
+    found: dict[str, Any] = goal.settings(plan.render_params, args)
+    return found
 
 
 def render(args: argparse.Namespace, console: Console, lit: Any, settings: dict[str, Any], goal: Any) -> Any:
@@ -219,7 +236,8 @@ def words(transfer: Transfer, start: Start, lit: Any) -> list[str]:
         distance += f" (estimated, ± {percent(report.plane_distance_error)}; --distance sets it)"
     return [
         f'surface "{start.surface}", {distance}',
-        f"texture off the photo's lamps by {percent(report.emission_error)}; strength known to {percent(report.relight_error)}",
+        f"texture off the photo's lamps by {percent(report.emission_error)}; "
+        f"strength known to {percent(report.relight_error)}",
         *lit.words(),
     ]
 

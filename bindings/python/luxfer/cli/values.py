@@ -117,7 +117,9 @@ def colour(text: str) -> float | tuple[float, ...]:
         return kelvin
     if match := re.fullmatch(r"#([0-9a-fA-F]{6})", text):
         codes = (int(match[1][i : i + 2], 16) / 255 for i in (0, 2, 4))
-        found: tuple[float, ...] | None = tuple(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in codes)
+        found: tuple[float, ...] | None = tuple(
+            c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in codes
+        )
     else:
         found = numbers(text, 3)
     if found is None or min(found) < 0 or max(found) <= 0:
@@ -143,7 +145,13 @@ def camera(text: str) -> Camera:
     parts = text.split("/")
     points = [numbers(part, 3) for part in parts[:2]]
     degrees = real(parts[2]) if len(parts) == 3 else 60.0
-    if len(parts) not in (2, 3) or None in points or points[0] == points[1] or degrees is None or not 1 <= degrees <= 170:
+    if (
+        len(parts) not in (2, 3)
+        or None in points
+        or points[0] == points[1]
+        or degrees is None
+        or not 1 <= degrees <= 170
+    ):
         raise wrong(text, allowed)
     return Camera(position=points[0] or (), target=points[1] or (), fov_y=math.radians(degrees))
 
