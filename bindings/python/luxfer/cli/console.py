@@ -28,6 +28,7 @@ ADVICE = {
     "FOCAL_ASSUMED": "try a photo that shows two walls",
     "UNSEEN": "try one more stroke there; --preview-masks masks.png shows the place",
     "UNCERTAIN_MASK": "try a stroke on what the mask takes for another surface; --preview-masks masks.png shows it",
+    "MISSED_STROKES": "the classes look alike: try more strokes on both; --preview-masks masks.png shows the mask",
     "MAGNIFIED": "try a photo of more pixels, or one that looks more towards the plane",
     "NO_LATTICE": "try strokes on the lamps that the mask leaves out, if the lamps are regular",
     "UNREACHABLE": "try --white with a higher luminance, or a scene with less other light",
@@ -148,7 +149,7 @@ def described(warnings: Iterable[StageWarning]) -> list[dict[str, Any]]:
             "limit": w.limit,
             "place": w.place,
             "message": w.message,
-            "advice": ADVICE.get(w.code.name) or f"try this: {w.advice}",
+            "advice": ADVICE.get(w.code.name) or w.advice,
         }
         for w in warnings
     ]

@@ -44,7 +44,8 @@ def usage(message: str) -> Failure:
 
 def unreadable(path: str, reason: object) -> Failure:
     """A failure to read an input file; the file is named once."""
-    text = str(reason)
+    stated = getattr(reason, "strerror", None)
+    text = f"{path}: {stated}" if stated else str(reason)
     return Failure(Exit.UNREADABLE, text if path in text else f"{path} cannot be read: {text}")
 
 

@@ -117,6 +117,16 @@ def load_strokes(context: Context, name: str, photo: Image) -> Strokes:
     return strokes
 
 
+def check_surface(scene: Scene, name: str) -> None:
+    """Ends if a scene has no planar surface of a name; the message lists the names that there are."""
+    from ..errors import Error
+
+    try:
+        scene.find_surface(name)
+    except Error as error:
+        raise usage(f"--surface: {error}") from None
+
+
 def shared_input(*names: str | None) -> list[Path]:
     """The input files among names."""
     return [Path(n) for n in names if n and not n.startswith(DEMO)]
@@ -140,19 +150,18 @@ def check_file(option: str, name: str, inputs: list[Path], kinds: tuple[str, ...
 
 
 def check_folder(option: str, name: str, inputs: list[Path], files: tuple[str, ...]) -> Path:
-    """An output folder, which is made if it is missing; none of its files may be an input."""
+    """An output folder, which save() makes if it is missing; none of its files may be an input."""
     folder = Path(name)
     if folder.exists() and not folder.is_dir():
         raise usage(f"{option}: {name} is a file, not a folder")
     for other in inputs:
         if other.exists() and any((folder / f).exists() and (folder / f).samefile(other) for f in files):
             raise usage(f"{option}: {other} is an input, and would be overwritten")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise failed(f"{option}: {error}") from None
-    if not os.access(folder, os.W_OK):
-        raise failed(f"{option}: {name} is not writable")
+    there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+    if not there.is_dir():
+        raise usage(f"{option}: {there} is a file, not a folder")
+    if not os.access(there, os.W_OK):
+        raise failed(f"{option}: {there} is not writable")
     return folder
 
 
@@ -171,6 +180,7 @@ def write_text(path: Path, text: str) -> None:
 def likeliest_surface(scene: Scene, name: str | None) -> tuple[str, list[dict[str, Any]]]:
     """The surface that is named, or the likeliest ceiling, with a warning where that is doubtful."""
     if name is not None:
+        check_surface(scene, name)
         return name, []
     candidates = scene.candidates
     if not candidates:

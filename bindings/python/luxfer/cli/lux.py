@@ -114,6 +114,7 @@ def plane_of(scene: Scene, args: argparse.Namespace) -> tuple[Plane, list[dict[s
     if args.surface:
         if args.height is not None:
             raise usage("--height goes with a level plane, not with --surface")
+        files.check_surface(scene, args.surface)
         return plane.on_surface(scene, args.surface), []
     if args.rect:
         if args.height is None:

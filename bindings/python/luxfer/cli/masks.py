@@ -74,9 +74,9 @@ class Masks:
         assert self.place is not None
         y, x = np.mgrid[:height, :width]
         distance = np.hypot(x - self.place[0], y - self.place[1])
-        radius = max(5.0, max(width, height) / 45)
+        radius = max(5.0, max(width, height) / 60)
         # White around the mark keeps it visible on any photo.
-        for half, colour in ((0.28 * radius, (255, 255, 255)), (0.16 * radius, MARK)):
+        for half, colour in ((0.24 * radius, (255, 255, 255)), (0.13 * radius, MARK)):
             shown[np.abs(distance - radius) <= half] = colour
         shown[distance <= 0.16 * radius] = MARK
 

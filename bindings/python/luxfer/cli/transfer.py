@@ -107,6 +107,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         result = {"command": "transfer", "surface": start.surface, **masks_found.facts()}
         return console.finish(result, masks_found.words(), start.warnings + described(transfer.warnings))
     assert out is not None
+    out.mkdir(parents=True, exist_ok=True)
     masks_found.draw().save(out / "masks.png")
     console.wrote(out / "masks.png")
     return light(args, console, transfer, start, out, masks_found.facts())
@@ -169,6 +170,9 @@ def light(
 
     warnings = start.warnings + described(transfer.warnings)
     result = facts(transfer, start, lit, masks)
+    if goal.is_budget:  # what is left of the time, after --lux too
+        left = goal.seconds - (time.monotonic() - console.began)
+        settings["time_budget_ms"] = max(200, round(1000 * left))
     found = render(args, console, lit, settings, goal)
     for name in ("render.exr", "render.png"):
         found.save(out / name, lit.white)
