@@ -1,11 +1,13 @@
 # Installing and handing on, part of the Makefile: `make`, then
 #
 # make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences; the debug symbols
-#                   of the shared library go into .debug/ beside it, where gdb looks for them
+#                   of the shared library go into .debug/ beside it, where gdb looks for them; the command line `luxfer`, with
+#                   the Python package that it runs (it needs python3 and numpy)
 # make uninstall    removes what install has put there
 # make dist         out/luxfer-VERSION.tar.gz of the last commit
 #
-# PREFIX=/usr/local   where it will be used; LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu), INCLUDEDIR and DOCDIR below it
+# PREFIX=/usr/local   where it will be used; LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu), INCLUDEDIR, DOCDIR, BINDIR and
+#                     PYTHONDIR below it
 # DESTDIR=            a folder to stage it in, for packages
 # DEBUG=split         keep: the libraries are installed as built, with their symbols, for packagers whose tools split them
 
@@ -13,16 +15,21 @@ PREFIX     ?= /usr/local
 LIBDIR     ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 DOCDIR     ?= $(PREFIX)/share/doc/luxfer
+BINDIR     ?= $(PREFIX)/bin
+PYTHONDIR  ?= $(LIBDIR)/luxfer/python
 INSTALL    ?= install
 OBJCOPY    ?= objcopy
 DEBUG      ?= split
 
 HEADERS     := luxfer.h luxfer.hpp $(patsubst include/%,%,$(wildcard include/luxfer/*.h)) $(patsubst bindings/cpp/%,%,$(wildcard bindings/cpp/luxfer/*.hpp))
 DOCUMENTS   := LICENSE-APACHE LICENSE-MIT README.md $(PROFILE)/THIRD-PARTY.txt
-FOLDERS      = $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR)
+PACKAGE     := $(patsubst bindings/python/%,%,$(shell find bindings/python/luxfer -type f ! -path '*/__pycache__/*' ! -name '*.so'))
+MODULES     := $(sort $(patsubst %/,%,$(dir $(PACKAGE))))
+FOLDERS      = $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR) $(BINDIR) $(addprefix $(PYTHONDIR)/,$(MODULES))
 INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer.so.$(VERSION) libluxfer.a pkgconfig/luxfer.pc \
                  $(SYMBOLS) cmake/luxfer/luxferConfig.cmake cmake/luxfer/luxferConfigVersion.cmake) \
-               $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS)))
+               $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS))) \
+               $(BINDIR)/luxfer $(addprefix $(PYTHONDIR)/,$(PACKAGE) luxfer/libluxfer.so)
 
 # The path from one folder to another, which need not exist.
 relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
@@ -63,11 +70,18 @@ endif
 	$(call fill,bindings/pkgconfig/luxfer.pc.in,$(LIBDIR)/pkgconfig)
 	$(call fill,bindings/cmake/luxferConfig.cmake.in,$(LIBDIR)/cmake/luxfer)
 	$(call fill,bindings/cmake/luxferConfigVersion.cmake.in,$(LIBDIR)/cmake/luxfer)
+	for file in $(PACKAGE); do $(INSTALL) -m 644 "bindings/python/$$file" "$(DESTDIR)$(PYTHONDIR)/$$file" || exit 1; done
+	ln -sf '$(call relative,$(PYTHONDIR)/luxfer,$(LIBDIR))/libluxfer.so.$(ABI)' '$(DESTDIR)$(PYTHONDIR)/luxfer/libluxfer.so'
+	sed 's|@PYTHONDIR@|$(call relative,$(BINDIR),$(PYTHONDIR))|' bindings/python/luxfer.in >'$(DESTDIR)$(BINDIR)/luxfer'
+	chmod 755 '$(DESTDIR)$(BINDIR)/luxfer'
 
-# Only what install has put there by name, and its folders if they are empty then.
+# Only what install has put there by name, what Python has compiled of it, and its folders if they are empty then, the
+# inner ones first.
 uninstall:
 	rm -f $(foreach file,$(INSTALLED),'$(DESTDIR)$(file)')
-	rmdir $(foreach folder,$(FOLDERS) $(LIBDIR)/.debug,'$(DESTDIR)$(folder)') 2>/dev/null || true
+	rm -rf $(foreach folder,$(MODULES),'$(DESTDIR)$(PYTHONDIR)/$(folder)/__pycache__')
+	for folder in $(foreach folder,$(FOLDERS) $(PYTHONDIR) $(LIBDIR)/luxfer $(LIBDIR)/.debug,'$(DESTDIR)$(folder)'); do \
+	  echo "$$folder"; done | sort -r | while read -r folder; do rmdir "$$folder" 2>/dev/null || true; done
 
 dist:
 	@mkdir -p out
