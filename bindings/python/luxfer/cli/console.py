@@ -26,6 +26,7 @@ ADVICE = {
     "PROPOSED": "try --preview-masks masks.png to see the masks, and --strokes FILE to correct them",
     "IMPLAUSIBLE_SIZE": "try --units with the unit of the file",
     "FOCAL_ASSUMED": "try a photo that shows two walls",
+    "VIEW_UNCERTAIN": "try a photo with more straight edges along the room",
     "UNSEEN": "try one more stroke there; --preview-masks masks.png shows the place",
     "UNCERTAIN_MASK": "try a stroke on what the mask takes for another surface; --preview-masks masks.png shows it",
     "MISSED_STROKES": "the classes look alike: try more strokes on both; --preview-masks masks.png shows the mask",

@@ -72,7 +72,8 @@ def scene_warnings(scene: Scene) -> list[dict[str, Any]]:
     return described(scene.warnings)
 
 
-_demo_photo: dict[str, Image] = {}
+#: The demonstration photo and its strokes once they are made, as arrays, which belong to no context.
+_demo_photo: dict[str, Any] = {}
 
 
 def load_image(context: Context, name: str, colour_space: str = "srgb") -> Image:
@@ -85,8 +86,8 @@ def load_image(context: Context, name: str, colour_space: str = "srgb") -> Image
         which = _demo(name, DEMO_IMAGES)
         if not _demo_photo:
             demo = DemoPhoto(context).run(**DEMO_PHOTO)
-            _demo_photo.update(photo=demo.image("picture"), strokes=demo.image("strokes"))
-        return _demo_photo[which]
+            _demo_photo.update(photo=demo.image("picture").numpy(), strokes=demo.image("strokes").numpy())
+        return Image(context, _demo_photo[which])
     try:
         return Image.load(context, name, colour_space)
     except Error as error:

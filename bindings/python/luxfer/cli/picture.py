@@ -116,7 +116,7 @@ class Picture:
                     "try another camera or --sky 100",
                 )
             )
-        elif not self.report.error <= (ROUGH if self.is_filtered else max(ROUGH / 2, self.goal.error)):
+        elif not self.report.error <= max(ROUGH if self.is_filtered else ROUGH / 2, self.goal.error):
             message = f"the picture has {percent(self.report.error)} of noise"
             out.append(doubt("render", "noise", message, "try a longer --time, or --quality best"))
         elif self.goal.error and self.report.error > 1.2 * self.goal.error:

@@ -43,6 +43,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=False, **settings)
 
     def error(self, message: str) -> NoReturn:
+        """Ends with the message in one line."""
         raise Failure(Exit.USAGE, f"{message.removeprefix('argument ')} ({self.prog} --help)")
 
 

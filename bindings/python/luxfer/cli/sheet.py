@@ -24,7 +24,9 @@ UNEVEN = 2.0
 
 def add(parser: argparse.ArgumentParser) -> None:
     """The options."""
-    parts = parser.add_subparsers(dest="part", metavar="print|read", required=True, parser_class=type(parser))
+    parts = parser.add_subparsers(
+        dest="part", metavar="print|read", required=True, parser_class=type(parser), help="which half of the work"
+    )
     for name, text in (("print", "draw a sheet"), ("read", "align a photo of a painted sheet")):
         own = parts.add_parser(name, help=text, description=f"{text.capitalize()}.")
         what = f"what to paint: {options.SCENE}; or {options.IMAGE}" if name == "print" else options.IMAGE
