@@ -89,9 +89,7 @@ def scene_words(found: dict[str, Any]) -> list[str]:
     )
     for index, camera in enumerate(found["camera_list"][:LISTED]):
         degrees = math.degrees(camera["fov_y"])
-        lines.append(
-            f"camera {index}: at {point(camera['position'])}, towards {point(camera['target'])}, {degrees:.0f}°"
-        )
+        lines.append(f"camera {index}: {point(camera['position'])}/{point(camera['target'])}/{degrees:.4g}")
     if not found["camera_list"]:
         lines.append("no camera: give --camera POSITION/TARGET to render it")
     if found["likeliest_ceiling"]:

@@ -40,7 +40,7 @@ def add_units(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--units",
         choices=list(values.UNITS),
-        help="unit of the scene's file where it is not the metre, as glTF prescribes; USD files state theirs",
+        help="unit of the scene's file, if it is not in metres as glTF prescribes; USD files state theirs",
     )
 
 

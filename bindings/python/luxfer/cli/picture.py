@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 #: Strength of the noise filter: the usual one.
 FILTER = 1.0
 #: Noise above which even the filtered picture is in doubt.
-ROUGH = 0.15
+ROUGH = 0.1
 
 
 @dataclass(frozen=True)
