@@ -23,7 +23,7 @@ DEBUG      ?= split
 
 HEADERS     := luxfer.h luxfer.hpp $(patsubst include/%,%,$(wildcard include/luxfer/*.h)) $(patsubst bindings/cpp/%,%,$(wildcard bindings/cpp/luxfer/*.hpp))
 DOCUMENTS   := LICENSE-APACHE LICENSE-MIT README.md $(PROFILE)/THIRD-PARTY.txt
-PACKAGE     := $(patsubst bindings/python/%,%,$(shell find bindings/python/luxfer -type f ! -path '*/__pycache__/*' ! -name '*.so'))
+PACKAGE     := $(patsubst bindings/python/%,%,$(shell find bindings/python/luxfer -type f ! -path '*/__pycache__/*' ! -path '*/.*' ! -name '*.so'))
 MODULES     := $(sort $(patsubst %/,%,$(dir $(PACKAGE))))
 FOLDERS      = $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR) $(BINDIR) $(addprefix $(PYTHONDIR)/,$(MODULES))
 INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer.so.$(VERSION) libluxfer.a pkgconfig/luxfer.pc \
