@@ -1,15 +1,16 @@
-# Installing and handing on, part of the Makefile: `make`, then
+# Part of the Makefile: installation and distribution. Run `make` first, then:
 #
 # make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences; the debug symbols
-#                   of the shared library go into .debug/ beside it, where gdb looks for them; the command line `luxfer`, with
-#                   the Python package that it runs (it needs python3 and numpy)
-# make uninstall    removes what install has put there
-# make dist         out/luxfer-VERSION.tar.gz of the last commit
+#                   of the shared library go into .debug/ beside it, where gdb looks for them; the command line `luxfer`,
+#                   with the Python package that it runs (it needs python3 and numpy)
+# make uninstall    removes the installed files
+# make dist         packs the last commit into out/luxfer-VERSION.tar.gz
 #
-# PREFIX=/usr/local   where it will be used; LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu), INCLUDEDIR, DOCDIR, BINDIR and
-#                     PYTHONDIR below it
-# DESTDIR=            a folder to stage it in, for packages
-# DEBUG=split         keep: the libraries are installed as built, with their symbols, for packagers whose tools split them
+# PREFIX=/usr/local   folder of the installation; its subfolders LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu),
+#                     INCLUDEDIR, DOCDIR, BINDIR and PYTHONDIR can be set too
+# DESTDIR=            folder in which the installation is staged, for packages
+# DEBUG=split         with DEBUG=keep, the libraries are installed as built, with their debug symbols: for packagers
+#                     whose tools split them
 
 PREFIX     ?= /usr/local
 LIBDIR     ?= $(PREFIX)/lib
@@ -31,9 +32,9 @@ INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer
                $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS))) \
                $(BINDIR)/luxfer $(addprefix $(PYTHONDIR)/,$(PACKAGE) luxfer/libluxfer.so)
 
-# The path from one folder to another, which need not exist.
+# relative(from, to): the relative path between two folders, which need not exist.
 relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
-# fill(template, folder it goes to)
+# fill(template, folder): fills in a template and installs it into the folder.
 fill = sed -e 's|@VERSION@|$(VERSION)|g' -e 's|@ABI@|$(ABI)|g' -e 's|@INCLUDEDIR@|$(call relative,$(2),$(INCLUDEDIR))|g' \
          $(1) | $(INSTALL) -m 644 /dev/stdin '$(DESTDIR)$(2)/$(basename $(notdir $(1)))'
 
@@ -43,7 +44,7 @@ SYMBOLS   = .debug/libluxfer.so.$(VERSION).debug
 
 .PHONY: install uninstall dist
 
-# Only where it is missing: `make` as oneself, then `sudo make install`, which needs no cargo.
+# Builds the library only if it is missing, so that after `make`, `sudo make install` needs no cargo.
 $(LIB) $(PROFILE)/libluxfer.a:
 	$(MAKE) lib
 
@@ -75,8 +76,8 @@ endif
 	sed 's|@PYTHONDIR@|$(call relative,$(BINDIR),$(PYTHONDIR))|' bindings/python/luxfer.in >'$(DESTDIR)$(BINDIR)/luxfer'
 	chmod 755 '$(DESTDIR)$(BINDIR)/luxfer'
 
-# Only what install has put there by name, what Python has compiled of it, and its folders if they are empty then, the
-# inner ones first.
+# Removes the files that `make install` has installed, with the bytecode that Python has compiled of them, and their
+# folders, the inner ones first, if they are then empty.
 uninstall:
 	rm -f $(foreach file,$(INSTALLED),'$(DESTDIR)$(file)')
 	rm -rf $(foreach folder,$(MODULES),'$(DESTDIR)$(PYTHONDIR)/$(folder)/__pycache__')

@@ -1,17 +1,18 @@
-//! The error type of the library. The kind is the status code at the C boundary; the message names the parameter, its
-//! value and the allowed range, and suggests a remedy.
+//! The error type of the library. At the C boundary, the kind becomes the status code. The message names the
+//! parameter, its value and the allowed range, and suggests a remedy.
 
 use std::fmt;
 
-/// Kinds of errors, with the values of `luxfer_status`: append only; 0-6 as in Embree and Open Image Denoise.
+/// Kinds of errors. Their values are those of `luxfer_status`, so new kinds may only be appended; the values 0 to 6
+/// mean the same as in Embree and Open Image Denoise.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// A cause not covered by the other kinds.
+    /// The cause belongs to none of the other kinds.
     Unknown = 1,
     /// A parameter is null, out of range, or contradicts another.
     InvalidArgument = 2,
-    /// The call is not allowed in the object's present state.
+    /// The object's present state does not allow the call.
     InvalidOperation = 3,
     /// The memory budget of the context, or the machine, is used up.
     OutOfMemory = 4,
@@ -25,13 +26,14 @@ pub enum ErrorKind {
     Format = 8,
     /// A result was requested before the stage that computes it has run.
     NotReady = 9,
-    /// A defect in this library: please report it.
+    /// The library has a defect; please report it.
     Internal = 10,
     /// The input is well formed but has no answer: no lines, a plane seen edge-on, one class of strokes only.
     Degenerate = 11,
     /// No surface, image or entry has the given name.
     NotFound = 12,
-    /// No light can reach the target: no path, a channel fully absorbed, or negative light would be needed.
+    /// No light can reach the target: there is no light path, a channel is fully absorbed, or negative light would be
+    /// needed.
     Unreachable = 13,
 }
 
@@ -53,7 +55,7 @@ impl ErrorKind {
         Self::Unreachable,
     ];
 
-    /// The kind with a value of `luxfer_status`.
+    /// Returns the kind with this value of `luxfer_status`.
     pub fn from_value(value: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|&kind| kind as i32 == value)
     }
@@ -88,7 +90,7 @@ impl Error {
         Self::new(ErrorKind::Cancelled, "the job was cancelled")
     }
 
-    /// Prefixes the message with the place of the error: `texture 3: the file is truncated`.
+    /// Puts the place of the error before the message: `texture 3: the file is truncated`.
     pub fn context(self, place: impl fmt::Display) -> Self {
         Self { message: format!("{place}: {}", self.message), ..self }
     }
@@ -102,7 +104,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Checks that a parameter lies in `[low, high]`; a NaN never does.
+/// Returns the value, or an error if it does not lie in `[low, high]`; a NaN never does.
 pub fn check_range<T: PartialOrd + fmt::Display>(name: &str, value: T, low: T, high: T) -> Result<T> {
     if value >= low && value <= high {
         Ok(value)

@@ -1,7 +1,7 @@
-//! The library's own thread pool, and parallel loops whose result does not depend on the number of threads.
+//! The library's own thread pool, and parallel loops whose results do not depend on the number of threads.
 //!
-//! rayon's global pool is never used: it cannot be shut down, and it belongs to the host. Dropping a rayon pool only
-//! signals its threads, so the handles are kept here and joined.
+//! rayon's global pool is never used, because it belongs to the host and cannot be shut down. When a rayon pool is
+//! dropped, it only tells its threads to end. [`Pool`] therefore keeps the handles of its threads and joins them.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
@@ -20,7 +20,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Creates a pool of `num_threads` threads; 0 means one per core available to this process.
+    /// Creates a pool of `num_threads` threads; 0 = one per core that is available to this process.
     pub fn new(num_threads: usize) -> Result<Self> {
         let cores = thread::available_parallelism().map_or(1, |n| n.get());
         let count = if num_threads == 0 { cores } else { num_threads };
@@ -37,8 +37,8 @@ impl Pool {
         Ok(Self { threads: Some(threads), handles: handles.into_inner().unwrap_or_else(|e| e.into_inner()) })
     }
 
-    /// Runs `work` with this pool as the pool of all parallel loops in it. Must not be called from a thread of the
-    /// pool.
+    /// Runs `work` on this pool: all parallel loops in `work` use the threads of this pool. Must not be called from a
+    /// thread of the pool.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match &self.threads {
             Some(threads) => threads.install(work),
@@ -46,8 +46,9 @@ impl Pool {
         }
     }
 
-    /// Like [`run`](Self::run), but drops the work and returns `None` if `is_cancelled` becomes true while all threads
-    /// are busy with other work. `work` must not panic. It is always dropped before this returns.
+    /// Like [`run`](Self::run), but drops `work` and returns `None` if `is_cancelled` becomes true while all threads
+    /// are still busy with other work. `work` must not panic. When this function returns, `work` has been run or
+    /// dropped.
     pub fn run_unless<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
@@ -61,7 +62,7 @@ impl Pool {
     }
 }
 
-/// Work in the queue of a pool.
+/// A closure in the queue of a pool, and later its result.
 struct Queued<W, T> {
     state: Mutex<Progress<W, T>>,
     changed: Condvar,
@@ -69,13 +70,13 @@ struct Queued<W, T> {
 
 enum Progress<W, T> {
     Waiting(W),
-    /// Taken by a worker, or dropped.
+    /// A worker runs the closure, or the closure was dropped.
     Begun,
     Finished(T),
 }
 
 impl<W: FnOnce() -> T, T> Queued<W, T> {
-    /// Runs the work, unless it was dropped.
+    /// Runs the closure, unless it was dropped.
     fn run(&self) {
         let begun = std::mem::replace(&mut *lock(&self.state), Progress::Begun);
         let Progress::Waiting(work) = begun else { return };
@@ -84,7 +85,8 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
         self.changed.notify_all();
     }
 
-    /// Waits for the result; drops the work if `is_cancelled` becomes true before it runs.
+    /// Waits for the result. Drops the closure and returns `None` if `is_cancelled` becomes true before the closure
+    /// runs.
     fn result(&self, is_cancelled: impl Fn() -> bool) -> Option<T> {
         let mut state = lock(&self.state);
         loop {
@@ -100,18 +102,18 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
     }
 }
 
-/// Interval at which queued work checks for cancellation: a fifth of the 100 ms within which a cancel request is
-/// answered.
+/// Interval at which waiting work checks for cancellation. It is a fifth of 100 ms, the longest time within which a
+/// cancel request must be answered.
 const CANCEL_INTERVAL: Duration = Duration::from_millis(20);
 
-/// Pools for short work that must not wait for the long work of another pool. Each run has a pool of its own, with as
-/// many threads as the other pool.
+/// Pools for short work that must not wait behind long work in the main pool. Each run has a pool to itself, with
+/// `num_threads` threads.
 pub struct QuickPools {
     num_threads: usize,
     idle: Mutex<Vec<Pool>>,
 }
 
-/// Maximum number of idle pools that are kept: enough for the few threads of a host that call at the same time.
+/// Largest number of idle pools to keep: enough for the few threads of a host that call at the same time.
 const MAX_IDLE: usize = 4;
 
 impl QuickPools {
@@ -119,12 +121,12 @@ impl QuickPools {
         Self { num_threads, idle: Mutex::default() }
     }
 
-    /// Runs `work` in an idle pool, or in a new one. Must not be called from a thread of a pool.
+    /// Runs `work` on an idle pool, or on a new one. Must not be called from a thread of a pool.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
         let idle = lock(&self.idle).pop();
         let pool = idle.map_or_else(|| Pool::new(self.num_threads), Ok)?;
         let result = pool.run(work);
-        // Drop a surplus pool only after the lock is released.
+        // Drop a surplus pool only after the lock is released, because dropping it waits for its threads.
         let mut surplus = Some(pool);
         let mut idle = lock(&self.idle);
         if idle.len() < MAX_IDLE {
@@ -139,7 +141,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Starts a thread, which suppresses messages of panics if the starting thread does.
+/// Starts a thread. The thread suppresses panic messages if the thread that starts it does.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
     if !reserve::has_room(THREAD_OVERHEAD) {
         return Err(io::ErrorKind::OutOfMemory.into());
@@ -152,7 +154,7 @@ pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<Joi
     thread::Builder::new().name(name.into()).stack_size(STACK).spawn(work)
 }
 
-/// Bytes of a thread's stack, and an upper bound of the other memory that starting a thread takes.
+/// Stack size of a thread in bytes (`STACK`), and an upper bound of the other memory that starting a thread takes.
 const STACK: usize = 4 << 20;
 const THREAD_OVERHEAD: usize = 256 << 10;
 
@@ -165,7 +167,8 @@ impl Drop for Pool {
     }
 }
 
-/// Calls `work(row, pixels)` for every row of an interleaved image, in parallel, checking for cancellation at each.
+/// Calls `work(row, pixels)` for every row of an interleaved image, in parallel. Checks for cancellation before each
+/// row.
 pub fn for_rows<T: Send>(
     data: &mut [T],
     row_len: usize,
@@ -185,8 +188,8 @@ pub fn for_rows<T: Send>(
     })
 }
 
-/// Calls `work(first, items)` for every run of `length` items in parallel, checking for cancellation at each. `first`
-/// is the index of the run's first item; the last run may be shorter.
+/// Calls `work(first, items)` for every run of `length` items, in parallel; `first` is the index of the run's first
+/// item, and the last run may be shorter. Checks for cancellation before each run.
 pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     data.par_chunks_mut(length.max(1)).enumerate().try_for_each(|(run, items)| {
         job.check()?;
@@ -195,7 +198,7 @@ pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(
     })
 }
 
-/// Like [`for_rows`], for three images at once with rows of `row_len` items each.
+/// Like [`for_rows`], for the same row of three images at once; rows have `row_len` items each.
 pub fn for_rows_of_three<T: Send>(
     images: [&mut [T]; 3],
     row_len: usize,
@@ -217,8 +220,8 @@ pub fn for_rows_of_three<T: Send>(
     })
 }
 
-/// Computes `work(i)` for `i` in `0..count` in parallel. Results are in order of `i` for any number of threads, so
-/// that a reduction over them is reproducible to the bit.
+/// Computes `work(i)` for `i` in `0..count`, in parallel. The results are in the order of `i` for any number of
+/// threads, so that a reduction over them is reproducible bit by bit.
 pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) -> Result<Vec<T>> {
     let done = AtomicUsize::new(0);
     let mut places = list_with_capacity(count)?;
@@ -234,7 +237,7 @@ pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) ->
     Ok(values)
 }
 
-/// An empty list with the given capacity, or an error.
+/// Returns an empty list with room for `count` items, or an error if there is no memory.
 fn list_with_capacity<T>(count: usize) -> Result<Vec<T>> {
     let none = || Error::new(ErrorKind::OutOfMemory, format!("could not allocate {count} results"));
     reserve::list(count).ok_or_else(none)
@@ -245,10 +248,10 @@ pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     rayon::join(a, b)
 }
 
-/// Elements sorted between two checks for cancellation: a few milliseconds of work.
+/// Largest number of elements to sort without a check for cancellation; sorting them takes a few milliseconds.
 const SERIAL_SORT: usize = 1 << 16;
 
-/// Sorts in parallel, checking for cancellation; the order of a cancelled sort is unspecified.
+/// Sorts in parallel and checks for cancellation. After a cancel, the order is unspecified.
 pub fn sort<T: Ord + Send>(data: &mut [T], job: Job) -> Result<()> {
     job.check()?;
     if data.len() <= SERIAL_SORT {

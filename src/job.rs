@@ -1,20 +1,22 @@
-//! Progress and cancellation of long work.
+//! Progress reports and cancel requests of long work.
 //!
-//! A [`Monitor`] is shared by the thread that works and the threads that watch. A [`Job`] is the worker's handle: a
-//! span of the whole progress bar, so that a routine reports from 0 to 1 without knowing its place in the whole.
+//! The thread that works and the threads that watch share a [`Monitor`]. The worker reports through a [`Job`], which
+//! stands for a span of the whole progress bar. A routine thus reports progress from 0 to 1 without knowing which span
+//! its caller gave it.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::reserve;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Monotone progress in `[0, 1]`, and an irrevocable cancel request.
+/// Progress in `[0, 1]`, which never falls, and a cancel request, which cannot be withdrawn.
 pub struct Monitor {
     cancelled: AtomicBool,
-    /// Value of the reserve's use counter when the job started.
+    /// Number of uses of the memory reserve when the job started.
     uses: u64,
-    /// Bits of an `f64`: non-negative floats sort like their bits as integers, so `fetch_max` keeps progress monotone.
+    /// Progress as the bits of an `f64`. Non-negative floats sort like their bits as integers, so `fetch_max` keeps
+    /// the progress from falling.
     progress: AtomicU64,
-    /// Called at every check for cancellation.
+    /// Called at every check for cancellation, for tests.
     #[cfg(test)]
     pub at_check: Option<Box<dyn Fn() + Send + Sync>>,
 }
@@ -44,7 +46,7 @@ impl Monitor {
         f64::from_bits(self.progress.load(Ordering::Relaxed))
     }
 
-    /// A job that spans the whole progress bar.
+    /// Returns a job that spans the whole progress bar.
     pub fn job(&self) -> Job<'_> {
         Job { monitor: self, start: 0.0, span: 1.0 }
     }
@@ -58,20 +60,20 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// The sub-job between two fractions of this job.
+    /// Returns the sub-job that spans the part of this job between the fractions `from` and `to`.
     pub fn part(self, from: f64, to: f64) -> Job<'a> {
         debug_assert!((0.0..=1.0).contains(&from) && from <= to && to <= 1.0);
         Job { monitor: self.monitor, start: self.start + self.span * from, span: self.span * (to - from) }
     }
 
-    /// Reports the completed fraction of this job, in `[0, 1]`.
+    /// Reports which fraction of this job is done, in `[0, 1]`.
     pub fn report(self, fraction: f64) {
         let whole = (self.start + self.span * fraction.clamp(0.0, 1.0)).clamp(0.0, 1.0);
         self.monitor.progress.fetch_max(whole.to_bits(), Ordering::Relaxed);
     }
 
-    /// Returns an error if the caller cancelled the job, or if memory is so short that the reserve was used. Call it
-    /// at least every few milliseconds.
+    /// Returns an error if the job was cancelled, or if memory ran so short that the memory reserve has been used
+    /// since the job started. Call it at least every few milliseconds.
     pub fn check(self) -> Result<()> {
         if self.is_cancelled() {
             Err(Error::cancelled())

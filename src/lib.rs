@@ -8,16 +8,17 @@
 //! exemplar guides + artwork, target guides ─▶ stylize ─▶ stylised image
 //! ```
 //!
-//! [`transfer`] runs the first pipeline in order and passes data between the stages, which do not depend on each
-//! other. [`plan`] chooses settings of its last two stages for a target error or time. `ffi` is the C boundary, and
-//! the only module that deals with C. Engines under both pipelines: [`scene`] (description, glTF, acceleration),
-//! [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`], [`photometry`] (colour
-//! temperature, glare, luminaire files), `network` (ONNX files). `tests/layering.rs` checks these dependencies.
+//! [`transfer`] runs the first pipeline and passes data between its stages. The stages do not depend on each other.
+//! [`plan`] chooses settings of its last two stages for a target error or time. `ffi` is the C boundary, and the only
+//! module that deals with C. Both pipelines use these modules: [`scene`] (description, glTF, acceleration), [`render`]
+//! (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`], [`photometry`] (colour temperature,
+//! glare, luminaire files), `network` (ONNX files). `tests/layering.rs` checks the dependencies between modules.
 //!
-//! Every stage has the same interface: `Params` with defaults, ranges and units; an input; an output with its own
-//! error estimate; and a function that runs it with a [`job::Job`], which reports progress and carries cancel
-//! requests. The stages that read the photo compute [`warning`]s from their results. All parallel work goes through
-//! [`exec`] in units that do not depend on the number of threads: equal input yields equal bits.
+//! Every stage has the same interface: `Params` with defaults, ranges and units; an input; an output with an estimate
+//! of its own error; and a function that runs the stage. The function takes a [`job::Job`], which reports progress and
+//! carries cancel requests. The stages that read the photo derive [`warning`]s from their results. All parallel work
+//! goes through [`exec`], in units that do not depend on the number of threads. Equal input therefore gives results
+//! that are equal bit by bit.
 //!
 //! Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709 RGB; for photometric light their
 //! luminance is in cd/m². Illuminance is in lux, flux in lumens. Images and rays use `f32`, geometry and solvers
@@ -34,7 +35,7 @@
 //! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
 //!   scrambling.
 
-// Deny functions that end the process or print.
+// Warn of calls that panic, exit or write to the console.
 #![cfg_attr(
     not(test),
     warn(
@@ -84,6 +85,6 @@ pub mod transfer;
 
 pub mod plan;
 
-// Its comments become a C header, so brackets in them are neither links nor tags.
+// The comments of `ffi` become a C header, so brackets in them are neither links nor tags.
 #[allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
 pub mod ffi;

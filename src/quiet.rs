@@ -1,21 +1,23 @@
-//! Defects (Rust's panics) become statuses, and their messages never reach the stderr of the host.
+//! Keeps the messages of panics (defects of this library) away from the host's stderr. The C boundary catches the
+//! panics and returns a status instead.
 //!
 //! Rust writes the message of a panic before the panic can be caught, unless a panic hook prevents it. The hook of
-//! this module is silent on threads that are inside the library: in a call of the host, or started by one. On other
-//! threads it calls the previously installed hook. The shared library and the static archive contain their own Rust
-//! runtime, so their hook never sees a panic of the host; a Rust host that links the crate shares the hook.
+//! this module is silent on threads that are inside the library: threads of the host during a call, and threads that
+//! the library has started. On other threads it calls the previously installed hook. The shared library and the static
+//! archive contain their own Rust runtime, so their hook never sees a panic of the host. A Rust host that links the
+//! crate shares the hook with it.
 
 use std::cell::Cell;
 use std::panic;
 use std::sync::Once;
 use std::thread;
 
-// Without a destructor, so that a host can unload the library.
+// The variable has no destructor, so that a host can unload the library.
 thread_local! {
     static IS_QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Suppresses messages of panics on this thread for its lifetime.
+/// Suppresses panic messages on this thread as long as this value lives.
 pub struct Quiet {
     before: bool,
 }
@@ -33,18 +35,19 @@ impl Drop for Quiet {
     }
 }
 
-/// Whether messages of panics are suppressed on this thread.
+/// Whether panic messages are suppressed on this thread.
 pub fn is_on() -> bool {
     IS_QUIET.get()
 }
 
-/// Calls a function of the host, whose panics print their message.
+/// Calls a function of the host, during which panic messages are printed.
 pub fn outside<T>(call: impl FnOnce() -> T) -> T {
     let _restored = Quiet { before: IS_QUIET.replace(false) };
     call()
 }
 
-/// Installs the hook once per process. A panicking thread cannot install it; the next call then does.
+/// Installs the hook once per process. A panicking thread cannot install a hook; in that case, the next call on
+/// another thread installs it.
 fn install() {
     static INSTALLED: Once = Once::new();
     if !INSTALLED.is_completed() && !thread::panicking() {

@@ -1,15 +1,17 @@
-//! A memory reserve for small allocations in a process that has run out of memory.
+//! A memory reserve, from which small allocations are served when the system has no memory left.
 //!
-//! Allocations that grow with the input use fallible functions ([`list`], [`make_room`]) whose failure becomes
+//! Allocations that grow with the input use fallible functions ([`list`], [`make_room`]), whose failure becomes
 //! `LUXFER_OUT_OF_MEMORY`. Small allocations (names, messages, thread queues, rows in a codec) are infallible: if the
-//! system cannot serve one, Rust aborts the process, and the host with it. The library therefore keeps a reserve of a
-//! few MiB, which occupies no physical memory until used. Small allocations that the system cannot serve are taken
-//! from it, and every job of the process then ends at its next check. Third-party codecs and new threads need more
-//! than that and cannot handle failure; before they run, [`has_room`] tests whether the system has enough memory.
+//! system cannot serve one of them, Rust aborts the process, and the host with it. The library therefore keeps a
+//! reserve of 8 MiB, which occupies no physical memory until it is used. The reserve serves small allocations that the
+//! system cannot serve; every job of the process then ends at its next check. Third-party codecs and new threads
+//! cannot handle failed allocations, and need more memory than the reserve has. Before they run, [`has_room`] tests
+//! whether the system has enough memory.
 //!
-//! The process can still be aborted if another thread takes that memory in between; by 48 bytes that the standard
-//! library requests from the system directly when a thread starts or first fails in the library; and by allocations of
-//! the system's C library when a thread first calls this library.
+//! The process can still be aborted in three cases: another thread takes the memory right after this test; the system
+//! cannot serve the 48 bytes that the standard library requests from it directly when a thread starts or first fails
+//! in the library; or it cannot serve the allocations of the system's C library when a thread first calls this
+//! library.
 //!
 //! Without the feature `reserve`, the program that links the library chooses the allocator.
 
@@ -18,25 +20,25 @@ use std::cell::UnsafeCell;
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Size of the reserve in bytes, and the largest allocation it serves.
+/// Size of the reserve (`BYTES`), and the largest allocation that it serves, in bytes.
 const BYTES: usize = 8 << 20;
 const MAX_ALLOCATION: usize = 256 << 10;
-/// Allocation granularity.
+/// Size of a block in bytes; the reserve hands out whole blocks.
 const BLOCK: usize = 64;
 const BLOCKS: usize = BYTES / BLOCK;
-/// The largest supported alignment.
+/// Largest supported alignment in bytes.
 const PAGE: usize = 4096;
 
 #[cfg_attr(feature = "reserve", global_allocator)]
 static ALLOCATOR: Allocator = Allocator(Reserve::new());
 
-/// Number of small allocations that the system could not serve since the process began.
+/// Returns the number of small allocations that the system could not serve since the process began.
 pub fn uses() -> u64 {
     ALLOCATOR.0.uses.load(Ordering::Relaxed)
 }
 
-/// An empty list with the given capacity, or `None`. Never taken from the reserve, because the caller can handle
-/// failure.
+/// Returns an empty list with room for `len` items; `None` if the system has no memory. The list never takes memory
+/// from the reserve, because the caller can handle failure.
 pub fn list<T>(len: usize) -> Option<Vec<T>> {
     let layout = Layout::array::<T>(len).ok()?;
     if layout.size() == 0 {
@@ -48,13 +50,14 @@ pub fn list<T>(len: usize) -> Option<Vec<T>> {
     (!start.is_null()).then(|| unsafe { Vec::from_raw_parts(start.cast(), 0, len) })
 }
 
-/// Ensures capacity for `more` further items, or returns false; capacity at least doubles when it grows.
+/// Ensures capacity for `more` further items; returns false if there is no memory. If the capacity grows, it at least
+/// doubles.
 pub fn make_room<T>(items: &mut Vec<T>, more: usize) -> bool {
     if items.capacity() - items.len() >= more {
         return true;
     }
     let capacity = items.len().saturating_add(more).max(2 * items.capacity()).max(4);
-    // The system may move larger lists in place, which is faster.
+    // Let the system grow a large list, since it may do so in place, which is faster.
     if capacity.saturating_mul(size_of::<T>()) > MAX_ALLOCATION {
         return items.try_reserve(more).is_ok();
     }
@@ -64,10 +67,10 @@ pub fn make_room<T>(items: &mut Vec<T>, more: usize) -> bool {
     true
 }
 
-/// Whether the system can allocate this many bytes now. Call it before code that aborts the process if they are
-/// missing.
+/// Whether the system can allocate this number of bytes now. Call it before code that aborts the process when memory
+/// runs out.
 pub fn has_room(bytes: usize) -> bool {
-    // The optimiser may remove an unused allocation; `black_box` prevents that.
+    // Keep the optimiser from removing the unused allocation, with `black_box`.
     std::hint::black_box(list::<u8>(bytes)).is_some()
 }
 
@@ -93,7 +96,7 @@ struct Allocator(Reserve);
 // SAFETY: memory belongs to the system or to the reserve, which recognises its own by address.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: the caller's guarantees about the layout are the ones required there.
+        // SAFETY: the caller guarantees what `System.alloc` requires of the layout.
         let start = unsafe { System.alloc(layout) };
         if start.is_null() { self.0.take(layout) } else { start }
     }
@@ -146,7 +149,7 @@ struct Storage([u8; BYTES]);
 
 struct Reserve {
     storage: UnsafeCell<Storage>,
-    /// Number of blocks of the allocation that begins at each block; 0 if none does.
+    /// For each block, the number of blocks in the allocation that begins there; 0 if no allocation begins there.
     lengths: UnsafeCell<[u16; BLOCKS]>,
     /// Spin lock that guards `lengths`.
     busy: AtomicBool,
@@ -167,7 +170,8 @@ impl Reserve {
         }
     }
 
-    /// First-fit allocation from the reserve; null if the request is too large or no space is free.
+    /// Allocates the first free run of blocks that is long enough; null if the request is too large or no run
+    /// suffices.
     fn take(&self, layout: Layout) -> *mut u8 {
         if layout.size() > MAX_ALLOCATION || layout.align() > PAGE {
             return null_mut();
@@ -175,7 +179,7 @@ impl Reserve {
         self.uses.fetch_add(1, Ordering::Relaxed);
         let (count, step) = (layout.size().div_ceil(BLOCK).max(1), layout.align().div_ceil(BLOCK));
         let first = self.with_lengths(|lengths| {
-            // The current run of free blocks, from `first` to `end`.
+            // Search for a run of free blocks, which extends from `first` to `end`.
             let (mut first, mut end) = (0, 0);
             while end < first + count && end < BLOCKS {
                 match lengths[end] {
@@ -195,7 +199,7 @@ impl Reserve {
         first.map_or(null_mut(), |first| unsafe { self.storage.get().cast::<u8>().add(first * BLOCK) })
     }
 
-    /// The first block of an allocation, if it belongs to the reserve.
+    /// Returns the index of the block at an address; `None` if the address is outside the reserve.
     fn block_of(&self, start: *mut u8) -> Option<usize> {
         let offset = start.addr().wrapping_sub(self.storage.get().addr());
         (offset < BYTES).then_some(offset / BLOCK)
@@ -205,8 +209,8 @@ impl Reserve {
         self.with_lengths(|lengths| lengths[block] = 0);
     }
 
-    /// Runs `work` under the spin lock. `work` must not allocate or panic. The lock is held briefly and rarely, so
-    /// spinning is acceptable.
+    /// Calls `work` with the lengths of all allocations, under the spin lock. `work` must not allocate or panic.
+    /// Spinning is acceptable, because the lock is held rarely and briefly.
     fn with_lengths<T>(&self, work: impl FnOnce(&mut [u16; BLOCKS]) -> T) -> T {
         while self.busy.swap(true, Ordering::Acquire) {
             std::hint::spin_loop();
@@ -236,7 +240,7 @@ mod tests {
         let mut held: Vec<(usize, *mut u8)> = Vec::new();
         let mut rng = crate::rng::Rng::new(1, &[]);
         let mut refused = 0;
-        // Under an interpreter (tests/miri.sh) each round takes a thousand times as long.
+        // Under the interpreter Miri (tests/miri.sh), each round takes a thousand times as long.
         let rounds = if cfg!(miri) { 600 } else { 20_000 };
         for _ in 0..rounds {
             let size = 1 + (rng.next_f32().powi(4) * MAX_ALLOCATION as f32) as usize;
@@ -257,7 +261,7 @@ mod tests {
             }
         }
         assert!(refused > 0 && refused < rounds / 2, "{refused} of {rounds}");
-        // No block leaks: after everything is freed, all of the reserve can be allocated again.
+        // No block leaks: after all allocations are freed, the whole reserve can be allocated again.
         held.into_iter().for_each(|(_, start)| give_back(&RESERVE, start));
         let all: Vec<_> = (0..BYTES / MAX_ALLOCATION).map(|_| RESERVE.take(layout(MAX_ALLOCATION, PAGE))).collect();
         assert!(all.iter().all(|start| !start.is_null()));
@@ -299,7 +303,7 @@ mod tests {
         unsafe {
             let start = ALLOCATOR.0.take(layout(100, 8));
             (0..100).for_each(|i| start.add(i).write(i as u8));
-            // The system has memory now and is tried first.
+            // The allocation moves to the system, which has memory now and is tried first.
             let moved = ALLOCATOR.realloc(start, layout(100, 8), 5000);
             assert_eq!(ALLOCATOR.0.block_of(moved), None);
             assert!((0..100).all(|i| moved.add(i).read() == i as u8));

@@ -1,7 +1,7 @@
-//! Counter-based random numbers: a pure function of a seed and coordinates, so that results do not depend on the order
-//! in which threads compute them.
+//! Counter-based random numbers. Each is a pure function of a seed and of coordinates, so that results do not depend
+//! on the order in which threads compute them.
 
-/// Mixes 64 bits so that every input bit reaches every output bit (the finaliser of SplitMix64, Steele et al. 2014).
+/// Hashes 64 bits so that every input bit affects every output bit (the finaliser of SplitMix64, Steele et al. 2014).
 #[inline]
 pub fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -35,22 +35,22 @@ impl Rng {
         (self.next_u64() >> 32) as u32
     }
 
-    /// Uniform in `[0, 1)`, all 24 bits of the fraction random.
+    /// Returns a number uniform in `[0, 1)`; all 24 bits of its fraction are random.
     pub fn next_f32(&mut self) -> f32 {
         (self.next_u64() >> 40) as f32 * (1.0 / (1u32 << 24) as f32)
     }
 
-    /// Uniform in `[0, 1)`, all 53 bits of the fraction random.
+    /// Returns a number uniform in `[0, 1)`; all 53 bits of its fraction are random.
     pub fn next_f64(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
-    /// Uniform in `0..count` (Lemire 2019, without rejection: the bias is below `count / 2^64`).
+    /// Returns a number uniform in `0..count` (Lemire 2019, without rejection: the bias is below `count / 2^64`).
     pub fn below(&mut self, count: usize) -> usize {
         ((u128::from(self.next_u64()) * count as u128) >> 64) as usize
     }
 
-    /// A standard normal deviate (Box and Muller 1958).
+    /// Returns a standard normal deviate (Box and Muller 1958).
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.next_f64()).ln()).sqrt();
         radius * (std::f64::consts::TAU * self.next_f64()).cos()
@@ -72,7 +72,7 @@ mod tests {
             square += u * u;
             cross += u * v;
         }
-        // Tolerance: six standard deviations of each estimate.
+        // The tolerance is six standard deviations of each estimate.
         let n = n as f64;
         assert!((sum / n).abs() < 6.0 * (1.0 / 12.0 / n).sqrt());
         assert!((square / n - 1.0 / 12.0).abs() < 6.0 * (1.0 / 180.0 / n).sqrt());
@@ -86,7 +86,7 @@ mod tests {
         for _ in 0..70_000 {
             counts[rng.below(7)] += 1;
         }
-        // chi-squared with 6 degrees of freedom: 27.9 is its 1e-4 quantile.
+        // With 6 degrees of freedom, chi-squared exceeds 27.9 with a probability of 1e-4.
         let chi2: f64 = counts.iter().map(|&c| (f64::from(c) - 10_000.0).powi(2) / 10_000.0).sum();
         assert!(chi2 < 27.9, "{chi2}");
     }

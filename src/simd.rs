@@ -1,10 +1,10 @@
-//! Run-time selection of vector instructions, and loops compiled for each instruction set.
+//! Selects the instruction set at run time, and compiles loops for each instruction set.
 //!
 //! [`Level::widest`] is the only place that queries the processor; all code with variants for several levels calls it.
-//! Results are identical to the bit at every level: no variant fuses a multiplication and an addition where the
-//! rounding would differ, and loops keep the order of their sums.
+//! Results are equal bit by bit at every level: no variant fuses a multiplication and an addition where the rounding
+//! would differ, and loops keep the order of their sums.
 
-/// Instruction sets; each includes the ones before it.
+/// Instruction sets, from narrow to wide; each includes all narrower sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// The baseline of the architecture: SSE2 on x86-64, NEON on aarch64.
@@ -18,7 +18,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// The widest level that this processor supports.
+    /// Returns the widest level that this processor supports.
     pub fn widest() -> Self {
         let level = Self::of_processor();
         #[cfg(test)]
@@ -42,7 +42,8 @@ impl Level {
     }
 }
 
-/// Defines a function compiled for every level and dispatched at run time. Supports plain arguments only, no generics.
+/// Defines a function that is compiled for every level and dispatched at run time. The function may have only plain
+/// arguments, and no generics.
 macro_rules! widest {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block) => {
         $(#[$meta])*
@@ -81,7 +82,7 @@ macro_rules! widest {
 
 pub(crate) use widest;
 
-/// Narrower levels than the processor's, for tests only; the shipped library always uses the widest.
+/// Forces a narrower level than the processor's widest, for tests. The shipped library always uses the widest level.
 #[cfg(test)]
 pub mod forced {
     use super::Level;
@@ -100,13 +101,13 @@ pub mod forced {
         ALL[usize::from(MAX_LEVEL.load(Ordering::Relaxed))]
     }
 
-    /// The levels that this processor supports, narrowest first.
+    /// Returns the levels that this processor supports, narrowest first.
     pub fn levels() -> impl Iterator<Item = Level> {
         ALL.into_iter().filter(|level| *level <= Level::of_processor())
     }
 
-    /// Runs `work` at a level. Calls are serialised; other tests running meanwhile use that level too, which does not
-    /// change their results.
+    /// Runs `work` at a level. Concurrent calls run one after the other. Other tests that run meanwhile use this level
+    /// as well, which does not change their results.
     pub fn at<T>(level: Level, work: impl FnOnce() -> T) -> T {
         struct Widest;
         impl Drop for Widest {

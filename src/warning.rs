@@ -1,12 +1,13 @@
-//! The warning type: a reason to doubt a result, and the remedy.
+//! Warnings: reasons to doubt a result, with remedies.
 //!
-//! A warning compares a figure of a result with a limit. Each stage computes its list from its result alone, and a
-//! scene from its contents (`warnings.rs` in the folder of the stage, with the limits). Nothing is stored.
+//! A warning arises when a figure of a result crosses a limit. Each stage computes its warnings from its result alone,
+//! and a scene computes them from its contents; `warnings.rs` in the folder of the stage holds the limits. Warnings
+//! are not stored.
 
 use glam::DVec2;
 use std::fmt;
 
-/// The reason to doubt a result, with the values of `luxfer_warning_code`: append only.
+/// The kind of a warning. The values are those of `luxfer_warning_code`, so new kinds may only be appended.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Code {
@@ -20,7 +21,7 @@ pub enum Code {
     NotSquare = 4,
     /// Features: the room was laid out from its lines with little confidence, and there is no depth map.
     LayoutUncertain = 5,
-    /// Mask: a large share of it is unlike every stroke.
+    /// Mask: a large share of it is unlike all strokes.
     Unseen = 6,
     /// Mask: strokes of both classes cover the same pixels.
     ContradictoryStrokes = 7,
@@ -28,9 +29,9 @@ pub enum Code {
     OffImageStrokes = 8,
     /// Mask: its stated error is large.
     UncertainMask = 9,
-    /// Mask: it has no pixel.
+    /// Mask: it contains no pixel.
     EmptyMask = 10,
-    /// Mask: it contradicts the strokes it was made from.
+    /// Mask: it contradicts the strokes from which it was computed.
     MissedStrokes = 11,
     /// Mask of the lights: it covers a large share of the plane.
     AlmostAllLit = 12,
@@ -42,11 +43,12 @@ pub enum Code {
     PatternUncertain = 15,
     /// Emission: the photo shows fewer whole lamps than determine a pattern.
     FewLamps = 16,
-    /// Emission: many lamps without a lattice, which patches continue imperfectly.
+    /// Emission: the lamps form no lattice, so the texture is continued patch by patch, and it differs much from the
+    /// photo.
     NoLattice = 17,
     /// Relighting: a colour channel does not meet its target.
     Unreachable = 18,
-    /// Relighting: the photo clips the target, which is a lower bound.
+    /// Relighting: the photo clips the target colour, which is therefore only a lower bound.
     TargetClipped = 19,
     /// Scene: it is so high, so wide or so small that its unit is probably not the metre.
     ImplausibleSize = 20,
@@ -54,13 +56,13 @@ pub enum Code {
     NotRendered = 21,
     /// Mask of the lights: pixels painted as light are hardly brighter than pixels painted as plane.
     DimLamps = 22,
-    /// Emission: a texture without light would differ less from the photo.
+    /// Emission: the texture differs more from the photo than a texture without light would.
     NoPattern = 23,
-    /// Mask: it is a proposal, since there were no strokes.
+    /// Mask: it is only a proposal, because no strokes were given.
     Proposed = 24,
     /// Scene: it lies far from the origin of its coordinates.
     FarFromOrigin = 25,
-    /// Scene: lights shine from points, and are not in its pictures.
+    /// Scene: it has points, spots or luminaires, which have no surface that images could show.
     NotInPicture = 26,
 }
 
@@ -95,7 +97,7 @@ impl Code {
     ];
 }
 
-/// A reason to doubt a result.
+/// A reason to doubt a result, with its remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     pub code: Code,
@@ -103,16 +105,16 @@ pub struct Warning {
     pub severity: f64,
     /// The limit that the figure has crossed.
     pub limit: f64,
-    /// The defect, with the figure.
+    /// Describes the defect, with the figure.
     pub message: String,
-    /// The remedy.
+    /// Describes the remedy.
     pub advice: String,
-    /// The position in the photo, in pixels.
+    /// Position of the defect in the photo, in pixels.
     pub place: Option<DVec2>,
 }
 
 impl Warning {
-    /// A warning if a figure lies above its limit, or is not a number.
+    /// Returns a warning if the figure `severity` lies above `limit` or is not a number.
     pub fn above(
         code: Code,
         severity: f64,
@@ -124,7 +126,7 @@ impl Warning {
         (!is_good).then(|| Self::new(code, severity, limit, message(), advice))
     }
 
-    /// A warning if a figure lies below its limit, or is not a number.
+    /// Returns a warning if the figure `severity` lies below `limit` or is not a number.
     pub fn below(
         code: Code,
         severity: f64,
@@ -140,7 +142,7 @@ impl Warning {
         Self { code, severity, limit, message, advice: advice.into(), place: None }
     }
 
-    /// The same warning with a position in the photo; a position that is not finite is dropped.
+    /// Returns this warning with a position in the photo, in pixels. A position that is not finite is dropped.
     pub fn at(self, place: Option<DVec2>) -> Self {
         Self { place: place.filter(|p| p.is_finite()), ..self }
     }
@@ -153,7 +155,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// A share as a percentage, for messages.
+/// Formats a share as a percentage, for messages.
 pub fn percent(share: f64) -> String {
     if share.abs() < 0.0995 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
 }

@@ -1,24 +1,24 @@
-//! Arbitrary output variables: surface attributes (distance, position, orientation, colour, index) of the first hit
-//! along each camera ray.
+//! Arbitrary output variables (AOVs): attributes of the first surface along each camera ray, such as distance,
+//! position, normal, albedo and mesh index, accumulated per pixel.
 //!
-//! Clear panes and mirrors count as surfaces. Colours and coverage are means over all samples, so that they add up
-//! like light; distances, positions and normals are means over the samples that hit a surface. An index cannot be
-//! averaged: it is the index that more than half of the hits have, or, without such a majority, the index of one of
-//! the hits (the majority vote of Boyer and Moore 1981, in one pass with one counter).
+//! Clear panes and mirrors count as surfaces. The albedo and the coverage of a pixel are means over all its samples,
+//! so that they composite like radiance. Distances, positions and normals are means over the samples that hit a
+//! surface. An index cannot be averaged: a pixel gets the index that more than half of its hits have. Without such a
+//! majority it gets the index of any one of its hits (one-pass majority vote with one counter, Boyer and Moore 1981).
 
 use super::ballot;
 use super::path::PrimaryHit;
 use super::world::World;
 use glam::{DVec3, Vec3};
 
-/// A surface attribute.
+/// A surface attribute that a film can record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aov {
-    /// Distance along the viewing direction (z), in metres; infinite for the background.
+    /// Distance of the surface along the viewing direction (camera z), in metres; infinite for the background.
     Depth,
-    /// Distance along the ray, in metres; infinite for the background.
+    /// Distance of the surface along the camera ray, in metres; infinite for the background.
     Distance,
-    /// World position in metres.
+    /// Position of the surface in scene coordinates, in metres; 0 for the background.
     Position,
     /// Unit shading normal in world space, facing the viewer; 0 for the background.
     Normal,
@@ -30,7 +30,7 @@ pub enum Aov {
     Object,
     /// Index of the material plus 1; 0 for the background.
     Material,
-    /// Share of the pixel covered by surfaces, in `[0, 1]`.
+    /// Share of the pixel's samples that hit a surface, in `[0, 1]`.
     Alpha,
     /// Luminance of the image in cd/m²: `0.2126 R + 0.7152 G + 0.0722 B`.
     Luminance,
@@ -50,7 +50,8 @@ impl Aov {
         Self::Luminance,
     ];
 
-    /// Name of the attribute's layer in files. If Blender or Nuke has a name for the attribute, that name is used.
+    /// Returns the name of the attribute's layer in image files: the name that Blender or Nuke uses, if either has
+    /// one.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "Depth",
@@ -77,7 +78,8 @@ impl Aov {
         }
     }
 
-    /// Number of values per pixel in the totals of a film, without the number of hits.
+    /// Returns the number of f32 values per pixel in which a film accumulates this attribute (the totals). The number
+    /// of hits is stored separately.
     pub fn total_count(self) -> usize {
         match self {
             Self::Depth | Self::Distance => 1,
@@ -87,7 +89,8 @@ impl Aov {
         }
     }
 
-    /// Number of values per pixel in lossless sums ([`Surfaces::add_to`]).
+    /// Returns the number of f64 values per pixel in which a rendered part accumulates this attribute (the lossless
+    /// sums, see [`Surfaces::add_to`]).
     pub fn summed(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -95,7 +98,7 @@ impl Aov {
         }
     }
 
-    /// Converts lossless sums to the totals of a film.
+    /// Computes the totals of a film's pixel from the lossless sums of the pixel.
     pub fn set_totals(self, sums: &[f64], totals: &mut [f32]) {
         match self {
             Self::Object | Self::Material => totals.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
@@ -103,7 +106,7 @@ impl Aov {
         }
     }
 
-    /// Adds the sums over other paths to `sums`.
+    /// Adds `others`, the lossless sums over other paths of the same pixel, to `sums`.
     pub fn join_sums(self, sums: &mut [f64], others: &[f64]) {
         match self {
             Self::Object | Self::Material => ballot::join(sums, others),
@@ -111,8 +114,8 @@ impl Aov {
         }
     }
 
-    /// The value of a pixel from its totals, its number of hits, and its number of samples. Positions are relative to
-    /// the centre of the world.
+    /// Writes the value of a pixel to `out`, computed from the pixel's totals, number of hits and number of samples.
+    /// Positions are relative to the centre of the world.
     pub fn value(self, totals: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(totals[i])));
         match self {
@@ -124,13 +127,13 @@ impl Aov {
             Self::Albedo => (vector() / samples).as_vec3().write_to_slice(out),
             Self::Object | Self::Material => out[0] = if hits > 0.0 { totals[0] } else { 0.0 },
             Self::Alpha => out[0] = (hits / samples) as f32,
-            // Computed from the main image.
+            // The film computes the luminance from the main image.
             Self::Luminance => (),
         }
     }
 }
 
-/// Sums over the primary hits of a pixel.
+/// Sums of all attributes over the primary hits of one pixel.
 #[derive(Clone, Copy, Default)]
 pub struct Surfaces {
     pub hits: u32,
@@ -145,7 +148,7 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// `depth` is the distance along the viewing direction.
+    /// Adds a primary hit at distance `depth` along the viewing direction, in metres.
     pub fn add(&mut self, world: &World, seen: &PrimaryHit, depth: f32) {
         let material = world.scene().meshes[seen.mesh as usize].material;
         self.hits += 1;
@@ -159,7 +162,7 @@ impl Surfaces {
         self.material.cast(material as u32 + 1);
     }
 
-    /// Adds the sums to the totals of a pixel.
+    /// Adds these sums to the film's totals of the pixel.
     pub fn add_to_totals(&self, aov: Aov, totals: &mut [f32]) {
         match aov {
             Aov::Object => self.object.join(totals),
@@ -168,7 +171,8 @@ impl Surfaces {
         }
     }
 
-    /// Adds the sums to lossless sums in f64. Votes are lossless up to `ballot::CANDIDATES` candidates.
+    /// Adds these sums to the lossless f64 sums of a rendered part. Vote counts are exact for up to
+    /// `ballot::CANDIDATES` different indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {
             Aov::Object => ballot::cast(sums, self.object.candidate.into(), self.object.lead.into()),
@@ -177,7 +181,7 @@ impl Surfaces {
         }
     }
 
-    /// The sum of an attribute that is not an index; scalar attributes use the first component.
+    /// Returns the sum of an attribute that is not an index. A scalar attribute is in the first component.
     fn sum(&self, aov: Aov) -> DVec3 {
         match aov {
             Aov::Depth => DVec3::splat(self.depth),
@@ -191,7 +195,8 @@ impl Surfaces {
     }
 }
 
-/// The leading candidate of a majority vote, and its lead.
+/// State of a Boyer–Moore majority vote: the leading candidate, and its lead. The lead is the number of the
+/// candidate's votes that no vote for another candidate has cancelled.
 #[derive(Clone, Copy, Default)]
 struct Vote {
     candidate: u32,
@@ -206,8 +211,8 @@ impl Vote {
         self.lead = if self.candidate == candidate { self.lead + 1 } else { self.lead - 1 };
     }
 
-    /// Merges this vote into the outcome of other votes, which `totals` stores as a candidate and its lead. A candidate
-    /// with a majority of all votes still wins (Agarwal et al. 2013, "Mergeable summaries").
+    /// Merges this vote into `totals`, which holds the candidate and the lead of earlier votes. A candidate with a
+    /// majority of all votes still wins after merging (Agarwal et al. 2013, "Mergeable summaries").
     fn join(self, totals: &mut [f32]) {
         let (candidate, lead) = (self.candidate as f32, self.lead as f32);
         if totals[0] == candidate {
@@ -229,7 +234,7 @@ mod tests {
     fn a_majority_wins_however_the_votes_are_split() {
         let mut rng = Rng::new(31, &[]);
         for round in 0..200 {
-            // 101 votes in random order, 51 of them for candidate 7, merged at random places.
+            // Cast 101 votes in random order, 51 of them for candidate 7, and merge the partial votes at random times.
             let mut votes: Vec<u32> = (0..101).map(|i| if i < 51 { 7 } else { 1 + rng.below(5) as u32 }).collect();
             for i in (1..votes.len()).rev() {
                 votes.swap(i, rng.below(i + 1));

@@ -1,21 +1,22 @@
-//! Mergeable vote counts for indices: a few candidates with their votes (Misra and Gries 1982, "Finding repeated
-//! elements"; Agarwal et al. 2013, "Mergeable summaries").
+//! Mergeable vote counts for the object and material indices of a pixel: up to [`CANDIDATES`] indices, each with its
+//! number of votes (Misra and Gries 1982, "Finding repeated elements"; Agarwal et al. 2013, "Mergeable summaries").
 //!
-//! With up to [`CANDIDATES`] surfaces in a pixel the counts are exact, in any order of counting and merging. With more
-//! surfaces, votes for rare candidates cancel each other; a majority still wins.
+//! If a pixel shows at most [`CANDIDATES`] different indices, the counts are exact, whatever the order of counting and
+//! merging. If it shows more, votes for rare candidates cancel votes for the others, but an index with a majority
+//! still wins.
 
-/// Largest number of candidates. [origin not recorded]
+/// Largest number of different candidates that one ballot can hold. [origin not recorded]
 const CANDIDATES: usize = 4;
-/// Numbers per ballot: pairs of a candidate and its votes. A pair without votes is empty.
+/// Length of a ballot in f64 values: for each slot a candidate and its number of votes. A slot with 0 votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;
 
-/// Adds votes for a candidate.
+/// Adds `votes` votes for `candidate` to a ballot.
 pub fn cast(ballot: &mut [f64], candidate: f64, votes: f64) {
     let (slots, _) = ballot.as_chunks_mut::<2>();
     let Some(place) =
         slots.iter().position(|s| s[1] > 0.0 && s[0] == candidate).or_else(|| slots.iter().position(|s| s[1] == 0.0))
     else {
-        // Cancel votes: each cancelled vote cancels one vote of every candidate.
+        // No slot is free: cancel the same number of votes of every candidate in the ballot and of the new one.
         let min_votes = slots.iter().fold(votes, |min_votes, s| min_votes.min(s[1]));
         slots.iter_mut().for_each(|s| s[1] -= min_votes);
         if votes > min_votes {
@@ -26,13 +27,13 @@ pub fn cast(ballot: &mut [f64], candidate: f64, votes: f64) {
     slots[place] = [candidate, slots[place][1] + votes];
 }
 
-/// Adds the votes of another ballot.
+/// Adds all votes of the ballot `other` to `ballot`.
 pub fn join(ballot: &mut [f64], other: &[f64]) {
     let (slots, _) = other.as_chunks::<2>();
     slots.iter().filter(|s| s[1] > 0.0).for_each(|s| cast(ballot, s[0], s[1]));
 }
 
-/// The candidate with the most votes (of equals the smallest index), and its votes.
+/// Returns the candidate with the most votes, and its number of votes. Ties go to the smallest index.
 pub fn winner(ballot: &[f64]) -> [f64; 2] {
     let (slots, _) = ballot.as_chunks::<2>();
     let better = |a: [f64; 2], b: [f64; 2]| if (b[1], -b[0]) > (a[1], -a[0]) { b } else { a };
@@ -44,7 +45,7 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
-    /// Counts votes in several ballots and merges them in random order.
+    /// Distributes the votes over several ballots, merges the ballots in random order, and returns the winner.
     fn counted(votes: &[u32], rng: &mut Rng) -> [f64; 2] {
         let mut ballots = vec![[0.0; NUMBERS]; 1 + rng.below(5)];
         for &vote in votes {

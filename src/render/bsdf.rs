@@ -1,10 +1,11 @@
-//! The BSDF of a surface point: glTF 2.0's metallic-roughness model (appendix B).
+//! The BSDF of a surface point, after the metallic-roughness model of glTF 2.0 (appendix B).
 //!
-//! The model has a Lambertian layer below a GGX layer. At a roughness below 1/1000, the top layer is a mirror. The
-//! share `transmission` of the light that passes the top layer continues straight, as through a thin pane
-//! (`KHR_materials_transmission` without volume). Appendix B mixes the layers by the Fresnel factor of the half vector,
-//! which reflects up to twice the incident light at grazing angles. Here the diffuse layer is attenuated by the albedo
-//! of the top layer for both directions instead. A dielectric with an index of refraction of 1 has no top layer.
+//! The model has a Lambertian layer below a GGX layer (the top layer). At a roughness below 1/1000, the top layer is a
+//! perfect mirror. Of the light that passes the top layer, the share `transmission` continues in a straight line, as
+//! through a thin pane (`KHR_materials_transmission` without volume). Appendix B blends the two layers by the Fresnel
+//! factor of the half vector; the sum of both layers then reflects up to twice the incident light at grazing angles.
+//! This module instead attenuates the diffuse layer by the albedo of the top layer, for the incoming and for the
+//! outgoing direction. A dielectric with an index of refraction of 1 has no top layer.
 //!
 //! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
 
@@ -12,30 +13,31 @@ use super::ggx::{self, AlbedoTable};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// Below this perceptual roughness a surface is a perfect mirror. [convention]
+/// A surface below this perceptual roughness is a perfect mirror. [convention]
 pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
-/// Smallest perceptual roughness at which a vertex is shared among neighbouring pixels, which look from nearly the
-/// same place. [origin not recorded]
+/// Smallest perceptual roughness at which neighbouring pixels may share a path vertex. On smoother surfaces, their
+/// slightly different view directions would see different highlights. [origin not recorded]
 const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
-/// The material parameters at one point.
+/// The BSDF parameters of a material at one surface point.
 #[derive(Clone, Copy, Debug)]
 pub struct Substance {
-    /// Albedo of the diffuse layer times the share of the dielectric part.
+    /// Albedo of the diffuse layer, already multiplied by 1 - metallic and by 1 - transmission.
     pub diffuse: Vec3,
     /// Reflectance of the top layer at normal incidence (`f0`) and at grazing incidence (`f90`).
     pub f0: Vec3,
     pub f90: f32,
     pub roughness: f32,
-    /// Transmittance in a straight line, without the loss at the top layer; 0 for opaque materials.
+    /// Straight transmittance, before the reflection loss at the top layer is subtracted; 0 for opaque materials.
     pub transmission: Vec3,
-    /// Reflectance at normal incidence of the dielectric part alone: it attenuates the diffuse layer.
+    /// Reflectance of the dielectric part alone at normal incidence. It determines the attenuation of the diffuse
+    /// layer.
     pub dielectric_f0: f32,
 }
 
 impl Substance {
-    /// Transmittance in a straight line at an angle.
+    /// Returns the straight transmittance for a ray whose angle to the normal has this cosine.
     pub fn through(&self, cosine: f32) -> Vec3 {
         if self.transmission == Vec3::ZERO {
             return Vec3::ZERO;
@@ -45,35 +47,35 @@ impl Substance {
     }
 }
 
-/// A BSDF with its shading frame, for one viewing direction.
+/// The BSDF at a surface point for one viewing direction, with its shading frame.
 pub struct Bsdf<'a> {
     /// Albedo of the diffuse layer.
     diffuse: Vec3,
-    /// Shading normal and geometric normal, both facing the viewer.
+    /// Shading normal (`normal`) and geometric normal (`geometric`), both facing the viewer.
     normal: Vec3,
     geometric: Vec3,
-    /// The other layers; `None` for a purely diffuse BSDF.
+    /// The layers above the diffuse one; `None` for a purely diffuse BSDF.
     layers: Option<Layers<'a>>,
 }
 
-/// The top layer and the transmission.
+/// The top layer (GGX or mirror) and the straight transmission.
 struct Layers<'a> {
     substance: Substance,
-    /// The tangents of the shading frame; the shading normal completes it.
+    /// The two tangents of the shading frame; its third axis is the shading normal.
     tangents: [Vec3; 2],
     wo: Vec3,
     /// Straight transmittance towards the viewer.
     through: Vec3,
     /// Selection probabilities of the diffuse layer and the top layer; the rest selects transmission.
     shares: [f32; 2],
-    /// The GGX lobe with its albedo, unless the top layer is a mirror or absent.
+    /// The GGX lobe and its directional albedo; `None` if the top layer is a mirror or absent.
     lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,
     /// Attenuation of the diffuse layer on the way to the viewer, divided by the cosine-weighted mean of this
     /// attenuation over all directions.
     left_over: f32,
 }
 
-/// The values of the diffuse and the glossy lobe for one direction, each times the cosine.
+/// The values of the diffuse and of the glossy lobe for one pair of directions, each multiplied by the cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lobes {
     pub diffuse: Vec3,
@@ -89,28 +91,29 @@ impl Lobes {
     }
 }
 
-/// A sampled direction.
+/// A direction sampled from a BSDF.
 pub struct BsdfSample {
     pub direction: Vec3,
     /// BSDF × cosine / pdf.
     pub weight: Vec3,
-    /// The lobes for the sampled direction, if non-specular.
+    /// Values of both lobes for the sampled direction; [`Lobes::NONE`] if `kind` is specular.
     pub lobes: Lobes,
     pub kind: ScatterKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScatterKind {
-    /// A diffuse or glossy direction, with its solid-angle pdf.
+    /// Scattering by the diffuse or the glossy lobe; the value is the pdf of the direction per solid angle.
     NonSpecular(f32),
     Mirror,
     Pane,
 }
 
 impl<'a> Bsdf<'a> {
-    /// `wo` points to the viewer; both normals are flipped to face it. Reflection is two-sided for all materials:
-    /// rooms are often modelled with outward-facing walls. `layered` must be true if the material may have more than a
-    /// diffuse layer. `table` may be `None` if no material of the scene has a top layer.
+    /// Builds the BSDF towards the viewer, who lies in direction `wo`; both normals are flipped to face the viewer.
+    /// Reflection is two-sided for all materials, because walls of rooms are often modelled with outward-facing
+    /// normals. `layered` must be true if the material may have layers besides the diffuse one. `table` may be `None`
+    /// if no material of the scene has a top layer.
     #[inline]
     pub fn new(
         substance: &Substance,
@@ -123,7 +126,7 @@ impl<'a> Bsdf<'a> {
         let geometric = geometric * side;
         let normal = face_viewer(shading * side, wo);
         let diffuse = substance.diffuse;
-        // Return early, so that diffuse surfaces do not copy the memory of the layers.
+        // Return early for diffuse surfaces, so that the unused layers are not copied.
         if !layered {
             return Self { diffuse, normal, geometric, layers: None };
         }
@@ -131,8 +134,8 @@ impl<'a> Bsdf<'a> {
         Self { diffuse, normal, geometric, layers: Some(layers) }
     }
 
-    /// A diffuse BSDF of albedo π for light meters: the radiance that it reflects equals the irradiance that it
-    /// receives.
+    /// Returns the diffuse BSDF of a light meter. Its albedo is π, so the radiance that it reflects equals the
+    /// irradiance that it receives.
     pub fn receiver(normal: Vec3) -> Self {
         Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: None }
     }
@@ -146,13 +149,15 @@ impl<'a> Bsdf<'a> {
         self.geometric
     }
 
-    /// Reflectance plus transmittance at normal incidence.
+    /// Returns the reflectance plus the transmittance at normal incidence.
     pub fn colour(&self) -> Vec3 {
         let above = self.layers.as_ref().map(|l| l.substance.f0 + l.substance.transmission);
         self.diffuse + above.unwrap_or(Vec3::ZERO)
     }
 
-    /// Whether neighbouring pixels may share the vertex: all scattering is non-specular. View-independent.
+    /// Whether neighbouring pixels may share a path vertex with this BSDF. True for a BSDF that reflects light,
+    /// transmits none, and has no top layer smoother than `SHAREABLE_ROUGHNESS`. The result does not depend on the
+    /// view direction.
     #[inline]
     pub fn is_shareable(&self) -> bool {
         match &self.layers {
@@ -170,7 +175,7 @@ impl<'a> Bsdf<'a> {
         self.layers.is_none()
     }
 
-    /// Whether the BSDF is the same for all viewers on its side.
+    /// Whether the BSDF is the same for all viewers on the same side of the surface.
     #[inline]
     pub fn is_view_independent(&self) -> bool {
         self.is_diffuse() && self.normal == self.geometric
@@ -185,7 +190,8 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// The non-specular BSDF times the cosine, and the solid-angle pdf with which [`Bsdf::sample`] draws `direction`.
+    /// Returns the non-specular lobes times the cosine, and the solid-angle pdf with which [`Bsdf::sample`] draws
+    /// `direction`.
     #[inline]
     pub fn eval(&self, direction: Vec3) -> (Lobes, f32) {
         let cosine = direction.dot(self.normal);
@@ -199,7 +205,7 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Samples a direction with a point of the unit square. `None` if the light is absorbed.
+    /// Samples a direction from `u`, a point of the unit square. Returns `None` if the light is absorbed.
     #[inline]
     pub fn sample(&self, u: Vec2) -> Option<BsdfSample> {
         if let Some(layers) = &self.layers {
@@ -222,7 +228,8 @@ impl<'a> Layers<'a> {
         let s = substance;
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
-        // Compute the top layer's albedo towards the viewer: in total, and of the dielectric part alone.
+        // Compute two albedos of the top layer towards the viewer: the maximum channel of the whole layer (`top`), and
+        // the albedo of its dielectric part (`coat_albedo`).
         let has_top = s.f90 > 0.0;
         let lobe = match table {
             Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {
@@ -238,11 +245,11 @@ impl<'a> Layers<'a> {
         } else if has_top {
             top = ggx::schlick(s.f0, s.f90, wo.z).max_element();
             coat_albedo = ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, wo.z).x;
-            // The cosine-weighted mean of Schlick's fifth power is 1/21.
+            // The mean of Schlick's factor (1 - cos θ)⁵, weighted by the cosine over the hemisphere, is 1/21.
             mean_coat_albedo = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
         }
         let left_over = (1.0 - coat_albedo).max(0.0) / (1.0 - mean_coat_albedo).max(1e-3);
-        // Select layers in proportion to their albedo.
+        // Set the probability of each layer in proportion to its albedo.
         let diffuse = s.diffuse.max_element() * (1.0 - coat_albedo);
         let through = s.through(upright);
         let sum = diffuse + top + through.max_element();
@@ -275,7 +282,7 @@ impl<'a> Layers<'a> {
         (lobes, pdf)
     }
 
-    /// Albedo of the dielectric top layer for a direction.
+    /// Returns the albedo of the dielectric top layer for a direction with this cosine to the normal.
     fn coat_albedo(&self, cosine: f32) -> f32 {
         let s = &self.substance;
         match &self.lobe {
@@ -288,7 +295,8 @@ impl<'a> Layers<'a> {
     fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<BsdfSample> {
         let [diffuse, top] = self.shares;
         let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
-        // Stretch the layer's part of the unit square to the whole square.
+        // Rescale the interval of `u.x` that selected the layer to `[0, 1)`, and reuse the result to sample the
+        // direction.
         let part = |from: f32, share: f32| Vec2::new(((u.x - from) / share).min(1.0 - f32::EPSILON), u.y);
         let local = if u.x < diffuse {
             cosine_hemisphere(part(0.0, diffuse))
@@ -323,10 +331,10 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Albedo of a rough dielectric top layer.
+/// The directional albedo of a rough dielectric top layer, looked up in the albedo table.
 struct TopAlbedo<'a> {
     row: ggx::AlbedoRow<'a>,
-    /// Weights of the table's scale and bias.
+    /// Factors of the two values of a table entry (scale and bias): `dielectric_f0` and `f90`.
     weights: Vec2,
 }
 
@@ -340,15 +348,16 @@ impl<'a> TopAlbedo<'a> {
     }
 }
 
-/// Tilts a shading normal that faces away from the viewer until the viewer sees it at a grazing angle.
+/// If the shading normal faces away from the viewer, tilts it until it is almost perpendicular to the view direction,
+/// so that the viewer sees the surface at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
-    // Smallest cosine towards the viewer. [origin not recorded]
+    // Smallest cosine between the tilted normal and the viewer's direction. [origin not recorded]
     const MIN_COSINE: f32 = 1e-3;
     let cosine = normal.dot(wo);
     if cosine >= MIN_COSINE { normal } else { (normal + wo * (MIN_COSINE - cosine)).normalize_or(wo) }
 }
 
-/// Cosine-weighted direction: a point of the unit disc projected to the hemisphere (Malley's method).
+/// Samples a cosine-weighted direction: projects a point of the unit disc to the hemisphere (Malley's method).
 #[inline]
 fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let (p, r2) = ggx::disc(u);

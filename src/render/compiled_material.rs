@@ -1,28 +1,28 @@
-//! Materials prepared for tracing: parameters that no texture varies are computed once.
+//! Materials prepared for path tracing: parameters that do not vary with a texture are computed once per material.
 
 use super::bsdf::Substance;
 use crate::scene::Material;
 use glam::Vec3;
 
-/// A material with the result of its analysis.
+/// The parameters of a material, and flags that let tracing skip features that the material does not use.
 #[derive(Clone, Copy, Debug)]
 pub struct CompiledMaterial {
-    /// Its parameters, valid where no texture varies them.
+    /// The BSDF parameters; valid only where no texture varies them.
     pub substance: Substance,
     /// Whether textures vary the parameters.
     pub is_textured: bool,
-    /// Whether it may have layers besides the diffuse one.
+    /// Whether the material may have layers besides the diffuse one.
     pub layered: bool,
-    /// Whether it has a normal map that is not neutral.
+    /// Whether the material has a normal map that changes normals.
     pub has_normal_map: bool,
-    /// Whether its opacity may be below 1.
+    /// Whether the opacity may be below 1.
     pub has_alpha: bool,
-    /// Whether light may pass straight through it, by opacity or by transmission.
+    /// Whether light may pass straight through the material, because of its opacity or its transmission.
     pub lets_light_through: bool,
 }
 
 impl CompiledMaterial {
-    /// A copy that assumes every shading feature.
+    /// Returns a copy with all flags set, so that tracing assumes every shading feature.
     pub fn without_analysis(&self) -> Self {
         Self {
             is_textured: true,
@@ -35,7 +35,8 @@ impl CompiledMaterial {
     }
 }
 
-/// Converts metallic-roughness parameters to layers (glTF 2.0, appendix B.2).
+/// Converts the metallic-roughness parameters at a surface point to the parameters of the layers (glTF 2.0, appendix
+/// B.2).
 pub fn substance(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> Substance {
     let base = base.clamp(Vec3::ZERO, Vec3::ONE);
     let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));

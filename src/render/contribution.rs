@@ -1,23 +1,24 @@
-//! Path contributions: the light they come from, and the sink that receives them.
+//! Contributions of light paths: which light a contribution comes from, and the trait that receives contributions.
 
 use glam::{Vec2, Vec3};
 
-/// The light that a path contribution comes from.
+/// The light from which a path contribution comes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightSource {
-    /// An emissive triangle; `uv` are the coordinates of the look-up in its emission texture.
+    /// An emissive triangle; `uv` are the texture coordinates at which its emission texture was looked up.
     Surface {
         mesh: u32,
         triangle: u32,
         uv: Vec2,
     },
-    /// Index of a punctual light of the scene.
+    /// A punctual light, by its index in the scene.
     Punctual(u32),
     Environment,
 }
 
-/// Receives the contributions of a path; the sum of their products `importance * emission` is the estimate.
+/// Receives the contributions of a path. The sum of their products `importance * emission` estimates the radiance.
 pub trait PathSink {
-    /// `importance` is every factor but the emission: throughput × mis_weight / pdf.
+    /// Adds a contribution. `importance` is the product of all factors except the emission: throughput × mis_weight /
+    /// pdf.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3);
 }

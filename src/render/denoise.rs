@@ -1,20 +1,23 @@
-//! Preview filter: smooths an image of few paths, guided by surface attributes.
+//! Preview filter: smooths an image rendered with few paths per pixel, guided by surface attributes.
 //!
-//! The edge-avoiding à-trous filter of Dammertz et al. (2010, "Edge-avoiding à-trous wavelet transform for fast global
-//! illumination filtering") with the variance-guided range weights of Schied et al. (2017, "Spatiotemporal
-//! variance-guided filtering"). Colours are divided by the albedo of the surface, which preserves textures. At each
-//! level, a pixel is averaged with neighbours at growing distances, weighed by whether they lie in the same plane,
-//! have the same normal, and differ by no more than their errors explain. The variance of the average is propagated to
-//! the next level. With zero variance, the filter leaves the image unchanged.
+//! The filter is the edge-avoiding à-trous filter of Dammertz et al. (2010, "Edge-avoiding à-trous wavelet transform
+//! for fast global illumination filtering") with the variance-guided range weights of Schied et al. (2017,
+//! "Spatiotemporal variance-guided filtering"). Colours are divided by the albedo of the surface before filtering,
+//! which preserves textures. Each level averages a pixel with eight neighbours, whose distance doubles from level to
+//! level. The weight of a neighbour falls with its distance from the pixel's plane, with the angle between the
+//! normals, with the difference in albedo, and with the difference in luminance relative to the standard errors of
+//! both luminances. The filter propagates the variance of each average to the next level. With zero variance it leaves
+//! the image unchanged.
 //!
 //! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, and changes their
 //! radiance by about their standard error. [`Output::bias`] estimates this bias; final images are rendered without the
-//! filter. To measure it, two halves of the paths are filtered separately (as by Rousselle et al. 2012, "Adaptive
-//! rendering with non-local means filtering", for a different purpose), and the preview is their mean. The filter
-//! changes each half by its bias plus noise, and the noises of the halves are independent: the mean product of the two
-//! changes is the squared bias, for any weights.
+//! filter. To measure the bias, the paths are split into two halves, which are filtered separately (as by Rousselle et
+//! al. 2012, "Adaptive rendering with non-local means filtering", for a different purpose); the preview is the mean of
+//! the two results. The filter changes each half by its bias plus noise. The noises of the halves are independent, so
+//! the expected product of the two changes is the squared bias, whatever the weights.
 //!
-//! Not modelled: motion; reflections, which are smoothed like light on the mirror; textures seen in mirrors.
+//! Not modelled: motion; reflections, which are smoothed as if they were light on the mirror's surface; textures seen
+//! in mirrors, which are blurred.
 
 use super::film::pooled;
 use crate::error::{Error, Result, check_range};
@@ -25,8 +28,8 @@ use glam::Vec3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Strength of the smoothing, in `[0, 10]`. It scales the squared difference in luminance between neighbours that
-    /// the filter tolerates relative to their variances. 0 leaves the image unchanged.
+    /// Strength of the smoothing, in `[0, 10]`. The filter tolerates a squared difference in luminance between
+    /// neighbours in proportion to their variances; `strength` scales this tolerance. 0 leaves the image unchanged.
     pub strength: f32,
 }
 
@@ -36,55 +39,61 @@ impl Default for Params {
     }
 }
 
-/// Images of equal size.
+/// The image to be filtered and its guide images, all of equal size.
 pub struct Input<'a> {
-    /// Two independent estimates of the image with equal numbers of paths; linear RGB, finite.
+    /// Two independent estimates of the image with equal numbers of paths: linear RGB, finite.
     pub halves: [&'a Image; 2],
-    /// Variance of their mean per channel, at least 0; infinite if unknown.
+    /// Variance of the mean of both halves, per channel, at least 0; infinite where unknown.
     pub variance: &'a Image,
-    /// Albedo of the surface, RGB; black for the background.
+    /// RGB albedo of the surface; black for the background.
     pub albedo: &'a Image,
     /// Unit normal of the surface; 0 for the background.
     pub normal: &'a Image,
-    /// Position of the surface.
+    /// Position of the surface, in any unit.
     pub position: &'a Image,
 }
 
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// Estimated bias of the preview: root mean square over squares of 8 × 8 pixels, relative to the mean of the image.
-    /// The square of the estimate is unbiased. The estimate does not detect blur within a square of pixels.
+    /// Estimated bias of the preview: the root mean square of the bias averaged over squares of 8 × 8 pixels, relative
+    /// to the mean of the image. The square of this estimate is unbiased. Blur within a square of pixels goes
+    /// undetected.
     pub bias: f64,
 }
 
-/// Distance of the farthest neighbours at each level, in pixels.
+/// Distance between a pixel and its neighbours along each axis, per level, in pixels.
 const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// Kernel weight of a neighbour along an axis, relative to the pixel itself: the binomial kernel. [convention]
+/// Kernel weight of a neighbour in the same row or column, relative to the weight of the pixel itself: the binomial
+/// kernel. [convention]
 const TAP: f32 = 0.5;
-/// Variance of a half, relative to the variance of the mean of both halves: exact for independent halves. [convention]
+/// Ratio of two variances: of one half, and of the mean of both halves. It is exact for independent halves.
+/// [convention]
 const HALF: f32 = 2.0;
-/// Squared difference in luminance, relative to the sum of both variances, that lowers a weight by a factor e at
-/// strength 1. [origin not recorded]
+/// Range weight: let the squared difference in luminance be this multiple of the sum of the two variances. Then, at
+/// strength 1, the weight of a neighbour falls by a factor e. [origin not recorded]
 const RANGE: f32 = 12.0;
-/// Squared sine of the angle between a neighbour and the pixel's plane that lowers a weight by a factor e. [origin not
-/// recorded]
+/// Plane weight: the weight falls by a factor e if the squared sine of the angle between the pixel's plane and the
+/// direction to the neighbour has this value. [origin not recorded]
 const PLANE: f32 = 0.01;
-/// 1 - cosine of the angle between normals that lowers a weight by a factor e. [origin not recorded]
+/// Normal weight: the weight falls by a factor e if 1 - cosine of the angle between the two normals has this value.
+/// [origin not recorded]
 const FACING: f32 = 0.02;
-/// Squared difference in albedo that lowers a weight by a factor e. [origin not recorded]
+/// Albedo weight: the weight falls by a factor e if the squared difference in albedo has this value. [origin not
+/// recorded]
 const COLOUR: f32 = 0.02;
-/// Smallest albedo to divide by, so that lamps and black surfaces keep their light. [origin not recorded]
+/// Smallest albedo by which colours are divided, so that lamps and black surfaces keep their light. [origin not
+/// recorded]
 const MIN_ALBEDO: f32 = 0.02;
-/// Side in pixels of the squares over which the bias is averaged. [convention]
+/// Side of the squares over which the bias is averaged, in pixels. [convention]
 const SQUARE: usize = 8;
 
-/// Channels of the filtered image: red, green, blue, variance of the luminance.
+/// Channels of the filtered image: red, green, blue, and the variance of the luminance.
 const LIGHT: usize = 4;
-/// Channels of the guides: albedo, normal, position.
+/// Channels of the guide images, three each: albedo, normal, position.
 const GUIDE: usize = 9;
 
-/// Filters an image.
+/// Filters the image and estimates the bias of the result.
 ///
 /// # Errors
 /// Images of different sizes or with too few channels; values that are not finite; a strength out of range; no memory;
@@ -103,7 +112,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     Ok(Output { image, bias })
 }
 
-/// Filters one half.
+/// Filters the image of one half of the paths.
 fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: Job) -> Result<Image> {
     let (width, height) = (half.width, half.height);
     let mut light = light(half, variance, guide, job.part(0.0, 0.1))?;
@@ -116,7 +125,7 @@ fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: J
             std::mem::swap(&mut light, &mut next);
         }
     }
-    // Multiply by the albedo again.
+    // Multiply the filtered light by the albedo again.
     let mut image = Image::new(width, height, 3)?;
     exec::for_rows(&mut image.data, 3 * width, job.part(0.94, 1.0), |y, row| {
         let (light, guide) = (&light[y * LIGHT * width..], &guide[y * GUIDE * width..]);
@@ -127,7 +136,7 @@ fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: J
     Ok(image)
 }
 
-/// The guides, channel by channel within each row.
+/// Returns the guide images in one array. Each row stores its channels one after the other.
 fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *input.albedo;
     let mut out = try_vec(GUIDE * width * height, 0.0f32)?;
@@ -143,7 +152,8 @@ fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     Ok(out)
 }
 
-/// A half divided by the albedo, with the variance of its luminance.
+/// Returns a half divided by the albedo, with the variance of its luminance as fourth channel. Each row stores its
+/// channels one after the other.
 fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<f32>> {
     let Image { width, height, .. } = *half;
     let mut out = try_vec(LIGHT * width * height, 0.0f32)?;
@@ -151,7 +161,7 @@ fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<
         for x in 0..width {
             let albedo: Vec3 = [0, 1, 2].map(|c| guide[(y * GUIDE + c) * width + x].max(MIN_ALBEDO)).into();
             let colour = half.rgb(x, y) / albedo;
-            // Add standard errors instead of variances, because the channels are correlated within a path.
+            // Add standard errors rather than variances, because the noise of the channels is correlated.
             let error = variance.rgb(x, y).map(f32::sqrt) / albedo;
             let luminance = colour::luminance(colour);
             let error = if error.is_finite() { colour::luminance(error) } else { luminance };
@@ -162,7 +172,7 @@ fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<
     Ok(out)
 }
 
-/// One level of the filter.
+/// One level of the filter, with the images that it reads.
 struct Level<'a> {
     light: &'a [f32],
     guide: &'a [f32],
@@ -173,14 +183,14 @@ struct Level<'a> {
 }
 
 impl Level<'_> {
-    /// Filters a row. Loops run along the row for one neighbour at a time, so that they vectorise.
+    /// Filters row `y`. Each loop runs along the row for one of the eight neighbours, so that it vectorises.
     fn row(&self, y: usize, out: &mut [f32]) {
         let Self { light, guide, width, height, step, .. } = *self;
         out.copy_from_slice(&light[y * LIGHT * width..(y + 1) * LIGHT * width]);
         let mut weights = vec![1.0; width];
         for (dy, dx) in NEIGHBOURS {
             let Some(other) = y.checked_add_signed(dy * step as isize).filter(|&o| o < height) else { continue };
-            // Restrict to columns whose neighbour lies in the image.
+            // Restrict the row to the columns whose neighbour lies inside the image.
             let shift = dx * step as isize;
             let (from, to) = (shift.min(0).unsigned_abs(), width.saturating_sub(shift.max(0) as usize));
             if from >= to {
@@ -214,7 +224,7 @@ impl Level<'_> {
         }
     }
 
-    /// Adds a span of neighbours to a span of pixels.
+    /// Adds the weighted values of neighbours (`that`) to the `sums` of the corresponding pixels (`here`).
     #[allow(clippy::too_many_arguments)]
     fn mix(
         &self,
@@ -244,7 +254,7 @@ impl Level<'_> {
             let height = a[3][i] * d[0] + a[4][i] * d[1] + a[5][i] * d[2];
             let plane = square(height) / (square(d[0]) + square(d[1]) + square(d[2]) + f32::MIN_POSITIVE);
             let sum = range + colour * (1.0 / COLOUR) + (1.0 - cosine) * (1.0 / FACING) + plane * (1.0 / PLANE);
-            // (1 - t/8)^8 approximates exp(-t) with finite support.
+            // Approximate exp(-t) by (1 - t/8)⁸, which is 0 from t = 8 on.
             let w = (1.0 - sum * 0.125).max(0.0);
             let w = tap * square(square(square(w)));
             s0[i] += w * t0[i];
@@ -256,7 +266,7 @@ impl Level<'_> {
     }
 }
 
-/// Relative difference in luminance that counts as equal. [rounding]
+/// Relative difference in luminance that rounding alone may cause. [rounding]
 const EQUAL: f32 = 1e-6;
 
 const NEIGHBOURS: [(isize, isize); 8] = [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)];
@@ -265,8 +275,8 @@ fn luminance(r: f32, g: f32, b: f32) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Estimates the bias of the filter relative to the mean of the image. In each square of pixels, the mean change of one
-/// half is multiplied by the mean change of the other half. The bias is the root of the mean of these products.
+/// Estimates the bias of the filter relative to the mean of the image. Within each square of pixels, multiplies the
+/// mean change of one half by the mean change of the other half; the bias is the square root of the mean product.
 fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
     let Image { width, height, .. } = *before[0];
     let across = width.div_ceil(SQUARE);

@@ -1,18 +1,18 @@
-//! Sampling of a discrete distribution in proportion to weights.
+//! A discrete distribution that is sampled in proportion to weights.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// A discrete distribution, stored as its cumulative sum.
+/// A discrete distribution, stored as the running sum of its weights.
 pub struct Distribution {
-    /// `cumulative[i]` is the sum of the weights up to and including entry `i`.
+    /// `cumulative[i]` is the sum of the weights of entries 0 to `i`.
     cumulative: Vec<f64>,
-    /// `guide[k]` is the entry at `u = k / guide.len()`, where a search starts (Chen and Asau 1974).
+    /// `guide[k]` is the entry that contains `u = k / guide.len()`; searches start there (Chen and Asau 1974).
     guide: Vec<u32>,
 }
 
 impl Distribution {
-    /// From finite, non-negative weights.
+    /// Builds the distribution from finite, non-negative weights.
     pub fn new(weights: impl ExactSizeIterator<Item = f64>) -> Result<Self> {
         let mut cumulative = try_vec(weights.len(), 0.0)?;
         let mut sum = 0.0;
@@ -45,11 +45,11 @@ impl Distribution {
         if self.total() > 0.0 { (self.cumulative[index] - before) / self.total() } else { 0.0 }
     }
 
-    /// Samples an entry with `u` in `[0, 1)`; also returns the position of `u` within the entry, again in `[0, 1)`.
+    /// Samples an entry with `u` in `[0, 1)`. Also returns the relative position of `u` within the entry, in `[0, 1)`.
     /// Never returns an entry of zero weight; at least one weight must be positive.
     pub fn sample(&self, u: f64) -> (usize, f64) {
         let target = u * self.total();
-        // Search between two guide entries, widened by one on each side against rounding.
+        // Search between two consecutive guide entries, and one entry beyond on each side because of rounding.
         let k = ((u * self.guide.len() as f64) as usize).min(self.guide.len() - 1);
         let low = (self.guide[k] as usize).saturating_sub(1);
         let high =
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(table.pmf(4), 0.5);
         assert_eq!(table.sample(0.0).0, 1);
         assert_eq!(table.sample(1.0 - 1e-16).0, 4);
-        // The sampled entry and position map back to `u`.
+        // Invert the sampling: the entry and the position within it determine `u`.
         for i in 0..1000 {
             let u = f64::from(i) / 1000.0;
             let (index, rest) = table.sample(u);

@@ -1,4 +1,4 @@
-//! Importance sampling of the environment.
+//! Environment light: its radiance by direction, and importance sampling of directions towards it.
 
 use super::distribution::Distribution;
 use super::emissive::mean_channel;
@@ -8,18 +8,20 @@ use crate::scene::Environment;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// A distribution of directions towards the environment.
+/// A distribution of directions towards the environment, from which light samples are drawn.
 pub enum EnvironmentSampler {
-    /// Uniform over the sphere.
+    /// Constant radiance: directions are uniform over the sphere.
     Constant,
-    /// Selects pixels of an equirectangular image in proportion to their weights. The weight of a pixel is its solid
-    /// angle times the mean brightness of its 3 × 3 neighbourhood. This mean is positive wherever bilinear
-    /// interpolation gives a positive radiance.
+    /// An equirectangular image: pixels are selected in proportion to their weights. The weight of a pixel is its
+    /// solid angle times the mean brightness of its 3 × 3 neighbourhood. The weight uses this mean because bilinear
+    /// interpolation spreads light to neighbouring pixels: the mean is positive wherever the interpolated radiance is
+    /// positive.
     Image { rows: Distribution, columns: Vec<Distribution> },
 }
 
 impl EnvironmentSampler {
-    /// Builds the sampler; also returns the mean radiance over all directions. `None` for a black environment.
+    /// Builds the sampler. Also returns the brightness (mean of the channels), averaged over all directions. Returns
+    /// `None` for a black environment.
     pub fn build(environment: &Environment) -> Result<Option<(Self, f64)>> {
         let image = match environment {
             Environment::Constant(radiance) => {
@@ -39,7 +41,7 @@ impl EnvironmentSampler {
         Ok((mean > 0.0).then_some((Self::Image { rows, columns }, mean)))
     }
 
-    /// Samples a direction; also returns its solid-angle pdf.
+    /// Samples a direction towards the environment. Also returns its solid-angle pdf.
     pub fn sample(&self, u: f64, v: f32) -> (Vec3, f32) {
         match self {
             Self::Constant => {
@@ -51,7 +53,8 @@ impl EnvironmentSampler {
                 let (y, remainder) = rows.sample(u);
                 let (x, across) = columns[y].sample(f64::from(v));
                 let (width, height) = (columns[y].len(), columns.len());
-                // Sample uniformly by solid angle within the pixel: uniform in the cosine of the polar angle.
+                // Sample the pixel uniformly by solid angle: the cosine of the polar angle and the azimuth are
+                // uniform.
                 let (top, bottom) = polar_cosines(y, height);
                 let cosine = (top + (bottom - top) * remainder) as f32;
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
@@ -62,7 +65,7 @@ impl EnvironmentSampler {
         }
     }
 
-    /// Solid-angle pdf with which [`EnvironmentSampler::sample`] draws a unit direction.
+    /// Returns the solid-angle pdf with which [`EnvironmentSampler::sample`] draws a unit direction.
     pub fn pdf(&self, direction: Vec3) -> f32 {
         match self {
             Self::Constant => 1.0 / (4.0 * PI),
@@ -87,8 +90,8 @@ impl EnvironmentSampler {
     }
 }
 
-/// Radiance from a unit direction. Images are interpolated bilinearly; columns wrap around the horizon, and rows are
-/// clamped at the poles.
+/// Returns the radiance that arrives from a unit direction. Images are interpolated bilinearly; columns wrap around
+/// the horizon, and rows are clamped at the poles.
 pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
     let image = match environment {
         Environment::Constant(radiance) => return radiance.max(Vec3::ZERO),
@@ -105,7 +108,8 @@ pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
     upper.lerp(lower, y - top)
 }
 
-/// Texture coordinates of a direction: the centre of the image is -z, its top +y, its right +x.
+/// Returns the texture coordinates of a unit direction. The centre of the image is the direction -z, its top +y, and
+/// +x lies a quarter of the width to the right of the centre.
 fn equirectangular(d: Vec3) -> Vec2 {
     Vec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
 }
@@ -115,13 +119,13 @@ fn polar_cosines(y: usize, height: usize) -> (f64, f64) {
     (cosine(y), cosine(y + 1))
 }
 
-/// Solid angle of a row of pixels.
+/// Returns the solid angle of one row of pixels, in steradians.
 fn band_solid_angle(y: usize, height: usize) -> f64 {
     let (top, bottom) = polar_cosines(y, height);
     std::f64::consts::TAU * (top - bottom)
 }
 
-/// Mean brightness of a pixel and its eight neighbours.
+/// Returns the mean brightness of a pixel and its eight neighbours.
 fn neighbourhood(image: &Image, x: usize, y: usize) -> f32 {
     let mut sum = 0.0;
     for dy in 0..3 {
@@ -187,7 +191,7 @@ mod tests {
                 .collect();
             assert_follows(&expected, &counts, 4, &format!("{width} x {height}"));
         }
-        // For constant radiance, count in bins of equal solid angle.
+        // Test the sampler of constant radiance by counts in bins of equal solid angle.
         let (mut counts, mut rng) = (vec![0.0; 16 * 16], Rng::new(34, &[]));
         for _ in 0..50_000 {
             let d = EnvironmentSampler::Constant.sample(rng.next_f64(), rng.next_f32()).0;
@@ -207,7 +211,8 @@ mod tests {
             for _ in 0..2000 {
                 let (u, v) = (rng.next_f64(), rng.next_f32());
                 let d = sampler.sample(u, v).0.as_dvec3();
-                // Invert the sampling: the pixel, and the position in it by solid angle.
+                // Invert the sampling: find the pixel of the direction, and the direction's relative position in it by
+                // solid angle.
                 let height = columns.len();
                 let row = (d.y.clamp(-1.0, 1.0).acos() / std::f64::consts::PI * height as f64).min(height as f64 - 1.0);
                 let (top, bottom) = polar_cosines(row as usize, height);
@@ -217,7 +222,8 @@ mod tests {
                 let column = (0.5 + d.x.atan2(-d.z) / std::f64::consts::TAU) * table.len() as f64;
                 let at = (column as usize).min(table.len() - 1);
                 let across = running(table, at) + (column - at as f64) * table.pmf(at);
-                // The tolerance covers the rounding of directions in f32, and directions at pixel borders.
+                // The tolerance allows for the rounding of directions to f32 and for directions at the borders of
+                // pixels.
                 let tolerance = 1e-4;
                 assert!((back - u).abs() < tolerance, "{u} became {d}, and that {back}");
                 let near_pole = d.x.hypot(d.z) < 0.02;
@@ -226,7 +232,7 @@ mod tests {
         }
     }
 
-    /// Sum of the pmf before an entry.
+    /// Returns the sum of the pmf of all entries before `entry`.
     fn running(table: &Distribution, entry: usize) -> f64 {
         (0..entry).map(|i| table.pmf(i)).sum()
     }

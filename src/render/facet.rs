@@ -1,10 +1,11 @@
-//! The triangle data that shading a hit needs, in one cache line.
+//! Triangles as the path tracer uses them: the data needed to shade a hit, in one cache line. Also chooses the origin
+//! of world coordinates.
 
 use crate::scene::Mesh;
 use crate::scene::origin;
 use glam::{DVec3, Vec2, Vec3};
 
-/// A triangle prepared for tracing. Coordinates are relative to the centre of the world.
+/// A triangle prepared for path tracing. Coordinates are relative to the centre of the world ([`centre`]).
 #[repr(C, align(64))]
 #[derive(Clone, Copy)]
 pub struct Facet {
@@ -13,7 +14,8 @@ pub struct Facet {
     sides: [Vec3; 2],
     /// Unit geometric normal of the front side; zero for a degenerate triangle.
     pub normal: Vec3,
-    /// Offset that exceeds the rounding error of a point on the triangle.
+    /// Distance by which rays start off the surface, in metres; it exceeds the rounding error of a point on the
+    /// triangle.
     pub offset: f32,
     pub mesh: u32,
     /// Index of the material; the highest bit is set if the shading normal may differ from the geometric normal.
@@ -22,20 +24,21 @@ pub struct Facet {
     pub emitter: u32,
 }
 
-/// Bound of the rounding error of an interpolated point, relative to the largest coordinate of its triangle: sixteen
-/// times the rounding error 2^-24 of an f32 number. [rounding]
+/// Bound on the rounding error of an interpolated point, relative to the largest coordinate of its triangle: sixteen
+/// times 2^-24, the rounding error of an f32 number. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
-/// Largest extent of the scene, in metres, that counts for the offset of a free point, which belongs to no triangle but
-/// may happen to lie in a surface. The offset must move it clear of such a surface in a building, yet must not move it
-/// through a wall in a scene as large as a country. [convention]
+/// Rays from a free point start at an offset that grows with the extent of the scene, but only up to this extent, in
+/// metres. A free point belongs to no triangle but may happen to lie in a surface. The offset must move the point
+/// clear of such a surface in a building, yet must not move it through a wall in a scene as large as a country.
+/// [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
-/// The detail of a scene (the region where most triangles lie) is far from the origin if its distance exceeds this
-/// multiple of its size. [convention]
+/// Let the detail of a scene be the region where most of its triangles lie. The detail counts as far from the origin
+/// if its distance exceeds this multiple of its size. [convention]
 const FAR: f64 = 32.0;
-/// Smallest number of triangles whose corners locate the detail of a large scene; fewer than twice as many are used.
-/// The number is small, so that the list of corners fits in the reserve of memory. [convention]
+/// To locate the detail of a large scene, the corners of at least this many triangles are used, and of fewer than
+/// twice as many. The number is small, so that the list of corners fits in the memory reserve. [convention]
 const DETAIL_SAMPLES: usize = 1024;
-/// Marks a missing triangle or emitter.
+/// Index that stands for "no triangle" or "no emitter".
 pub const NONE: u32 = u32::MAX;
 /// Bit of `Facet::material` that is set if the shading normal may differ from the geometric normal.
 const SMOOTH: u32 = 1 << 31;
@@ -51,9 +54,10 @@ impl Facet {
         emitter: NONE,
     };
 
-    /// `corners` are relative to the centre of the world; `triangle` is the index in the mesh.
+    /// Builds triangle number `triangle` of mesh number `index`. `corners` are relative to the centre of the world.
     pub fn new(corners: [Vec3; 3], index: u32, mesh: &Mesh, triangle: usize) -> Self {
-        // Compute edges and normal in f64: those of a small triangle far from the centre suffer from cancellation.
+        // Compute edges and normal in f64, because small triangles far from the centre suffer from cancellation in
+        // f32.
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
         let smooth = if is_flat(mesh, triangle, normal) { 0 } else { SMOOTH };
@@ -83,7 +87,7 @@ impl Facet {
         (self.material & !SMOOTH) as usize
     }
 
-    /// A copy whose shading normal is always interpolated.
+    /// Returns a copy whose shading normal is always interpolated.
     pub fn without_analysis(&self) -> Self {
         Self { material: self.material | SMOOTH, ..*self }
     }
@@ -95,29 +99,30 @@ impl Facet {
     }
 }
 
-/// Whether the shading normal equals the geometric normal up to rounding, or the mesh has no normals.
+/// Whether the mesh has no vertex normals, or the vertex normals of the triangle equal its geometric normal up to
+/// rounding.
 fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
     if mesh.normals.is_empty() {
         return true;
     }
     let [a, b, c] = mesh.triangles[triangle].map(|i| mesh.normals[i as usize].normalize_or_zero());
-    // Flip normals that oppose the winding: only their axis is used.
+    // Compare with the flipped normal if the vertex normals oppose the winding: only the axis of a normal matters.
     let side = if a.dot(normal) < 0.0 { -normal } else { normal };
     [a, b, c].iter().all(|n| (*n - side).abs().max_element() < 1e-6)
 }
 
-/// The origin of world coordinates: the middle of the scene, rounded to a grid so coarse that the translation is
-/// exact.
+/// Returns the origin of world coordinates, relative to the coordinates of the scene: the middle of the scene, rounded
+/// to a grid so coarse that the translation is exact.
 ///
-/// The spacing of f32 numbers grows with the distance from the origin, in powers of two. The cell of the grid is a
-/// power of two no smaller than the scene. If the scene lies at least one cell from the origin, the grid points are
-/// multiples of the spacing there, so the differences of the coordinates from a grid point are exact. A scene nearer
-/// to the origin stays in place: a translation would gain next to nothing.
+/// The spacing of f32 numbers grows with the distance from the origin, in powers of two. The cell size of the grid is
+/// the smallest power of two that is at least the extent of the scene. If the scene lies at least one cell from the
+/// origin, grid points are multiples of the f32 spacing there, so subtracting a grid point from the coordinates is
+/// exact. A scene nearer to the origin is not translated, because a translation would hardly gain precision.
 ///
 /// A stray object at the origin of a national grid makes the scene as large as the distance from that origin to the
-/// building. If most triangles lie close together and far from the origin, the centre is therefore their median
-/// position, rounded to a grid. The translation of these triangles is exact. Only the coordinates of the other
-/// triangles are rounded, to the f32 spacing that the building had in its file.
+/// building. Therefore, if most triangles lie close together and far from the origin, the centre is the median
+/// position of the triangles, rounded to a grid. The translation of these triangles is exact. Only the coordinates of
+/// the other triangles are rounded, to the f32 spacing that the building had in its file.
 pub fn centre(meshes: &[Mesh]) -> DVec3 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for mesh in meshes {
@@ -136,7 +141,8 @@ pub fn centre(meshes: &[Mesh]) -> DVec3 {
     if whole == DVec3::ZERO { centre_of_detail(meshes).unwrap_or(whole) } else { whole }
 }
 
-/// The centre of a scene most of whose triangles lie close together and far from the origin; `None` for other scenes.
+/// Returns the centre for a scene most of whose triangles lie close together and far from the origin; `None` for other
+/// scenes.
 fn centre_of_detail(meshes: &[Mesh]) -> Option<DVec3> {
     let count: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let triangles = meshes.iter().flat_map(|mesh| (0..mesh.triangles.len()).map(move |triangle| (mesh, triangle)));

@@ -1,13 +1,13 @@
 //! The GGX microfacet distribution (Walter et al. 2007) with height-correlated Smith masking (Heitz 2014), its
 //! sampling by visible normals (Heitz 2018), and its directional albedo.
 //!
-//! Directions are in a frame whose third axis is the normal; `alpha` is the squared roughness.
+//! Directions are given in a frame whose z axis is the normal; `alpha` is the square of the perceptual roughness.
 
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, PI};
 
-/// Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and grazing (`f90`)
-/// incidence.
+/// Returns the Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and at grazing
+/// (`f90`) incidence.
 #[inline]
 pub fn schlick(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
     let m = (1.0 - cosine).clamp(0.0, 1.0);
@@ -19,11 +19,11 @@ fn lambda(w: Vec3, alpha: f32) -> f32 {
     ((1.0 + alpha * alpha * tangent2).sqrt() - 1.0) / 2.0
 }
 
-/// The lobe for one viewing direction above the surface.
+/// The GGX lobe for one viewing direction above the surface.
 pub struct Lobe {
     wo: Vec3,
     alpha: f32,
-    /// One plus Smith's lambda of the viewing direction.
+    /// 1 + Λ(`wo`), with Smith's function Λ.
     masking: f32,
 }
 
@@ -32,20 +32,22 @@ impl Lobe {
         Self { wo, alpha, masking: 1.0 + lambda(wo, alpha) }
     }
 
-    /// The BRDF times the cosine of `wi` (above the surface), without the Fresnel factor; and the solid-angle pdf with
-    /// which reflection about [`Lobe::sample_normal`] yields `wi`. `h` is the half vector.
+    /// Returns the BRDF times the cosine of `wi`, without the Fresnel factor, and the solid-angle pdf with which
+    /// reflection about [`Lobe::sample_normal`] yields `wi`. `wi` must lie above the surface; `h` is the half vector.
     pub fn eval(&self, wi: Vec3, h: Vec3) -> (f32, f32) {
-        // Evaluate the distribution of microfacet normals, with the Jacobian of reflection.
+        // Evaluate D(h) / (4 cos θo), the common factor of the BRDF and the pdf, with the distribution D of microfacet
+        // normals. In the pdf, `wo` · `h` cancels against the Jacobian of reflection.
         let a2 = self.alpha * self.alpha;
         let d = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
         let facets = 1.0 / (4.0 * PI * a2 * d * d * self.wo.z);
         (facets / (self.masking + lambda(wi, self.alpha)), facets / self.masking)
     }
 
-    /// Samples the normal of a microfacet that the viewer sees.
+    /// Samples a microfacet normal from the distribution of normals visible from `wo`.
     pub fn sample_normal(&self, u: Vec2) -> Vec3 {
         let (wo, alpha) = (self.wo, self.alpha);
-        // Stretch the frame so that the facets form a hemisphere, sample its projection along the view, and unstretch.
+        // Stretch the frame so that the microfacets form a hemisphere, sample the hemisphere's projection along the
+        // view direction, and transform back.
         let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
         let across = v.x * v.x + v.y * v.y;
         let t1 = if across > 0.0 { Vec3::new(-v.y, v.x, 0.0) / across.sqrt() } else { Vec3::X };
@@ -58,8 +60,9 @@ impl Lobe {
     }
 }
 
-/// A point uniform in the unit disc, and its squared distance from the centre, by the concentric map (Shirley and Chiu
-/// 1997), which preserves neighbourhoods. Taylor series give the sine and cosine, whose angles are at most 45 degrees.
+/// Maps the unit square to the unit disc by the concentric map (Shirley and Chiu 1997), which preserves areas and
+/// neighbourhoods. Returns the point and its squared distance from the centre. Taylor series suffice for the sine and
+/// the cosine, because their angles are at most 45 degrees.
 #[inline]
 pub fn disc(u: Vec2) -> (Vec2, f32) {
     let p = u * 2.0 - 1.0;
@@ -73,14 +76,15 @@ pub fn disc(u: Vec2) -> (Vec2, f32) {
     (if wide { Vec2::new(along, across) } else { Vec2::new(across, along) }, radius * radius)
 }
 
-/// Directional albedo of the lobe by direction and roughness: `f0 * scale + f90 * bias`. The diffuse layer gets the
-/// remainder, so that both layers together never reflect more than they receive (Kelemen and Szirmay-Kalos 2001).
+/// Table of the lobe's directional albedo, `f0 * scale + f90 * bias`; an entry holds scale and bias for one cosine and
+/// roughness. The diffuse layer reflects only light that the lobe does not reflect, so both layers together never
+/// reflect more than they receive (Kelemen and Szirmay-Kalos 2001).
 pub struct AlbedoTable {
     entries: Vec<Vec2>,
     averages: Vec<Vec2>,
 }
 
-/// Entries of the table along each axis. [origin not recorded]
+/// Number of table entries along each axis. [origin not recorded]
 const SIDE: usize = 32;
 
 impl AlbedoTable {
@@ -95,14 +99,14 @@ impl AlbedoTable {
         Self { entries, averages }
     }
 
-    /// The entries of one roughness.
+    /// Returns the row of the table for a perceptual roughness.
     pub fn row(&self, roughness: f32) -> AlbedoRow<'_> {
         let (row, t) = cell(roughness);
         AlbedoRow { table: self, row, t }
     }
 }
 
-/// The table at one roughness, interpolated between two rows.
+/// The albedo table at one roughness, interpolated between two of its rows.
 pub struct AlbedoRow<'a> {
     table: &'a AlbedoTable,
     row: usize,
@@ -110,7 +114,7 @@ pub struct AlbedoRow<'a> {
 }
 
 impl AlbedoRow<'_> {
-    /// Scale and bias for a direction of this cosine with the normal.
+    /// Returns scale and bias for a direction with this cosine to the normal.
     pub fn directional(&self, cosine: f32) -> Vec2 {
         let (column, s) = cell(cosine);
         let at = |row: usize| {
@@ -120,7 +124,7 @@ impl AlbedoRow<'_> {
         at(self.row).lerp(at(self.row + 1), self.t)
     }
 
-    /// Cosine-weighted mean of scale and bias over the hemisphere.
+    /// Returns the cosine-weighted mean of scale and bias over the hemisphere.
     pub fn average(&self) -> Vec2 {
         self.table.averages[self.row].lerp(self.table.averages[self.row + 1], self.t)
     }
@@ -132,22 +136,22 @@ fn cell(x: f32) -> (usize, f32) {
     (i, x - i as f32)
 }
 
-/// Cosine-weighted mean of a row: twice the integral of the row times the cosine. The row is interpolated linearly, as
-/// in look-ups.
+/// Returns the cosine-weighted mean of a row over the hemisphere: twice the integral of the row times the cosine.
+/// Between entries, the row is interpolated linearly, as in look-ups.
 fn cosine_average(row: &[Vec2]) -> Vec2 {
     let step = 1.0 / (SIDE - 1) as f32;
     row.windows(2)
         .enumerate()
         .map(|(i, ends)| {
             let (a, b) = (i as f32 * step, (i + 1) as f32 * step);
-            // Simpson's rule is exact for the product of two linear functions.
+            // Integrate by Simpson's rule, which is exact for the product of two linear functions.
             (ends[0] * a + (ends[0] + ends[1]) * (a + b) + ends[1] * b) * (step / 3.0)
         })
         .sum()
 }
 
 fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
-    // Number of Hammersley points. [origin not recorded]
+    // Number of Hammersley points of the estimate. [origin not recorded]
     const N: u32 = 256;
     let wo = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let lobe = Lobe::new(wo, alpha);
@@ -170,7 +174,7 @@ mod tests {
     use super::*;
     use crate::render::tests::chi2::assert_follows;
 
-    /// Inverse of the concentric map (Shirley and Chiu 1997), in f64.
+    /// The inverse of the concentric map (Shirley and Chiu 1997), in f64.
     fn square(p: Vec2) -> Vec2 {
         let (x, y) = (f64::from(p.x), f64::from(p.y));
         let radius = x.hypot(y);
@@ -199,10 +203,11 @@ mod tests {
 
     #[test]
     fn the_concentric_map_preserves_areas() {
-        // By central differences: the determinant of the map is the ratio of the areas, pi.
+        // Compare the determinant of the Jacobian, computed by central differences, with pi, the ratio of the areas of
+        // the disc and the unit square.
         let h = 1.0 / 1024.0;
         for i in 0..64 * 64 {
-            // Stay off the diagonals, where the map is not smooth.
+            // Avoid the diagonals of the square, where the map is not smooth.
             let u = (Vec2::new((i % 64) as f32, (i / 64) as f32) + Vec2::new(0.5, 0.25)) / 64.0;
             let slope = |step: Vec2| (disc(u + step).0 - disc(u - step).0) / (2.0 * h);
             let determinant = slope(Vec2::X * h).perp_dot(slope(Vec2::Y * h));
@@ -215,7 +220,7 @@ mod tests {
         Vec3::new(0.8 * sine, 0.6 * sine, cosine)
     }
 
-    /// Stretches the frame so that facets of any roughness form a hemisphere.
+    /// Stretches the frame so that the microfacets form a hemisphere at any roughness.
     fn stretched(w: Vec3, alpha: f32) -> Vec3 {
         Vec3::new(w.x / alpha, w.y / alpha, w.z).normalize()
     }
@@ -231,8 +236,8 @@ mod tests {
             let wo = view(cosine);
             let lobe = Lobe::new(wo, alpha);
             let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
-            // On the hemisphere, the facets seen from v have the pdf 2 (v h)+ / (pi (1 + v.z)); integrate it over bins
-            // of equal solid angle.
+            // On the hemisphere, the microfacet normals h visible from v have the pdf 2 max(v · h, 0) / (pi (1 +
+            // v.z)). Integrate it over bins of equal solid angle.
             let mut expected = vec![0.0; side * side];
             let cells = side * fine;
             for i in 0..cells * cells {
@@ -267,7 +272,8 @@ mod tests {
                 for i in 0..64 * 64 {
                     let u = (Vec2::new((i % 64) as f32, (i / 64) as f32) + 0.5) / 64.0;
                     let n = stretched(lobe.sample_normal(u), alpha);
-                    // Project along the view, then undo the compression of the disc's hidden half.
+                    // Project the normal along the view direction, then undo the compression of the disc's hidden
+                    // half.
                     let (p1, p2) = (n.dot(t1), n.dot(t2));
                     let s = 0.5 * (1.0 + v.z);
                     let p = Vec2::new(p1, (p2 - (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt()) / s);

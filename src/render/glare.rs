@@ -1,13 +1,13 @@
-//! Unified glare rating of observers in a scene, from its luminaires (CIE 117:1995):
-//! `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)`.
+//! Unified glare rating (UGR) that a scene's luminaires cause for observers (CIE 117:1995): `UGR = 8 log10(0.25 / Lb ·
+//! Σ L² ω / p²)`, with background luminance Lb, and luminance L, solid angle ω and position index p of each luminaire.
 //!
-//! The luminance of a luminaire towards the eye is its intensity over the projected area of its opening, and its solid
-//! angle is that area over the squared distance, as in CIE 117. Hidden parts of an opening do not count; rays from the
-//! eye to a grid of points on the opening test which parts are visible. The background luminance is `E / π`, where E is
-//! the indirect illuminance at the eye on a plane perpendicular to the line of sight.
+//! As in CIE 117, the luminance of a luminaire towards the eye is its intensity divided by the projected area of its
+//! luminous opening, and its solid angle is this projected area divided by the squared distance. Hidden parts of an
+//! opening do not count; rays from the eye to a grid of points on the opening find the visible parts. The background
+//! luminance is `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
 //!
-//! Not modelled: emissive surfaces, the environment and lights without area as glare sources. Their direct illuminance
-//! at the eye is reported, because the rating leaves it out.
+//! Not modelled: emissive surfaces, the environment and lights without area as glare sources. The rating leaves them
+//! out, but reports their direct illuminance at the eye.
 
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
@@ -28,17 +28,17 @@ use crate::scene::{PunctualLight, c90};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
-/// The place of an eye and the direction in which it looks.
+/// The position of an observer's eye and the direction in which it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
     pub position: Vec3,
-    /// Direction of any length except 0; it must not be vertical.
+    /// Line of sight, of any length except 0; it must not be vertical.
     pub direction: Vec3,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Paths per observer for the background, in `[16, 1 << 24]`; rounded up to a multiple of 16.
+    /// Paths per observer that estimate the background luminance, in `[16, 1 << 24]`; rounded up to a multiple of 16.
     pub samples: u32,
     pub seed: u64,
 }
@@ -49,57 +49,57 @@ impl Default for Params {
     }
 }
 
-/// The glare of an observer.
+/// The glare that an observer experiences.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
-    /// `-∞` if no glare source is in view; `∞` if a glare source is in view and the background is black.
+    /// The rating; `-∞` if no glare source is in view, `∞` if one is in view but the background is black.
     pub ugr: f64,
     /// Background luminance in cd/m², and its standard error.
     pub background: f64,
     pub background_error: f64,
-    /// Direct illuminance at the eye in lux by the lights that are not rated.
+    /// Direct illuminance at the eye, in lux, from lights that the rating leaves out.
     pub unrated_lux: f64,
     pub sources: Vec<Source>,
 }
 
-/// A luminaire in view.
+/// A luminaire in view of an observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
-    /// Index among the lights of the scene.
+    /// Index of the luminaire among the lights of the scene.
     pub light: usize,
-    /// Luminance in cd/m² of its visible part.
+    /// Luminance of the luminaire's visible part in cd/m².
     pub luminance: f64,
-    /// Solid angle of its visible part.
+    /// Solid angle of the luminaire's visible part in steradians.
     pub solid_angle: f64,
     pub position_index: f64,
 }
 
 impl Rating {
-    /// Number of sources whose solid angle lies outside the range for which CIE 117 is valid.
+    /// Returns the number of sources whose solid angle lies outside the range for which CIE 117 is valid.
     pub fn outside_range(&self) -> usize {
         let is_valid = |s: &&Source| (MIN_SOLID_ANGLE..=MAX_SOLID_ANGLE).contains(&s.solid_angle);
         self.sources.len() - self.sources.iter().filter(is_valid).count()
     }
 }
 
-/// Range of solid angles in steradian for which CIE 117 is valid. [convention]
+/// Smallest and largest solid angle, in steradians, for which CIE 117 is valid. [convention]
 const MIN_SOLID_ANGLE: f64 = 3e-4;
 const MAX_SOLID_ANGLE: f64 = 0.1;
-/// Smallest length of the horizontal part of the unit vector along the line of sight. Steeper directions are refused,
-/// because the position index needs to know which way is up in the field of view. [convention]
+/// Smallest length of the horizontal part of the unit vector along the line of sight. Steeper lines of sight are
+/// refused, because the position index needs to know which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
-/// An opening counts as seen edge-on if its projected area is at most this share of its largest projection along an
-/// axis. [rounding]
+/// Let the reference be the largest of an opening's projected areas along its own axes. The opening counts as seen
+/// edge-on if its projected area towards the eye is at most this share of the reference. [rounding]
 const EDGE_ON: f64 = 1e-6;
-/// Number of visibility rays along each side of each face of an opening.
+/// Number of visibility rays along each side of each face of a luminous opening.
 const RAYS: usize = 16;
-/// Visibility rays end at this share of the distance to the face, because a ceiling may lie in the plane of the face.
-/// [rounding]
+/// Visibility rays end at this share of the distance to the face, so that they do not hit a ceiling in the plane of
+/// the face. [rounding]
 const NEARLY: f64 = 0.999;
-/// Number of independent estimates of the background; their variance gives its standard error.
+/// Number of independent estimates of the background luminance; their variance gives its standard error.
 const BATCHES: u32 = 16;
 
-/// Rates observers. Call it on the library's own thread pool.
+/// Rates the glare for each observer. Call it on the library's own thread pool.
 ///
 /// # Errors
 /// Parameters out of range; an observer that is not finite, looks straight up or down, or is inside a luminaire;
@@ -132,19 +132,19 @@ fn check(eye: &Eye, lamps: &[Lamp]) -> Result<()> {
     }
 }
 
-/// A luminaire with an opening.
+/// A luminaire with a luminous opening, which is therefore rated.
 struct Lamp {
     light: usize,
     position: DVec3,
-    /// Directions of C = 0°, of C = 90° and of the axis of the luminaire.
+    /// Unit directions in the scene: of C = 0°, of C = 90° and of the luminaire's axis (γ = 0°).
     frame: [DVec3; 3],
     opening: Opening,
     distribution: usize,
-    /// Luminance of the colour of the light: the factor on its intensity distribution.
+    /// Factor on the intensity distribution: the luminance of the light's colour.
     factor: f64,
 }
 
-/// A luminaire as an eye sees it, if nothing hides it.
+/// A luminaire as seen from an eye, without occlusion.
 struct Sight {
     towards: DVec3,
     distance: f64,
@@ -161,7 +161,8 @@ impl Lamp {
         self.position + self.frame[0] * p.x + self.frame[1] * p.y + self.frame[2] * p.z
     }
 
-    /// `None` if the opening is seen edge-on.
+    /// Returns direction, distance, projected area (m²) and intensity (cd) as seen from `eye`; `None` if the opening
+    /// is seen edge-on.
     fn sight(&self, world: &World, eye: DVec3) -> Option<Sight> {
         let (towards, distance) = (self.position - eye).normalize_and_length();
         let u = self.local(-towards);
@@ -172,7 +173,7 @@ impl Lamp {
         (area > largest * EDGE_ON).then_some(Sight { towards, distance, area, candela })
     }
 
-    /// The visible share of the projected area, and the mean squared transmittance over the visible part.
+    /// Returns the visible share of the projected area, and the mean squared transmittance over the visible part.
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);
@@ -192,7 +193,7 @@ impl Lamp {
     }
 }
 
-/// The luminaires with openings that emit.
+/// Returns the luminaires that emit light and have a luminous opening.
 fn lamps(world: &World) -> Vec<Lamp> {
     let scene = world.scene();
     let lamp = |(light, kind): (usize, &PunctualLight)| {
@@ -216,7 +217,7 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
     for lamp in lamps {
         let Some(sight) = lamp.sight(world, position) else { continue };
         rated[lamp.light] = true;
-        // Lights behind the eye do not glare.
+        // A luminaire behind the observer causes no glare.
         if sight.candela <= 0.0 || sight.towards.dot(ahead) <= 0.0 {
             continue;
         }
@@ -237,7 +238,7 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
     Rating { ugr, background, background_error, unrated_lux, sources }
 }
 
-/// Background luminance with its standard error, and the direct illuminance by the lights that are not rated.
+/// Returns the background luminance, its standard error, and the direct illuminance from lights that are not rated.
 fn background(world: &World, eye: &Eye, rated: &[bool], params: &Params, index: u64, job: Job) -> (f64, f64, f64) {
     let vertex = Vertex::free(world, eye.position, eye.direction.normalize());
     let per_batch = params.samples.div_ceil(BATCHES);
@@ -266,11 +267,11 @@ fn luminance(light: DVec3) -> f64 {
     f64::from(colour::luminance(light.as_vec3()))
 }
 
-/// Splits the light of a path that ends at an eye into indirect light and direct light that is not rated.
+/// Splits the light that paths carry to an eye into indirect light and direct light from lights that are not rated.
 struct Split<'a> {
-    /// For each light of the scene, whether the rating includes it.
+    /// For each light of the scene, whether the rating accounts for it.
     rated: &'a [bool],
-    /// Whether the path has met a surface other than a clear pane.
+    /// Whether the path has scattered at a surface other than a clear pane.
     scattered: bool,
     indirect: DVec3,
     unrated: DVec3,
@@ -279,8 +280,8 @@ struct Split<'a> {
 impl Observer for Split<'_> {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let light = (importance * emission).as_dvec3();
-        // A vertex samples a light before `scatter` is called for the vertex. A light sample at a mesh is therefore
-        // indirect light even if `scattered` is still false. The eye belongs to no mesh.
+        // At each vertex, the light sample comes before the call of `scatter` for that vertex. A light sample at a
+        // mesh is therefore indirect light even if `scattered` is still false. The eye itself belongs to no mesh.
         let is_at_mesh = matches!(strategy, Strategy::LightSample { mesh, .. } if mesh != NONE);
         match source {
             _ if self.scattered || is_at_mesh => self.indirect += light,

@@ -1,8 +1,8 @@
-//! Illuminance in lux on a calculation grid or over a surface, with the standard error of every point, for lighting
-//! standards (EN 12464-1: mean and uniformity on task areas, walls and ceilings).
+//! Illuminance in lux on a calculation grid or over a surface, with the standard error of every point. Lighting
+//! standards need it (EN 12464-1: mean and uniformity on task areas, walls and ceilings).
 //!
-//! Grid points need no surface beneath them. A surface is mapped by its texture coordinates: each texel stands for the
-//! point at its centre.
+//! The points of a grid may lie in free space. A surface is sampled by its texture coordinates: each texel of the
+//! result stands for the surface point at its centre.
 //!
 //! Not modelled: maintenance factors, cylindrical illuminance.
 
@@ -20,7 +20,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Number of points across and down, each in `[1, 65536]`.
+    /// Number of points across (`columns`) and down (`rows`), each in `[1, 65536]`.
     pub columns: usize,
     pub rows: usize,
     /// Paths per point, in `[16, 1 << 24]`; rounded up to a multiple of 16.
@@ -34,41 +34,42 @@ impl Default for Params {
     }
 }
 
-/// Where to compute illuminance.
+/// The points at which to compute illuminance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
-    /// A parallelogram with a corner and two edges. Its points are the centres of `columns × rows` cells, columns
-    /// along `across` and rows along `down`. They gather light on the side of `normal`, which need not be
-    /// perpendicular to the edges.
+    /// A parallelogram, given by a corner and two edges, which is divided into `columns × rows` cells: columns along
+    /// `across` and rows along `down`. The points are the centres of the cells. They receive light on the side of
+    /// `normal`, which need not be perpendicular to the edges.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
-    /// A mesh, mapped by its first set of texture coordinates; `(0, 0)` is the outer corner of the first texel.
-    /// `front` selects the side that the winding of its triangles faces.
+    /// The surface of a mesh, mapped to the result by the mesh's first set of texture coordinates; `(0, 0)` is the
+    /// outer corner of the first texel. `front` selects the side of the surface from which the triangles wind
+    /// counter-clockwise.
     Mesh { mesh: usize, front: bool },
 }
 
-/// Illuminance of each point, with summary statistics.
+/// The illuminance of each point, with statistics over all points.
 #[derive(Clone, Debug)]
 pub struct Output {
-    /// In lux; NaN for texels without a surface point.
+    /// Illuminance in lux; NaN for texels without a surface point.
     pub lux: Image,
-    /// Standard error of each value, in lux.
+    /// Standard error of each value in lux; NaN for texels without a surface point.
     pub error: Image,
-    /// Number of valid points.
+    /// Number of points with a value.
     pub points: usize,
-    /// Smallest, mean and largest illuminance; all 0 if there are no points. The uniformity of standards is `min /
-    /// mean`.
+    /// Smallest, mean and largest illuminance in lux; all 0 if there are no points. The uniformity of lighting
+    /// standards is `min / mean`.
     pub min: f64,
     pub mean: f64,
     pub max: f64,
-    /// Standard error of the mean; the points are sampled independently.
+    /// Standard error of the mean in lux. The points are sampled independently of each other.
     pub mean_error: f64,
 }
 
-/// Number of independent estimates of each point; their variance gives its standard error.
-/// [origin not recorded]
+/// Number of independent estimates of each point; their variance gives the point's standard error. [origin not
+/// recorded]
 const BATCHES: u32 = 16;
 
-/// Computes the illuminance at a place. Call it on the library's own thread pool.
+/// Computes the illuminance at the points of `place`. Call it on the library's own thread pool.
 ///
 /// # Errors
 /// Parameters out of range; a grid with a zero normal; a mesh that does not exist or has no texture coordinates;
@@ -123,10 +124,10 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
     Ok(Output { lux, error, points, min, mean: sum / n, max, mean_error: variances.sqrt() / n })
 }
 
-/// The points at which light is gathered.
+/// The points at which light is received.
 enum Receivers {
-    /// The grid in world coordinates, so that neighbouring points remain distinct even if the scene is far from the
-    /// origin.
+    /// A grid in world coordinates, in which neighbouring points remain distinct even if the scene is far from the
+    /// origin. `across` and `down` are the steps between neighbouring points.
     Grid {
         origin: Vec3,
         across: Vec3,
@@ -179,8 +180,8 @@ fn receivers(world: &World, place: &Place, params: &Params) -> Result<Receivers>
     }
 }
 
-/// For each texel, the triangle that covers the centre of the texel, and the barycentric coordinates of the centre.
-/// Where triangles overlap, the first triangle is used.
+/// Finds for each texel the triangle that covers the texel's centre, and the barycentric coordinates of the centre.
+/// Where triangles overlap, the first one is used.
 fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
     let meshes = &world.scene().meshes;
     let found = meshes
@@ -199,7 +200,7 @@ fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32
         let [a, b, c] = corners.map(|i| uvs[i as usize] * size - 0.5);
         let (e, f) = (b - a, c - a);
         let area = e.perp_dot(f);
-        // Bounds of the texels whose centres lie in the triangle's bounding box.
+        // Find the texels whose centres lie in the triangle's bounding box.
         let low = a.min(b).min(c).ceil().max(Vec2::ZERO);
         let high = a.max(b).max(c).floor().min(size - 1.0);
         if !(area != 0.0 && area.is_finite() && low.cmple(high).all()) {
@@ -219,7 +220,7 @@ fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32
     Ok(texels)
 }
 
-/// Sums contributions.
+/// Adds up the contributions of paths.
 struct Sum(DVec3);
 
 impl PathSink for Sum {

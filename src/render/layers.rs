@@ -1,7 +1,8 @@
-//! Images beside the main image: light path expressions (`lpe`) and surface attributes (`aov`).
+//! Layers: images that are rendered beside the main image, by light path expressions (`lpe`) or from surface
+//! attributes (`aov`).
 //!
-//! They use the paths of the main image and do not change its bits. The sums of a pass are in f64; the totals of a
-//! pixel are in f32 and grow pass by pass.
+//! Layers use the paths of the main image and leave it unchanged bit by bit. A recorder sums the paths of a pass in
+//! f64. The totals of a pixel are in f32 and grow from pass to pass.
 
 use super::aov::{Aov, Surfaces};
 use super::bsdf::{Lobes, ScatterKind};
@@ -18,25 +19,26 @@ use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The totals of a tile, pixel after pixel.
+/// The layer totals of a tile, pixel after pixel, locked for one worker.
 pub type TileTotals<'a> = MutexGuard<'a, Vec<f32>>;
 
-/// Longest name of a layer in bytes, and the largest number of layers. [convention]
+/// Longest name of a layer in bytes (`MAX_NAME_BYTES`), and largest number of light path expressions (`MAX_LAYERS`).
+/// [convention]
 const MAX_NAME_BYTES: usize = 64;
 const MAX_LAYERS: usize = 1024;
 
-/// Images to render beside the main image; none by default.
+/// The layers to render beside the main image; none by default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outputs {
-    /// Light path expressions with their names.
+    /// Light path expressions, each with the name of its layer.
     pub expressions: Vec<(String, Expression)>,
     pub emitter_as: EmitterAs,
-    /// Surface attributes.
+    /// Surface attributes, each of which becomes a layer.
     pub aovs: Vec<Aov>,
 }
 
 impl Outputs {
-    /// Adds a light path expression.
+    /// Adds a light path expression as a layer.
     ///
     /// # Errors
     /// A name that is empty, too long, taken, or contains characters that file formats interpret (dots, quotes,
@@ -61,33 +63,33 @@ impl Outputs {
     }
 }
 
-/// An image beside the main image.
+/// A layer: an image that was rendered beside the main image.
 #[derive(Clone, Debug)]
 pub struct Layer {
     pub name: String,
-    /// Names of its channels in files.
+    /// Names of the image's channels in files.
     pub channels: &'static [&'static str],
-    /// The text of a light path expression; `None` for a surface attribute.
+    /// Text of the layer's light path expression; `None` for a surface attribute.
     pub expression: Option<String>,
     pub image: Image,
 }
 
-/// The totals of all layers so far. They are stored tile by tile, like the pixels of the main image.
+/// The totals of all layers so far, stored tile by tile like the pixels of the main image.
 pub struct Layers<'a> {
     pub(super) world: &'a World,
     outputs: &'a Outputs,
-    /// The camera's position in world coordinates, and its unit viewing direction.
+    /// Position of the camera in world coordinates (`eye`), and its unit viewing direction (`forward`).
     eye: Vec3,
     forward: Vec3,
     pub(super) automaton: Automaton,
-    /// Numbers per pixel.
+    /// Length of a pixel's totals in numbers.
     width: usize,
-    /// One worker at a time processes a tile, so the locks never wait.
+    /// Totals of each tile. Only one worker at a time processes a tile, so no lock ever waits.
     tiles: Vec<Mutex<Vec<f32>>>,
 }
 
 impl<'a> Layers<'a> {
-    /// `None` if there is only the main image to render.
+    /// Returns `None` if only the main image is to be rendered.
     pub fn new(
         world: &'a World,
         camera: &Camera,
@@ -110,12 +112,12 @@ impl<'a> Layers<'a> {
         Ok(Some(Self { world, outputs, eye, forward, automaton, width, tiles: totals }))
     }
 
-    /// The totals of a tile.
+    /// Locks the totals of a tile.
     pub fn totals(&self, tile: usize) -> TileTotals<'_> {
         self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Sets the totals of a pixel from f64 sums made by [`Recorder::add_to`].
+    /// Sets the totals of a pixel from the f64 sums of [`Recorder::add_to`].
     pub fn set_totals(&self, tile: usize, pixel: usize, sums: &[f64]) {
         let mut totals = self.totals(tile);
         let (colours, surfaces) =
@@ -135,13 +137,13 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// Number of sums per pixel that [`Recorder::add_to`] writes.
+    /// Returns the number of f64 sums per pixel that [`Recorder::add_to`] writes.
     pub fn summed(&self) -> usize {
         let Outputs { expressions, aovs, .. } = self.outputs;
         3 * expressions.len() + if aovs.is_empty() { 0 } else { 1 + aovs.iter().map(|a| a.summed()).sum::<usize>() }
     }
 
-    /// Adds the sums over other paths to `sums`.
+    /// Adds `others`, the sums over other paths of the same pixel, to `sums`.
     pub fn join_sums(&self, sums: &mut [f64], others: &[f64]) {
         let plain = 3 * self.outputs.expressions.len() + usize::from(!self.outputs.aovs.is_empty());
         let (light, mut sums) = sums.split_at_mut(plain);
@@ -155,7 +157,7 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// A recorder for one path at a time.
+    /// Returns a recorder, which records one path at a time.
     pub fn recorder(&self) -> Recorder<'_> {
         Recorder {
             layers: self,
@@ -166,13 +168,13 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// A recorder for each path of a block.
+    /// Returns a recorder for each pixel of a block.
     pub fn recorders(&self) -> Vec<Recorder<'_>> {
         (0..MAX_SHARED).map(|_| self.recorder()).collect()
     }
 
-    /// The images so far. `places` has, for each pixel of the image, the tile, the index within the tile and the number
-    /// of samples of the pixel to show.
+    /// Computes the images of all layers from the totals so far. For each pixel of the image, `places` holds the
+    /// rendered pixel to display there: its tile, its index within the tile, and its number of samples.
     pub fn images(&self, beauty: &Image, places: &[(u32, u32, u32)], job: Job) -> Result<Vec<Layer>> {
         let guards = try_collect(self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)))?;
         let tiles = try_collect(guards.iter().map(|guard| guard.as_slice()))?;
@@ -191,7 +193,7 @@ impl<'a> Layers<'a> {
             let expression = Some(expression.text().to_string());
             layers.push(Layer { name: name.clone(), channels: &["R", "G", "B"], expression, image });
         }
-        // The totals of a pixel: light, then the number of primary hits, then the attributes.
+        // In the totals of a pixel, the expressions come first, then the number of primary hits, then the attributes.
         let hits = 3 * self.outputs.expressions.len();
         let mut first = hits + 1;
         for &aov in &self.outputs.aovs {
@@ -218,26 +220,27 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Records the layers of paths, pixel by pixel.
+/// Records what the paths of a pixel add to the layers, one path after the other.
 pub struct Recorder<'a> {
     layers: &'a Layers<'a>,
-    /// Radiance of the current path in the main image.
+    /// Radiance of the current path in the main image, so far.
     pub(super) beauty: Vec3,
     pub(super) trail: Trail<'a>,
-    /// Sums over the paths of a pixel: one sum for each list of expressions that accept the same paths.
+    /// Light of the pixel's paths: one sum for each list in [`Automaton::lists`].
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
 
 impl Recorder<'_> {
-    /// Begins a new path.
+    /// Begins a path.
     #[inline]
     pub fn start(&mut self) {
         self.beauty = Vec3::ZERO;
         self.trail.start();
     }
 
-    /// Ends the path and returns its radiance in the main image. A path whose radiance is not finite adds nothing.
+    /// Ends the path, adds its light to the sums and returns its radiance in the main image. A path whose radiance is
+    /// not finite adds nothing.
     #[inline]
     pub fn end_path(&mut self) -> Vec3 {
         if self.beauty.is_finite() {
@@ -246,13 +249,13 @@ impl Recorder<'_> {
         self.beauty
     }
 
-    /// Adds the recorded sums to the totals of a pixel of a tile.
+    /// Moves the recorded sums to the totals of a pixel of the tile.
     pub fn add_to_totals(&mut self, totals: &mut TileTotals, pixel: usize) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) =
             totals[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
-        // Add the sum of a list to each expression of the list.
+        // Add the sum of each list to the totals of all expressions on the list.
         let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             let light = sum.as_vec3();
@@ -273,8 +276,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// Adds the current sums of a pixel to totals in f64: three numbers per expression, the number of primary hits,
-    /// and [`Aov::summed`] numbers per surface attribute.
+    /// Moves the recorded sums of a pixel to f64 totals: three numbers per expression, then the number of primary
+    /// hits, then [`Aov::summed`] numbers per surface attribute.
     pub fn add_to(&mut self, totals: &mut [f64]) {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());

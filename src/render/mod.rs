@@ -1,21 +1,27 @@
 //! Rendering: unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986;
-//! Veach 1997), for images and for the irradiance of surfaces ("Lighting Style Transfer", section 7; StyLit, section
-//! 3.2).
+//! Veach 1997). It renders images, and estimates the irradiance of surfaces ("Lighting Style Transfer", section 7;
+//! StyLit, section 3.2).
 //!
 //! [`World`] prepares a scene for tracing; [`run`] renders the view of a camera; [`irradiance`] samples the light that
-//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target. The
-//! same seed gives the same bits on any number of threads.
+//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target.
+//! Results with the same seed are equal bit by bit for any number of threads.
 //!
-//! A sample passes through these files: `sampler` draws its random numbers → `path` traces it (`vertex` describes a
-//! hit, `bsdf` and `ggx` scatter, `light` samples one of the lights of `emissive` and `environment`) → a [`PathSink`]
-//! receives its contributions → `film` keeps means and errors and decides which pixels get more paths. `shared` lets
-//! the paths of neighbouring pixels reuse each other's secondary vertices. `layers` adds images from the same paths:
-//! light path expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes grids and maps of meshes in
-//! lux, [`glare`] the unified glare rating of observers. `denoise` filters previews, with a bias.
+//! A sample passes through these files:
+//!
+//! - `sampler` draws its random numbers.
+//! - `path` traces it: `vertex` describes a hit, `bsdf` and `ggx` scatter, and `light` samples one of the lights from
+//!   `emissive` and `environment`.
+//! - A [`PathSink`] receives its contributions.
+//! - `film` keeps means and errors, and decides which pixels get more paths.
+//!
+//! `shared` lets the paths of neighbouring pixels reuse each other's secondary vertices. `layers` computes further
+//! images from the same paths: light path expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes
+//! grids and surface maps in lux, [`glare`] the unified glare rating of observers. `denoise` filters previews, which
+//! biases them.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
-//! [`Requirements::left_out`] names the solids of glass and the frosted glass of a scene, as does
-//! `luxfer_scene_get_requirements_text` in C.
+//! [`Requirements::left_out`] lists the glass solids and the frosted glass of a scene; in C,
+//! `luxfer_scene_get_requirements_text` does.
 
 mod aov;
 mod ballot;
@@ -65,21 +71,22 @@ use params::check_camera;
 use sampler::Sampler;
 use vertex::Vertex;
 
-/// A point of a surface at which irradiance is estimated.
+/// A surface point at which irradiance is estimated.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
     pub mesh: u32,
     pub triangle: u32,
     /// Barycentric coordinates of corners 1 and 2.
     pub barycentric: Vec2,
-    /// Whether the point gathers on the front side, which the winding of the triangle faces.
+    /// Whether the point receives light on the front side of the triangle, from which its corners wind
+    /// counter-clockwise.
     pub front: bool,
 }
 
-/// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample and `seed`
-/// selects an independent sequence. The samples of one seed are stratified: their mean converges faster than that of
-/// independent samples, best at powers of two. A point outside the scene's surfaces or on a degenerate triangle adds
-/// nothing.
+/// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample; each `seed`
+/// selects an independent sequence of samples. The samples of one seed are stratified: their mean converges faster
+/// than that of independent samples, and best at powers of two. A point that is not on a surface of the scene, or that
+/// lies on a degenerate triangle, adds nothing.
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
     let mesh = world.scene().meshes.get(point.mesh as usize);
     if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
@@ -91,8 +98,8 @@ pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, s
     }
 }
 
-/// Adds one sample of the irradiance at a free point in space, such as a point of a calculation grid, on the side of a
-/// non-zero normal of any length.
+/// Adds one sample of the irradiance (lux) at a point in free space, such as a point of a calculation grid. The point
+/// receives light on the side of `normal`, a vector of any length except 0.
 pub fn irradiance_in_air<S: PathSink>(
     world: &World,
     position: Vec3,
@@ -108,12 +115,12 @@ pub fn irradiance_in_air<S: PathSink>(
     }
 }
 
-/// Renders the view of a camera. Calls `publish` with the film after the first pass, and again whenever a new film is
-/// worth the time that publishing takes. Call it on the library's own thread pool.
+/// Renders the view of a camera. Calls `publish` with the film after the first pass, and again whenever enough time
+/// has passed that publishing takes only a small share of it. Call it on the library's own thread pool.
 ///
-/// Without an error target the estimate of each pixel is unbiased. With a target, the paths so far decide where the
-/// next ones go, and pixels with rare bright paths come out too dark by a small part of their standard error (see
-/// `film::adaptive`).
+/// Without an error target, the estimate of each pixel is unbiased. With a target, earlier paths decide which pixels
+/// get further paths; pixels with rare bright paths then come out too dark by a small part of their standard error
+/// (see `film::adaptive`).
 ///
 /// # Errors
 /// Parameters out of range; a degenerate camera; lights so bright that pixels overflow; no memory; cancelled. After a
@@ -121,7 +128,7 @@ pub fn irradiance_in_air<S: PathSink>(
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     params.check()?;
     check_camera(camera)?;
-    // Assemble images with a job of their own: they are also needed after a cancel.
+    // Assemble films with a separate job, because they are also needed after a cancel.
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);
@@ -156,7 +163,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     Ok(film)
 }
 
-/// Refuses a film whose sums have overflowed.
+/// Returns an error if values of the film have overflowed.
 fn check_finite(film: &Film) -> Result<()> {
     match film.beauty.count_non_finite() {
         0 => Ok(()),

@@ -1,34 +1,36 @@
-//! The result of a render.
+//! The film: the result of a render, with its errors and additional images.
 
 use super::denoise;
 use super::layers::Layer;
 use crate::error::Result;
 use crate::image::Image;
 
-/// The image rendered so far; it stays usable after a cancel or at the end of the time budget.
+/// The image rendered so far. It stays usable after a cancel and when the time budget is used up.
 #[derive(Clone, Debug)]
 pub struct Film {
-    /// Mean radiance per pixel, linear RGB in cd/m². A pixel without paths shows a nearby pixel.
+    /// Mean radiance of each pixel, linear RGB in cd/m². A pixel without paths shows a nearby pixel that has paths.
     pub beauty: Image,
-    /// Variance of that mean per channel, each pixel from its own paths; infinite below two paths. [`Film::interval`]
-    /// derives confidence intervals from it.
+    /// Variance of the mean radiance, per channel, from the pixel's own paths; infinite for fewer than two paths.
+    /// [`Film::interval`] derives confidence intervals from it.
     pub variance: Image,
     /// Number of paths of each pixel; one channel.
     pub paths: Image,
     /// Mean number of paths per pixel so far.
     pub samples: u32,
-    /// Root mean square over pixels and channels of the standard error, relative to the mean of the image.
+    /// Root mean square of the standard error over pixels and channels, relative to the mean of the image.
     pub error: f64,
-    /// Root mean square of the standard error relative to the radiance of each pixel (mean of its channels, at least a
-    /// hundredth of the image's mean). With few paths it overestimates: with 8 paths by about a quarter.
+    /// Root mean square of the relative errors of the pixels. The relative error of a pixel is its standard error,
+    /// divided by its radiance (mean of the channels, at least a hundredth of the image's mean). With few paths it is
+    /// overestimated: with 8 paths by about a quarter.
     pub relative_error: f64,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// Number of lights that shine from points, so that the image does not show them.
+    /// Number of emissive points, spots and luminaires, which have no surface that the image could show.
     pub unseen_lights: usize,
-    /// The additional images: those of expressions in order, then the AOVs in order.
+    /// The additional images: first the light path expressions, then the surface attributes, in the order of the
+    /// request.
     pub layers: Vec<Layer>,
-    /// The filtered image and an estimate of its bias, if requested. It is not an unbiased estimate.
+    /// The filtered image with an estimate of its bias, if requested. The filtered image is not an unbiased estimate.
     pub preview: Option<denoise::Output>,
 }
 

@@ -1,36 +1,38 @@
-//! The parameters of a render.
+//! The parameters of a render, with their ranges and defaults.
 
 use super::layers::Outputs;
 use crate::error::{Error, Result, check_range};
 use crate::image::MAX_SIDE;
 use crate::scene::Camera;
 
-/// The parameters of a render.
+/// What to render, and when to stop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Size of the image in pixels, each in `[1, 65536]`.
+    /// Width and height of the image in pixels, each in `[1, 65536]`.
     pub width: usize,
     pub height: usize,
     /// Paths per pixel, in `[1, 1 << 20]`. Without an error target, every pixel gets this number of paths. With an
-    /// error target, this number limits the mean over the image.
+    /// error target, the mean over the image is at most this number.
     pub samples: u32,
-    /// Stop when [`super::Film::error`] falls to this value, with paths allocated to minimise it; 0 = never.
+    /// Stop when [`super::Film::error`] falls to this value; paths are allocated to minimise that error. 0 = never.
     pub target_error: f32,
-    /// Stop when the error of each tile of 8 × 8 pixels falls to this value. The error of a pixel is the half-width of
-    /// the 95 % confidence interval of its luminance, relative to its luminance. The error of a tile is the root mean
-    /// square over its pixels. 0.1 means "within 10 % of the value, 19 times out of 20". Pixels darker than a tenth of
-    /// the image's mean radiance are measured against that tenth. A tile gets at most 64 times `samples` paths per
-    /// pixel, though it may miss the target. 0 = never. If several targets are set, all of them are met.
+    /// Stop when the error of each tile of 8 × 8 pixels falls to this value; 0 = never. The error of a pixel is the
+    /// half-width of the 95 % confidence interval of its luminance, relative to its luminance. The error of a tile is
+    /// the root mean square over its pixels. 0.1 means "within 10 % of the value, 19 times out of 20". For pixels
+    /// darker than a tenth of the image's mean radiance, the error is relative to that tenth. A tile gets at most 64
+    /// times `samples` paths per pixel, even if it then misses the target. If several targets are set, all of them
+    /// must be met.
     pub pixel_error: f32,
-    /// Stop when [`super::Film::relative_error`] falls to this value, with paths allocated to minimise it; 0 = never.
+    /// Stop when [`super::Film::relative_error`] falls to this value; paths are allocated to minimise that error. 0 =
+    /// never.
     pub relative_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
-    /// Strength of the filter that makes [`super::Film::preview`] (`denoise`), in `[0, 10]`, usually 1; 0 = no
-    /// preview, for final images.
+    /// Strength of the filter (`denoise`) that computes [`super::Film::preview`], in `[0, 10]`, usually 1. 0 = no
+    /// preview, as for final images.
     pub preview: f32,
     pub seed: u64,
-    /// Images to render beside the main image.
+    /// Images to render in addition to the main image.
     pub outputs: Outputs,
 }
 
@@ -52,7 +54,7 @@ impl Default for Params {
 }
 
 impl Params {
-    /// Checks that every setting is in its range.
+    /// Returns an error if a setting is out of its range.
     pub fn check(&self) -> Result<()> {
         check_range("width", self.width, 1, MAX_SIDE)?;
         check_range("height", self.height, 1, MAX_SIDE)?;
@@ -65,7 +67,7 @@ impl Params {
     }
 }
 
-/// Checks that a camera has a view.
+/// Returns an error if a camera is degenerate, so that it has no view.
 pub fn check_camera(camera: &Camera) -> Result<()> {
     let vectors = [camera.position, camera.forward, camera.up];
     let has_view = camera.forward.cross(camera.up).length_squared() > 0.0;

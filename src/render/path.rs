@@ -1,8 +1,8 @@
-//! Path tracing from the eye: next-event estimation and multiple importance sampling at every vertex.
+//! Path tracing from the eye, with next-event estimation and multiple importance sampling (MIS) at every vertex.
 //!
-//! A BSDF sample that hits a light and a light sample of the same path are weighed by the power heuristic (Veach 1997,
-//! 9.2.4). Clear panes are not vertices for MIS: shadow rays pass through them attenuated, and a path keeps the pdf of
-//! the vertex before the pane. Contributions are not clamped: the estimate is unbiased.
+//! Light that both a BSDF sample and a light sample can find is weighted by the power heuristic (Veach 1997, 9.2.4).
+//! Clear panes are not vertices for MIS: they attenuate shadow rays without blocking them, and a path that passes a
+//! pane keeps the pdf of the vertex before it. Contributions are not clamped, so the estimate is unbiased.
 
 use super::bsdf::{Bsdf, BsdfSample, Lobes, ScatterKind};
 use super::contribution::{LightSource, PathSink};
@@ -18,30 +18,32 @@ use glam::{Vec2, Vec3};
 
 /// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
-/// Paths whose expected contribution is at least this share of the mean survive with the largest probability,
-/// [`MAX_SURVIVAL`]. Measured on rooms, the product of time and variance is smallest near this value. [judged on rooms]
+/// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is at least about this
+/// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value.
+/// [judged on rooms]
 const CERTAIN_SHARE: f32 = 0.5;
-/// Largest survival probability: a path between white walls must end eventually. The variance is infinite if the albedo
-/// of the walls exceeds the square root of this probability. [origin not recorded]
+/// Largest survival probability, so that a path between white walls ends eventually. The variance is infinite if the
+/// albedo of the walls exceeds the square root of this probability. [origin not recorded]
 const MAX_SURVIVAL: f32 = 0.998;
 
-/// Largest number of bounces. It only guards against endless paths: at [`MAX_SURVIVAL`] one path in ten million gets
-/// so far.
+/// Largest number of bounces, as a guard against endless paths. With a survival probability of [`MAX_SURVIVAL`], one
+/// path in ten million gets this far.
 pub const MAX_BOUNCES: u32 = 8192;
 
-/// Observes a path. Many observers implement only [`Observer::add`]; the empty defaults of the other methods cost
-/// nothing.
+/// Receives the events of a light path while it is traced. Many observers implement only [`Observer::add`]; the empty
+/// defaults of the other methods cost nothing.
 pub trait Observer {
-    /// Receives a contribution, as [`PathSink::add`], with the sampling strategy that found the light.
+    /// Receives a contribution as in [`PathSink::add`], and the sampling strategy that found the light.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy);
 
-    /// Receives the first surface that a camera path hits.
+    /// Receives the first surface that a camera path hits. `_seen` computes its attributes.
     fn primary_hit(&mut self, _seen: impl FnOnce() -> PrimaryHit) {}
 
-    /// Receives a scattering event of the path at a vertex of a mesh.
+    /// Receives a scattering event of the path: the mesh of the vertex, the kind of scattering, and the values of the
+    /// lobes.
     fn scatter(&mut self, _mesh: u32, _kind: ScatterKind, _lobes: Lobes) {}
 
-    /// A list to fill with the panes between a vertex and its light sample, if the observer needs them.
+    /// Returns a list to be filled with the panes between a vertex and its light sample, if the observer needs them.
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
         None
     }
@@ -52,7 +54,7 @@ pub trait Observer {
 pub struct PrimaryHit {
     pub mesh: u32,
     pub position: Vec3,
-    /// Shading normal and geometric normal, both facing the eye.
+    /// Shading normal (`normal`) and geometric normal, both facing the eye.
     pub normal: Vec3,
     pub geometric_normal: Vec3,
     /// Reflectance plus transmittance at normal incidence.
@@ -79,11 +81,12 @@ impl PrimaryHit {
 pub enum Strategy {
     /// A BSDF sample hit the light.
     BsdfSample,
-    /// A light sample at a vertex of a mesh; `lobes` are the BSDF values times the cosine towards the light.
+    /// A light sample was drawn at a vertex of the mesh; `lobes` are the BSDF values times the cosine towards the
+    /// light.
     LightSample { mesh: u32, lobes: Lobes },
 }
 
-/// An observer that forwards contributions to a sink.
+/// An observer that passes contributions on to a sink and ignores all other events.
 pub struct Contributions<'a, S>(pub &'a mut S);
 
 impl<S: PathSink> Observer for Contributions<'_, S> {
@@ -93,38 +96,38 @@ impl<S: PathSink> Observer for Contributions<'_, S> {
     }
 }
 
-/// A path segment about to leave a vertex or the eye.
+/// The next segment of a path, as it leaves a vertex or the eye.
 pub(super) struct Leg {
     pub ray: Ray,
-    /// Id of the triangle at the origin of the ray, or `NONE`.
+    /// Id of the triangle from which the ray starts, or `NONE`.
     pub from: u32,
     pub throughput: Vec3,
-    /// The competing strategy for MIS: the point at which a light was sampled last, and the solid-angle pdf of the
-    /// BSDF sample drawn there. `None` after the eye or a mirror, where no light sample competes.
+    /// For MIS: the point at which a light was last sampled, and the solid-angle pdf of the BSDF sample drawn there.
+    /// `None` after the eye or a mirror, where no light sample could find the same light.
     pub mis: Option<(Receiver, f32)>,
-    /// Uniform in the unit square: selects the light sample at the next vertex.
+    /// Uniform random numbers in `[0, 1)` that select the light sample at the next vertex.
     pub light_u: (f64, f32),
 }
 
 impl Leg {
-    /// A segment that leaves the eye along a ray of unit direction.
+    /// Returns the segment that leaves the eye along a ray of unit direction.
     pub fn from_eye(ray: Ray, light_u: (f64, f32)) -> Self {
         Self { ray, from: NONE, throughput: Vec3::ONE, mis: None, light_u }
     }
 }
 
-/// Controls the length of paths.
+/// Limits the length of paths.
 #[derive(Clone, Copy)]
 pub struct PathLength {
-    /// Largest number of bounces.
+    /// Largest number of bounces of a path.
     pub max_bounces: u32,
-    /// Factor that turns a path's throughput into its expected contribution relative to the pixel's estimate, for
-    /// Russian roulette. `None`: the reciprocal of the throughput after the first bounce is used.
+    /// Factor for Russian roulette. It converts the throughput of a path to the path's expected contribution, relative
+    /// to the pixel's estimate. If it is `None`, the reciprocal of the throughput after the first bounce is used.
     pub roulette_weight: Option<Vec3>,
 }
 
-/// Estimates the radiance that arrives along a ray of unit direction with one path. `light_u`, uniform in the unit
-/// square, selects the first light sample.
+/// Estimates the radiance that arrives along a ray of unit direction, with one path. `light_u` are uniform random
+/// numbers that select the first light sample.
 pub fn trace<O: Observer>(
     world: &World,
     ray: Ray,
@@ -136,7 +139,7 @@ pub fn trace<O: Observer>(
     walk(world, Leg::from_eye(ray, light_u), 0, length, sampler, observer);
 }
 
-/// Estimates the irradiance at a point with one path.
+/// Estimates the irradiance at a point, on its front or back side, with one path.
 pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler: &mut Sampler, observer: &mut O) {
     let normal = if front { vertex.normal } else { -vertex.normal };
     let receiver = Bsdf::receiver(normal);
@@ -148,7 +151,7 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     }
 }
 
-/// Traces a path from its bounce number `scattered` to its end.
+/// Traces a path from segment `leg`, which follows `scattered` bounces, to its end.
 pub(super) fn walk<O: Observer>(
     world: &World,
     mut leg: Leg,
@@ -166,8 +169,8 @@ pub(super) fn walk<O: Observer>(
     }
 }
 
-/// Intersects a segment with the scene: returns the vertex and its distance. Adds the emission of the hit or of the
-/// environment.
+/// Intersects a segment with the scene. Adds the emission of the hit or, without a hit, of the environment. Returns
+/// the vertex and its distance; `None` without a hit.
 #[inline(always)]
 pub(super) fn intersect<O: Observer>(
     world: &World,
@@ -185,6 +188,7 @@ pub(super) fn intersect<O: Observer>(
 }
 
 /// Continues a path of `bounce` bounces at a vertex: plays Russian roulette, samples a light, and samples the BSDF.
+/// Returns the next segment; `None` if the path ends.
 #[inline(always)]
 pub(super) fn continue_path<O: Observer>(
     world: &World,
@@ -200,13 +204,14 @@ pub(super) fn continue_path<O: Observer>(
         return None;
     }
     // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette
-    // and splitting in light transport simulation", with a single value for the radiance yet to be found).
+    // and splitting in light transport simulation"). The single value `roulette_weight` replaces their estimate of the
+    // radiance yet to be found.
     let mut throughput = leg.throughput;
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
     {
-        // Keep more of the dim paths than their expected share, because that share underestimates bright light that is
-        // rare.
+        // Let dim paths survive with a higher probability than their expected share, because this share underestimates
+        // rare bright light.
         let expected_share = (throughput * roulette_weight).max_element();
         let survival = (expected_share / CERTAIN_SHARE).max(expected_share.sqrt()).min(MAX_SURVIVAL);
         if !(sampler.chance() < survival) {
@@ -223,7 +228,7 @@ pub(super) fn continue_path<O: Observer>(
     Some(next)
 }
 
-/// Samples a light at a vertex, then samples the BSDF for the next segment.
+/// Samples a light at a vertex, then samples the BSDF. Returns the next segment; `None` if the path ends.
 pub(super) fn scatter<O: Observer>(
     world: &World,
     vertex: &Vertex,
@@ -252,7 +257,7 @@ pub(super) fn scatter<O: Observer>(
     Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
 }
 
-/// Sample a light, unless the BSDF is specular.
+/// Samples a light, unless the BSDF is specular.
 #[inline(always)]
 pub(super) fn sample_light(
     world: &World,
@@ -263,7 +268,7 @@ pub(super) fn sample_light(
     if bsdf.has_non_specular() { world.lights().sample(world.scene(), receiver, light_u) } else { None }
 }
 
-/// Samples the BSDF; also returns the random numbers of the light sample at the next vertex.
+/// Samples the BSDF. Also returns the random numbers that select the light sample at the next vertex.
 #[inline(always)]
 pub(super) fn sample_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(BsdfSample, (f64, f32))> {
     let block = sampler.next();
@@ -271,7 +276,7 @@ pub(super) fn sample_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(Bs
     Some((scattered, (block.fine(2), block.get(3))))
 }
 
-/// Adds the contribution of a light sample at a vertex.
+/// Adds the contribution of a light sample at a vertex, if the light is visible.
 #[inline(always)]
 pub(super) fn add_direct_light<O: Observer>(
     world: &World,
@@ -292,8 +297,8 @@ pub(super) fn add_direct_light<O: Observer>(
     }
 }
 
-/// Weight of a light sample's emission at a vertex, without the BSDF: visibility × mis_weight / pdf. `pdf` is the
-/// solid-angle pdf of the BSDF for the direction of the light.
+/// Returns the factor of a light sample's emission, without the BSDF: visibility × mis_weight / pdf. `pdf` is the
+/// solid-angle pdf with which the BSDF would sample the direction of the light.
 #[inline(always)]
 pub(super) fn connection_weight(
     world: &World,
@@ -317,7 +322,7 @@ pub(super) fn connection_weight(
     world.transmittance(&ray, [vertex.id, end], panes) * (weight / light.pdf)
 }
 
-/// Adds the emission of a hit surface, weighed against a light sample of the same point.
+/// Adds the emission of a surface that a BSDF sample has hit, with the MIS weight against light sampling.
 fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer: &mut O) {
     let Some(index) = world.emitter_of(vertex.id) else { return };
     let lights = world.lights();
@@ -339,7 +344,7 @@ fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer
     observer.add(source, leg.throughput * weight, emission, Strategy::BsdfSample);
 }
 
-/// Adds the radiance of the environment, weighed against a light sample of the same direction.
+/// Adds the environment's radiance along a BSDF sample, with the MIS weight against light sampling.
 fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
     let Some(environment) = world.environment() else { return };
     let emission = environment::radiance(environment, leg.ray.direction);
@@ -351,14 +356,15 @@ fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
     observer.add(LightSource::Environment, leg.throughput * weight, emission, Strategy::BsdfSample);
 }
 
-/// Reciprocal of each channel; 0 for channels that are not positive.
+/// Returns the reciprocal of each channel; 0 for channels that are not positive.
 pub(super) fn reciprocal(v: Vec3) -> Vec3 {
     Vec3::select(v.cmpgt(Vec3::ZERO), v.recip(), Vec3::ZERO)
 }
 
-/// MIS weight of a sample of pdf `own` against a strategy of pdf `other` (power heuristic with exponent 2).
+/// Returns the MIS weight of a sample of pdf `own` against a strategy of pdf `other` (power heuristic with exponent
+/// 2).
 fn power_heuristic(own: f32, other: f32) -> f32 {
-    // Form the ratio first, so that neither square overflows.
+    // Compute the ratio first, so that no square overflows.
     if own <= 0.0 {
         return 0.0;
     }

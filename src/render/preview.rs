@@ -1,4 +1,5 @@
-//! Previews of a render in progress: runs `denoise` on the render's own outputs and adds the guide images it needs.
+//! Previews of a render in progress: adds the guide images that `denoise` needs to the requested outputs, and filters
+//! the film.
 
 use super::aov::Aov;
 use super::denoise::{self, Input};
@@ -8,10 +9,10 @@ use super::params::Params;
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 
-/// Guide images of the filter.
+/// Guide images of the filter, in addition to the variance.
 const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
 
-/// The parameters of a render, with the guide images of the filter added after the requested outputs.
+/// Returns the parameters of a render, with the guide images of the filter added after the requested outputs.
 pub fn guided(params: &Params) -> Params {
     let mut guided = params.clone();
     if params.preview > 0.0 {
@@ -21,7 +22,8 @@ pub fn guided(params: &Params) -> Params {
     guided
 }
 
-/// Adds the preview to a film of [`guided`] parameters, and removes the guide images that were not requested.
+/// Adds the preview to a film that was rendered with the [`guided`] parameters. Removes the guide images that were not
+/// requested.
 pub fn add_preview(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) -> Result<()> {
     if params.preview > 0.0 {
         let guide = |aov: Aov| {

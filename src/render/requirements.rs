@@ -1,9 +1,9 @@
-//! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and the largest
-//! share of light that a bounce can leave.
+//! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and how much light
+//! a bounce can reflect or transmit at most.
 //!
-//! The analysis considers every value that a material factor times a texel of its texture can have. Only materials of
-//! meshes with triangles count. Tracing skips whatever cannot occur, which changes no estimate. The number of bounces
-//! that matter is reported, but limits no render: paths end by Russian roulette alone.
+//! For each material, the analysis considers all products of a factor and a texel of its texture. Only materials of
+//! meshes with triangles count. Tracing skips features that cannot occur, which changes no estimate. The number of
+//! bounces that matter is reported, but limits no render, since paths end by Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -14,46 +14,49 @@ use glam::{Vec3, Vec4};
 /// The shading features that a scene requires.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Requirements {
-    /// Kinds of scattering that can occur.
+    /// Whether each kind of scattering can occur: diffuse, glossy, mirror.
     pub diffuse: bool,
     pub glossy: bool,
     pub mirror: bool,
-    /// Clear panes.
+    /// Whether the scene has clear panes.
     pub glass: bool,
-    /// Surfaces with an opacity below 1.
+    /// Whether a surface has an opacity below 1.
     pub alpha: bool,
     pub normal_maps: bool,
-    /// Kinds of lights that can emit.
+    /// Whether each kind of light can emit: emissive surfaces, textured emissive surfaces, and so on.
     pub surfaces: bool,
     pub textured_surfaces: bool,
     pub points: bool,
     pub spots: bool,
     pub directional: bool,
     pub environment: bool,
-    /// Number of textures that affect scattering or emission, and number of textures in the scene.
+    /// Number of textures that affect scattering or emission (`textures`), and number of textures in the scene.
     pub textures: usize,
     pub textures_given: usize,
-    /// Upper bound of the albedo of all surfaces, per channel: diffuse, glossy and transmitted light together.
+    /// Upper bound of the albedo of all surfaces, per channel. The albedo includes diffuse, glossy and transmitted
+    /// light.
     pub albedo: Vec3,
-    /// The material of the largest albedo.
+    /// Index of the material with the largest albedo bound.
     pub brightest: Option<usize>,
     /// Number of degenerate triangles, which no ray can hit.
     pub flat_triangles: usize,
-    /// Number of closed transparent meshes, and the first of them: refraction in solids is not modelled.
+    /// Number of closed transparent meshes (`solids`), and index of the first of them. Refraction in solids is not
+    /// modelled.
     pub solids: usize,
     pub first_solid: Option<usize>,
-    /// The first material that is transparent and rough: frosted glass is not modelled.
+    /// Index of the first material that is transparent and rough. Frosted glass is not modelled.
     pub frosted: Option<usize>,
 }
 
 impl Requirements {
-    /// The number of bounces after which the remaining light is at most the share `error` of all scattered light.
-    /// `None` if the albedos set no bound or `error` is not positive.
+    /// Returns the number of bounces after which at most the share `error` of all scattered light remains. `None` if
+    /// the albedos give no bound or `error` is not positive.
     ///
-    /// No surface reflects or transmits more than the share `a`, the largest channel of `albedo`. Each bounce carries
-    /// at most `a` times the flux of the previous one; less in open scenes. The relative sum over more than `n`
-    /// bounces is largest if all ratios equal `a`: it is then a^n. This bounds the loss of flux in the whole scene. An
-    /// image of a part of it may lose more, such as an image that only shows light of many bounces.
+    /// Let `a` be the largest channel of `albedo`: no surface reflects or transmits a larger share of light. So each
+    /// bounce carries at most `a` times the flux of the previous bounce, and less in open scenes. The share of the
+    /// flux that comes after `n` bounces is largest if every ratio equals `a`; it is then a^n. This bounds the loss of
+    /// flux in the whole scene. An image may lose more if it shows only a part of the scene that is lit by many
+    /// bounces.
     pub fn bounces(&self, error: f32) -> Option<u32> {
         let a = f64::from(self.albedo.max_element());
         if !(error > 0.0 && a < 1.0) {
@@ -65,8 +68,8 @@ impl Requirements {
         Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
     }
 
-    /// The shading features that the scene does not need and that tracing therefore omits, and the contents of the
-    /// scene that the renderer does not model; one sentence each.
+    /// Returns one sentence for each shading feature that the scene does not need and tracing therefore omits, and one
+    /// for each content of the scene that the renderer does not model.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {
@@ -109,7 +112,7 @@ impl Requirements {
     }
 }
 
-/// Smallest and largest values per channel.
+/// Smallest and largest value of each channel.
 #[derive(Clone, Copy)]
 struct Range {
     low: Vec4,
@@ -123,7 +126,7 @@ impl Range {
         self.low == self.high
     }
 
-    /// The range of the products of a value in `self` and a value in `other`.
+    /// Returns the range of the products of a value in `self` and a value in `other`.
     fn times(&self, other: &Self) -> Self {
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         Self {
@@ -132,20 +135,20 @@ impl Range {
         }
     }
 
-    /// Adds a value to the range.
+    /// Extends the range to include a value.
     fn include(&mut self, value: Vec4) {
         self.low = self.low.min(value);
         self.high = self.high.max(value);
     }
 }
 
-/// Analyses a validated scene; returns its requirements and its compiled materials.
+/// Analyses a validated scene. Returns its requirements and its compiled materials.
 pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
-    // Mark the materials that a ray can hit, and the materials that can emit because a triangle has an area.
+    // Mark the materials that meshes use (`used`), and those that can emit because a triangle has an area (`spread`).
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
-    // The range of the vertex colours by which each material is multiplied.
+    // Find the range of the vertex colours by which each material is multiplied.
     let none = Range { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
     let mut tints = vec![none; scene.materials.len()];
     for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {
@@ -180,7 +183,7 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     (needed, compiled_materials)
 }
 
-/// Whether any triangle of a mesh has an area. A triangle without an area cannot emit.
+/// Whether any triangle of a mesh has an area; a triangle without area cannot emit.
 fn has_area(mesh: &Mesh) -> bool {
     (0..mesh.triangles.len()).any(|triangle| {
         let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
@@ -203,7 +206,8 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
 }
 
 impl Requirements {
-    /// Adds the kinds of scattering and the albedo of a material with these extreme parameter sets.
+    /// Adds the kinds of scattering that a material can cause, and the material's albedo bound. `extremes` are the
+    /// parameter sets that bound the material (see `extremes`).
     fn include_material(
         &mut self,
         index: usize,
@@ -226,7 +230,7 @@ impl Requirements {
         }
     }
 
-    /// Adds the emission of a material with an emission texture of this range.
+    /// Adds the emission of a material whose emission texture has the range `emission`.
     fn include_emission(&mut self, material: &Material, emission: Range) {
         if (material.emission * emission.high.truncate()).max_element() > 0.0 {
             self.surfaces = true;
@@ -234,8 +238,8 @@ impl Requirements {
         }
     }
 
-    /// Clears the flags of surface emission if no part of any surface emits. An example is a lamp whose lit texels all
-    /// lie outside its triangles. `pieces` is the number of parts that emit.
+    /// Clears the flags of surface emission if `pieces`, the number of emissive pieces, is 0. An example is a lamp
+    /// whose lit texels all lie outside its triangles.
     pub fn keep_surfaces_that_emit(&mut self, pieces: usize) {
         self.surfaces &= pieces > 0;
         self.textured_surfaces &= pieces > 0;
@@ -252,7 +256,7 @@ impl Requirements {
         }
     }
 
-    /// Adds the punctual lights and the environment.
+    /// Adds the kinds of punctual lights, and the environment.
     fn include_lights(&mut self, scene: &Scene) {
         for light in &scene.lights {
             let (kind, strength) = match light {
@@ -270,7 +274,7 @@ impl Requirements {
         };
     }
 
-    /// Adds the kinds of scattering of a parameter set.
+    /// Adds the kinds of scattering that one parameter set causes.
     fn include(&mut self, s: &Substance) {
         self.diffuse |= s.diffuse != Vec3::ZERO;
         self.glass |= s.transmission != Vec3::ZERO;
@@ -300,7 +304,7 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
         AlphaMode::Mask(cutoff) => min_alpha < cutoff,
         AlphaMode::Blend => min_alpha < 1.0,
     };
-    // A neutral normal map has x and y of 1/2, which mean 0, and a positive z.
+    // A neutral normal map has x = y = 1/2, which decodes to 0, and a z that decodes to a positive value.
     let bends = (normals.low.truncate() * 2.0 - 1.0).abs().max((normals.high.truncate() * 2.0 - 1.0).abs());
     let is_neutral = (bends * material.normal_scale).truncate().max_element() == 0.0 && normals.low.z > 0.5;
     let base_varies = base.low.truncate() != base.high.truncate();
@@ -317,7 +321,8 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Extreme parameter sets of a material: everything in between is linear or monotone.
+/// Returns the parameter sets of a material with the smallest and largest metalness and roughness. Between these sets,
+/// all parameters of the layers are linear or monotone.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
@@ -329,9 +334,9 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::substance(material, colour, m, r)))
 }
 
-/// Upper bound of the albedo of a parameter set over all directions.
+/// Returns an upper bound of the albedo of a parameter set over all directions.
 fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
-    // Number of cosines at which the albedo is evaluated. [origin not recorded]
+    // Number of intervals between the cosines at which the albedo is evaluated. [origin not recorded]
     const STEPS: usize = 64;
     let mut bound = Vec3::ZERO;
     for i in 0..=STEPS {

@@ -1,34 +1,35 @@
-//! Owen-scrambled Sobol' points (Burley 2020, "Practical hash-based Owen scrambling"), four dimensions at a time.
+//! The random numbers of paths: Owen-scrambled Sobol' points (Burley 2020, "Practical hash-based Owen scrambling"),
+//! four dimensions at a time.
 //!
-//! A path draws its numbers in blocks of four: each block is one four-dimensional Sobol' point. Blocks are combined by
-//! padding: each block shuffles and scrambles the same sequence anew. Within each block, every 2^k samples of a pixel
-//! are stratified. The four numbers of a block drive decisions that act together, such as a direction and the light
-//! sample at the next vertex.
+//! A path draws its numbers in blocks of four; each block is one four-dimensional Sobol' point. Blocks are combined by
+//! padding: each block shuffles and scrambles the same sequence in its own way. Within a block, every 2^k samples of a
+//! pixel are stratified. The four numbers of a block are for decisions that act together, such as the choice of a
+//! direction and of the light sample at the next vertex.
 
 use crate::rng;
 
 /// The random numbers of one path.
 #[derive(Clone)]
 pub struct Sampler {
-    /// Index of the path within its seed, with reversed bits.
+    /// Index of the path in the sequence of its seed, with reversed bits.
     index: u32,
     seed: u64,
     block: u64,
 }
 
-/// Four random numbers of 32 bits.
+/// Four random numbers of 32 bits: the coordinates of one scrambled Sobol' point.
 #[derive(Clone, Copy)]
 pub struct Block([u32; 4]);
 
 impl Block {
-    /// Uniform in `[0, 1)`.
+    /// Returns a number uniform in `[0, 1)`, with 24 bits.
     #[inline]
     pub fn get(&self, dimension: usize) -> f32 {
-        // Convert as a signed integer, which is one instruction; 24 bits never set the sign.
+        // Convert to f32 as a signed integer, which is a single instruction; 24 bits never set the sign.
         (self.0[dimension] >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32)
     }
 
-    /// Uniform in `[0, 1)` with all 32 bits, for choices among very many entries.
+    /// Returns a number uniform in `[0, 1)` with all 32 bits, for choices among very many entries.
     #[inline]
     pub fn fine(&self, dimension: usize) -> f64 {
         f64::from(self.0[dimension]) * (1.0 / 4_294_967_296.0)
@@ -36,17 +37,17 @@ impl Block {
 }
 
 impl Sampler {
-    /// The path of index `index` within a seed.
+    /// Starts the random numbers of path number `index` of a seed.
     #[inline]
     pub fn new(seed: u64, index: u32) -> Self {
         Self { index: index.reverse_bits(), seed: rng::mix(seed), block: 0 }
     }
 
-    /// The next four dimensions.
+    /// Returns the next block of four numbers.
     #[inline]
     pub fn next(&mut self) -> Block {
-        // Draw one hash per block (Steele et al. 2014): half of its bits shuffle, the other half scramble the
-        // dimensions.
+        // Compute one hash per block (Steele et al. 2014). Half of its bits shuffle the index, the other half scramble
+        // the dimensions.
         self.block = self.block.wrapping_add(1);
         let hash = rng::mix(self.seed.wrapping_add(self.block.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
         let point = self.point(scramble(self.index, hash as u32));
@@ -54,15 +55,15 @@ impl Sampler {
         Block(std::array::from_fn(|d| scramble(point[d], seed(d as u32)).reverse_bits()))
     }
 
-    /// A point of the Sobol' sequence in its first four dimensions. Each look-up handles eight bits of the index.
-    /// Indices and results have reversed bits.
+    /// Returns a point of the Sobol' sequence in its first four dimensions. Each look-up handles eight bits of the
+    /// index. The bits of the index and of the results are in reversed order.
     #[inline]
     fn point(&self, index: u32) -> [u32; 4] {
         let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
         let low = row(3);
-        // Indices below 256 differ only in their low eight bits. Shuffling flips their higher bits alike, which would
-        // XOR all points with one constant. This XOR is omitted, because the scrambling of the points has the same
-        // effect.
+        // Skip three look-ups for indices below 256, which differ only in their low eight bits. Shuffling flips the
+        // higher bits of all these indices alike, which would XOR all points with the same constant. This XOR can be
+        // omitted, because the scrambling of the points has the same effect.
         if self.index & 0x00ff_ffff == 0 {
             return *low;
         }
@@ -70,21 +71,22 @@ impl Sampler {
         std::array::from_fn(|i| low[i] ^ a[i] ^ b[i] ^ c[i])
     }
 
-    /// A hash of the path and its current block, for decisions that need no stratification.
+    /// Returns a hash of the path and its current block, for decisions that need no stratification.
     #[inline]
     pub fn ray_seed(&self) -> u64 {
         rng::mix(self.seed ^ (self.block << 32 | u64::from(self.index)))
     }
 
-    /// Uniform in `[0, 1)` and, unlike the numbers of blocks, independent of the numbers of all other paths. Decisions
-    /// that depend on the results of other paths (Russian roulette) must use it: stratified numbers would bias them.
+    /// Returns a number uniform in `[0, 1)` that, unlike the numbers of blocks, is independent of the numbers of all
+    /// other paths. Decisions that depend on the results of other paths (Russian roulette) must use this function,
+    /// because stratified numbers would bias the estimate.
     #[inline]
     pub fn chance(&self) -> f32 {
         (self.ray_seed() >> 40) as f32 * (1.0 / (1u32 << 24) as f32)
     }
 }
 
-/// Mixes 32 bits so that every input bit affects every output bit (Wellons 2018, "lowbias32").
+/// Hashes 32 bits so that every input bit affects every output bit (Wellons 2018, "lowbias32").
 #[inline]
 fn mix(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
@@ -92,8 +94,8 @@ fn mix(mut x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Nested uniform scrambling: flips each bit by a hash of the bits above it (Laine and Karras 2011, with the constants
-/// of Vegdahl 2021). Input and output have reversed bits: carries run from the high bits to the low.
+/// Nested uniform scrambling: flips each bit by a hash of all higher bits (Laine and Karras 2011, with the constants
+/// of Vegdahl 2021). Input and output have reversed bits, since carries run from low to high bits.
 #[inline]
 fn scramble(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -103,7 +105,8 @@ fn scramble(mut x: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x53a2_2864)
 }
 
-/// The contribution of each byte of an index to a point; indices and points have reversed bits.
+/// For each byte of an index and each value of the byte, the XOR that it contributes to a point. Indices and points
+/// have reversed bits.
 static SOBOL: [[[u32; 4]; 256]; 4] = sobol_tables();
 
 const fn sobol_tables() -> [[[u32; 4]; 256]; 4] {
@@ -131,7 +134,8 @@ const fn sobol_tables() -> [[[u32; 4]; 256]; 4] {
     tables
 }
 
-/// Direction numbers from the primitive polynomials and initial values of Joe and Kuo (2008), dimensions 1 to 4.
+/// Returns the direction numbers of dimensions 1 to 4, from the primitive polynomials and initial values of Joe and
+/// Kuo (2008).
 const fn sobol_directions() -> [[u32; 32]; 4] {
     const DEGREE: [usize; 4] = [0, 1, 2, 3];
     const COEFFICIENTS: [u32; 4] = [0, 0, 1, 1];
@@ -180,8 +184,7 @@ mod tests {
                 points.iter().for_each(|p| strata[(p.get(d) * 256.0) as usize] += 1);
                 assert!(strata.iter().all(|&c| c == 1), "dimension {d}");
             }
-            // The first two dimensions form a (0, 2)-sequence: every elementary interval of area 1/256 contains one
-            // point.
+            // Dimensions 0 and 1 form a (0, 2)-sequence: every elementary interval of area 1/256 contains one point.
             for log in 0..=8 {
                 let (nx, ny) = (1usize << log, 256usize >> log);
                 let mut boxes = vec![0; 256];

@@ -1,13 +1,14 @@
-//! Path reuse among neighbouring pixels: the paths of a block share their secondary vertices.
+//! Path reuse among neighbouring pixels: the paths of a block of pixels share their secondary vertices.
 //!
-//! A secondary vertex also lights the primary vertices of the neighbours, and one more ray per neighbour tests its
-//! visibility. The secondary vertex is weighed as if it were sampled from the mean of the pdfs of all primary vertices
-//! that see it (the balance heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path
-//! tracing by re-using paths"). Estimates remain unbiased, and a pixel gets the indirect light of as many vertices as
-//! the block has pixels, for little more than one ray each. In return, the errors of these pixels are correlated.
+//! A secondary vertex sends light not only to the primary vertex of its own path, but also to the primary vertices of
+//! the neighbouring paths; one more ray per neighbour tests its visibility. The vertex is weighted as if it had been
+//! sampled from the mean of the pdfs of all primary vertices that see it (the balance heuristic of Veach and Guibas
+//! 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by re-using paths"). Estimates remain unbiased.
+//! Each pixel gets indirect light from as many vertices as the block has pixels, at the cost of little more than one
+//! ray per vertex. In return, the errors of the block's pixels are correlated.
 //!
-//! Primary and secondary vertices must be non-specular: a mirror reflects something else to each pixel. Paths with
-//! other vertices are traced alone.
+//! Primary and secondary vertices must be non-specular, since a mirror shows each pixel a different surface. Paths
+//! with other vertices are traced alone.
 
 use super::bsdf::{Bsdf, Lobes, ScatterKind};
 use super::light::{LightSample, Receiver};
@@ -18,52 +19,52 @@ use super::world::{Pane, World};
 use crate::scene::accel::Ray;
 use glam::Vec3;
 
-/// Largest number of paths that share vertices. [origin not recorded]
+/// Largest number of paths that share vertices, and number of pixels in a block. [origin not recorded]
 pub const MAX_SHARED: usize = 8;
 
-/// An observer of several paths that have the same first segment.
+/// An observer that receives several paths with the same camera ray: its own path, and reused subpaths.
 pub trait ReplayObserver: Observer {
     type Tape: Tape;
 
-    /// Returns to the eye, to leave it along another path. Contributions so far are kept.
+    /// Goes back to the eye to receive another path. The contributions so far are kept.
     fn restart(&mut self);
 
     /// Receives the panes between a vertex and its light sample.
     fn take_panes(&mut self, _panes: &[Pane]) {}
 
-    /// Continues the path along a recorded subpath, with this importance at its start.
+    /// Continues the current path along the recorded subpath `tape`, whose light is multiplied by `importance`.
     fn replay(&mut self, tape: &Self::Tape, importance: Vec3);
 
-    /// Returns to the eye, scatters at the primary vertex (of a mesh, with these lobes), and continues along a
-    /// recorded subpath with this importance at its start.
+    /// Goes back to the eye, scatters at the primary vertex (on `mesh`, with the values `lobes`), and continues along
+    /// the recorded subpath `tape`, whose light is multiplied by `importance`.
     fn replay_from(&mut self, mesh: u32, lobes: Lobes, tape: &Self::Tape, importance: Vec3);
 }
 
-/// Records a subpath from a vertex on, to replay it to several observers.
+/// Records the light of a subpath, so that several observers can replay it.
 pub trait Tape: Observer {
-    /// Announces the primary vertices whose observers will replay the tape: the mesh of each, and whether its BSDF has
-    /// layers besides the diffuse one.
+    /// Announces the primary vertices whose observers will replay the tape: for each its mesh, and whether its BSDF
+    /// has layers besides the diffuse one.
     fn expect(&mut self, _viewers: impl Iterator<Item = (u32, bool)>) {}
 
-    /// Starts a new recording at a secondary vertex.
+    /// Starts a new recording, which begins at a secondary vertex.
     fn begin(&mut self);
 
-    /// Starts a new recording that begins after the path has scattered at a secondary vertex of a mesh.
+    /// Starts a new recording, which begins after the path has scattered at a secondary vertex on a mesh.
     fn begin_behind(&mut self, _mesh: u32) {
         self.begin();
     }
 
-    /// Ends the recording; returns whether it has any light.
+    /// Ends the recording. Returns whether it contains any light.
     fn end(&mut self) -> bool;
 }
 
-/// Scratch memory for the recording of a secondary vertex.
+/// Scratch memory for recording the light of a secondary vertex.
 #[derive(Default)]
 pub struct Scratch<T> {
-    /// The subpath that begins at the vertex. If the light of the vertex depends on the viewer, the subpath begins
+    /// The recorded subpath. It begins at the secondary vertex, or, if the light of that vertex depends on the viewer,
     /// after the path has scattered there.
     tape: T,
-    /// The panes between the vertex and its light sample.
+    /// The panes between the secondary vertex and its light sample.
     panes: Vec<Pane>,
 }
 
@@ -73,26 +74,26 @@ impl<T> Scratch<T> {
     }
 }
 
-/// A path before it leaves the eye.
+/// A path that is about to leave the eye.
 pub struct Start {
     /// The camera ray; its direction has unit length.
     pub ray: Ray,
-    /// Uniform in the unit square: selects the light sample at the primary vertex.
+    /// Uniform random numbers in `[0, 1)` that select the light sample at the primary vertex.
     pub light_u: (f64, f32),
     pub length: PathLength,
     pub sampler: Sampler,
 }
 
-/// The primary vertex of a path that takes part in sharing.
+/// The primary vertex of a path that shares secondary vertices.
 struct PrimaryVertex<'w> {
     vertex: Vertex,
     bsdf: Bsdf<'w>,
-    /// Roulette weight of light from the secondary vertices: see [`PathLength::roulette_weight`].
+    /// Roulette weight for light from the secondary vertices; see [`PathLength::roulette_weight`].
     roulette_weight: Vec3,
     continuation: Option<Continuation>,
 }
 
-/// The BSDF sample at a primary vertex.
+/// The BSDF sample at a primary vertex, with the segment that follows it.
 struct Continuation {
     direction: Vec3,
     lobes: Lobes,
@@ -100,39 +101,40 @@ struct Continuation {
     leg: Leg,
 }
 
-/// A secondary vertex and its outgoing light, for every primary vertex that sees it.
+/// A secondary vertex, and the light that it sends to every primary vertex that sees it.
 struct SecondaryVertex<'w> {
     vertex: Vertex,
     light: SecondaryLight<'w>,
 }
 
 enum SecondaryLight<'w> {
-    /// The same radiance in all directions.
+    /// The radiance is the same in all directions.
     ViewIndependent,
-    /// Radiance that depends on the direction of the viewer.
+    /// The radiance depends on the direction of the viewer.
     ViewDependent {
         surface: Surface<'w>,
-        /// A light sample and its weight without the BSDF ([`path::connection_weight`]).
+        /// A light sample, and its weight without the BSDF ([`path::connection_weight`]).
         light_sample: Option<(LightSample, Vec3)>,
-        /// Direction and solid-angle pdf of the BSDF sample at the vertex.
+        /// Direction of the BSDF sample at the secondary vertex, and its solid-angle pdf.
         continuation: Option<(Vec3, f32)>,
     },
 }
 
-/// A primary vertex that sees a secondary vertex.
+/// A primary vertex that sees the secondary vertex.
 #[derive(Clone, Copy)]
 struct Viewer {
     number: usize,
-    /// Towards the secondary vertex.
+    /// Unit direction to the secondary vertex.
     direction: Vec3,
     lobes: Lobes,
     /// Solid-angle pdf with which the BSDF of the primary vertex samples `direction`.
     pdf: f32,
-    /// Factor from a solid-angle pdf to an area pdf at the secondary vertex: cosine / squared distance.
+    /// Factor that converts this pdf to an area pdf at the secondary vertex: cosine / squared distance.
     solid_angle_per_area: f32,
 }
 
-/// Estimates the radiance along several rays with one path each. Each observer receives the light of its own ray.
+/// Estimates the radiance along several camera rays, with one path each and shared secondary vertices. Each observer
+/// receives the light of its own ray.
 pub fn trace<W: ReplayObserver>(
     world: &World,
     starts: &mut [Start],
@@ -143,7 +145,7 @@ pub fn trace<W: ReplayObserver>(
     for ((primary, start), observer) in primaries.iter_mut().zip(&mut *starts).zip(&mut *observers) {
         *primary = trace_primary(world, start, observer);
     }
-    // Use the largest roulette weight of the block: light that matters to any of its pixels must survive.
+    // Use the largest roulette weight of the block, so that light that matters to any of its pixels survives.
     let roulette_weight = primaries.iter().flatten().map(|s| s.roulette_weight).fold(Vec3::ZERO, Vec3::max);
     scratch.tape.expect(primaries.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {
@@ -165,7 +167,8 @@ pub fn trace<W: ReplayObserver>(
     }
 }
 
-/// Traces a path to its primary vertex, or to its end if that vertex cannot share.
+/// Traces a path to its primary vertex. If that vertex cannot take part in sharing, traces the path to its end and
+/// returns `None`.
 fn trace_primary<'w, W: ReplayObserver>(
     world: &'w World,
     start: &mut Start,
@@ -203,7 +206,8 @@ fn trace_primary<'w, W: ReplayObserver>(
 }
 
 /// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary
-/// surface, and all light of a secondary vertex that cannot be shared.
+/// surface. If the secondary vertex cannot be shared, the observer also receives all of its light, and the result is
+/// `None`.
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,
@@ -229,7 +233,7 @@ fn trace_secondary<'w, W: ReplayObserver>(
         }
         return None;
     }
-    // Record the subpath as if it began at the secondary vertex.
+    // Record the subpath with a throughput of 1 at the secondary vertex.
     let length = PathLength { max_bounces: length.max_bounces, roulette_weight: Some(roulette_weight) };
     let light = if bsdf.is_view_independent() {
         record_view_independent(world, &vertex, &bsdf, leg.light_u, length, sampler, &mut scratch.tape)
@@ -239,7 +243,7 @@ fn trace_secondary<'w, W: ReplayObserver>(
     light.map(|light| SecondaryVertex { vertex, light })
 }
 
-/// Records the light of a secondary vertex that sends the same radiance to all viewers.
+/// Records the light of a secondary vertex that sends the same radiance in all directions.
 fn record_view_independent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
@@ -300,25 +304,25 @@ fn record_view_dependent<'w, T: Tape>(
     has_light.then_some(SecondaryLight::ViewDependent { surface, light_sample, continuation })
 }
 
-/// Whether no surface lies between two vertices, not even a transparent one: a path passes a partly transparent surface
-/// only by chance, and scatters at a clear pane.
+/// Whether no surface lies between two vertices, not even a transparent one. A path passes a partly transparent
+/// surface only by chance, and scatters at a clear pane, so neither kind of surface may lie between shared vertices.
 fn is_visible(world: &World, from: &Vertex, to: &Vertex, direction: Vec3) -> bool {
     let origin = from.off_surface(direction);
     let target = to.off_surface(-direction);
     world.is_clear(&Ray { origin, direction: target - origin, t_max: 1.0 }, [from.id, to.id])
 }
 
-/// Whether a secondary vertex is visible from its own primary vertex with certainty, not by chance. This is always true
-/// if all surfaces of the scene are opaque.
+/// Whether the secondary vertex is visible from its own primary vertex with certainty, not only by chance. This is
+/// always true if all surfaces of the scene are opaque.
 fn is_surely_visible(world: &World, primary: &PrimaryVertex, secondary: &Vertex) -> bool {
     let direction = secondary.position - primary.vertex.position;
     !world.is_see_through() || is_visible(world, &primary.vertex, secondary, direction)
 }
 
-/// All primary vertices that see a secondary vertex.
+/// All primary vertices that see the secondary vertex.
 struct Viewers {
     list: [Option<Viewer>; MAX_SHARED],
-    /// Sum of their area pdfs at the secondary vertex.
+    /// Sum of the viewers' area pdfs at the secondary vertex.
     area_pdf: f32,
 }
 
@@ -348,7 +352,7 @@ impl Viewers {
             }
             let direction = (surface.position - primary.vertex.position).normalize_or_zero();
             let theirs = surface.normal.dot(direction);
-            // Both primary vertices must be on the same side of the surface.
+            // Skip primary vertices on the other side of the secondary surface.
             if !(theirs * cosine > 0.0) {
                 return None;
             }
@@ -364,7 +368,7 @@ impl Viewers {
         });
         let area_pdf = list.iter().flatten().map(|v: &Viewer| v.pdf * v.solid_angle_per_area).sum();
         let mut viewers = Self { list, area_pdf };
-        // Where surfaces touch, the pdfs are not finite: only the path's own pixel uses the vertex.
+        // Where surfaces touch, the pdfs are not finite. Then let only the path's own pixel use the vertex.
         if !(area_pdf.is_finite() && area_pdf > 0.0) {
             viewers.list.iter_mut().flatten().for_each(|v| v.solid_angle_per_area = f32::from(v.number == owner));
             viewers.area_pdf = continuation.pdf;
@@ -372,7 +376,7 @@ impl Viewers {
         viewers
     }
 
-    /// Replays the light of the secondary vertex to the observers of all its viewers.
+    /// Passes the light of the secondary vertex on to the observers of all its viewers.
     fn replay<W: ReplayObserver>(
         &self,
         secondary: &SecondaryVertex,

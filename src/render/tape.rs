@@ -1,4 +1,5 @@
-//! Recordings of subpaths: one that sums contributions, one that also tracks the states of light path expressions.
+//! Recorded subpaths for `shared`: one kind sums contributions, the other also tracks the states of light path
+//! expressions.
 
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
@@ -9,7 +10,7 @@ use super::shared::{ReplayObserver, Scratch, Tape};
 use super::world::{Pane, World};
 use glam::Vec3;
 
-/// Sums contributions.
+/// Adds up contributions, as an observer and as a tape.
 #[derive(Clone, Copy, Default)]
 pub struct Sum(pub Vec3);
 
@@ -46,14 +47,15 @@ impl ReplayObserver for Sum {
     }
 }
 
-/// Sums contributions, and tracks a subpath from every automaton state in which an observer may start to replay the
-/// subpath.
+/// A tape that adds up contributions, and tracks the subpath from every automaton state in which an observer may start
+/// to replay it.
 pub struct LpeTape<'a> {
     world: &'a World,
     automaton: &'a Automaton,
     sum: Vec3,
     trail: Trail<'a>,
-    /// The states after scattering at the primary vertices, and the states in which the subpath begins.
+    /// The states after scattering at the primary vertices (`viewers`), and the states in which the subpath begins
+    /// (`origins`).
     viewers: Vec<u16>,
     origins: Vec<u16>,
     outcome: Vec<PathOutcome>,
@@ -112,7 +114,7 @@ impl Tape for LpeTape<'_> {
 }
 
 impl Layers<'_> {
-    /// Scratch memory for subpaths that several recorders replay.
+    /// Returns scratch memory for subpaths that several recorders replay.
     pub fn scratch(&self) -> Scratch<LpeTape<'_>> {
         Scratch::new(LpeTape::new(self.world, &self.automaton))
     }

@@ -1,4 +1,4 @@
-//! Texture look-ups at a point of a triangle.
+//! Texture look-ups at a surface point: opacity, BSDF parameters, and tangents for normal maps.
 
 use super::bsdf::Substance;
 use super::compiled_material::{self, CompiledMaterial};
@@ -6,7 +6,7 @@ use super::facet::Facet;
 use crate::scene::{Material, Mesh, Scene, TextureRef};
 use glam::{Vec2, Vec3, Vec4};
 
-/// A point of a triangle with its mesh and material, for texture look-ups.
+/// A point on a triangle, with the mesh and the material that look-ups need.
 pub struct TextureContext<'w> {
     scene: &'w Scene,
     pub mesh: &'w Mesh,
@@ -16,19 +16,19 @@ pub struct TextureContext<'w> {
 }
 
 impl<'w> TextureContext<'w> {
-    /// `triangle` is the index in the mesh.
+    /// Describes a point of `facet`; `triangle` is the index of the facet within its mesh.
     pub fn new(scene: &'w Scene, facet: &Facet, triangle: u32, barycentric: Vec2) -> Self {
         let (mesh, material) = (&scene.meshes[facet.mesh as usize], &scene.materials[facet.material()]);
         Self { scene, mesh, material, triangle, barycentric }
     }
 
-    /// Opacity (coverage) of the surface at this point.
+    /// Returns the opacity (coverage) of the surface at this point.
     pub fn opacity(&self) -> f32 {
         let texture = self.material.base_color_texture.as_ref();
         self.material.alpha * texture.map_or(1.0, |t| self.look_up(t).w) * self.vertex_colour().w
     }
 
-    /// The material at this point.
+    /// Returns the BSDF parameters at this point.
     pub fn substance(&self, compiled: &CompiledMaterial) -> Substance {
         if !compiled.is_textured {
             return compiled.substance;
@@ -46,7 +46,7 @@ impl<'w> TextureContext<'w> {
         compiled_material::substance(material, base, metallic, roughness)
     }
 
-    /// The interpolated colour of the vertices; 1 if the mesh has none.
+    /// Returns the interpolated vertex colour; 1 if the mesh has no vertex colours.
     fn vertex_colour(&self) -> Vec4 {
         let colours = &self.mesh.colours;
         if colours.is_empty() {
@@ -74,7 +74,8 @@ impl<'w> TextureContext<'w> {
         (!uvs.is_empty()).then(|| corners().map(|i| texture.transform.transform_point2(uvs[i as usize])))
     }
 
-    /// Directions of increasing u and increasing v.
+    /// Returns the directions on the triangle in which u and v increase; `None` if the texture coordinates have no
+    /// area.
     pub fn tangents(&self, facet: &Facet, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
         let [a, b, c] = facet.corners();
         let [p, q, r] = self.corner_uvs(texture)?;

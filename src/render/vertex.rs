@@ -1,4 +1,4 @@
-//! A surface point on a path: its position, orientation and material.
+//! Vertices of light paths: surface points with position, orientation and material.
 
 use super::bsdf::{Bsdf, Substance};
 use super::facet::{self, Facet, NONE};
@@ -14,11 +14,11 @@ pub struct Vertex {
     pub triangle: u32,
     pub id: u32,
     pub barycentric: Vec2,
-    /// Relative to the centre of the world.
+    /// Position relative to the centre of the world, in metres.
     pub position: Vec3,
-    /// Unit geometric normal of the front face.
+    /// Unit geometric normal of the front side.
     pub normal: Vec3,
-    /// Offset along the normal that exceeds the rounding error of `position`.
+    /// Distance by which rays start off the surface; it exceeds the rounding error of `position`.
     offset: f32,
 }
 
@@ -28,7 +28,7 @@ impl Vertex {
         Self::new(world, hit.triangle, Vec2::new(hit.u, hit.v))
     }
 
-    /// A point of triangle number `id` of the scene.
+    /// Returns a point on triangle number `id` of the scene.
     #[inline]
     pub fn new(world: &World, id: u32, barycentric: Vec2) -> Self {
         let facet = world.facet(id);
@@ -43,8 +43,8 @@ impl Vertex {
         }
     }
 
-    /// A free point in world coordinates that faces along a unit normal. The point may happen to lie in a surface, so
-    /// its offset is large enough to clear that surface.
+    /// Returns a point in free space, in world coordinates, that faces along a unit normal. The point may happen to
+    /// lie in a surface, so its offset is large enough to move rays off that surface.
     pub fn free(world: &World, position: Vec3, normal: Vec3) -> Self {
         let (low, high) = world.accel().bounds();
         let extent = low.abs().max(high.abs()).max_element().min(facet::MAX_FREE_COORDINATE);
@@ -53,9 +53,9 @@ impl Vertex {
         Self { mesh, triangle, id: NONE, barycentric, position, normal, offset: largest * facet::OFFSET }
     }
 
-    /// The point offset from its surface to the side of `direction` (after Wächter and Binder 2019). The offset scales
-    /// with the coordinates of the triangle instead of those of the point, because a coordinate near 0 carries the
-    /// rounding errors of the larger coordinates.
+    /// Returns the point moved off its surface, to the side of `direction` (after Wächter and Binder 2019). The offset
+    /// is proportional to the largest coordinate of the triangle, not of the point, since a coordinate near 0 carries
+    /// the rounding errors of larger coordinates.
     #[inline]
     pub fn off_surface(&self, direction: Vec3) -> Vec3 {
         self.position + self.normal * self.offset.copysign(self.normal.dot(direction))
@@ -66,18 +66,18 @@ impl Vertex {
         Ray::new(self.off_surface(direction), direction)
     }
 
-    /// The BSDF seen from direction `wo`.
+    /// Returns the BSDF at this point for a viewer in direction `wo`.
     #[inline]
     pub fn bsdf<'w>(&self, world: &'w World, wo: Vec3) -> Bsdf<'w> {
         self.surface(world).seen_from(wo)
     }
 
-    /// The view-independent shading data of the point.
+    /// Returns the shading data of the point that do not depend on the viewer.
     #[inline]
     pub fn surface<'w>(&self, world: &'w World) -> Surface<'w> {
         let facet = world.facet(self.id);
         let compiled = world.compiled_material(facet);
-        // Most surfaces are flat and of uniform material.
+        // Skip the look-ups for flat surfaces and uniform materials, which are the most frequent.
         let shading =
             if facet.is_smooth() || compiled.has_normal_map { self.shading_normal(world, facet) } else { self.normal };
         let substance = if compiled.is_textured {
@@ -96,7 +96,7 @@ impl Vertex {
             let [a, b, c] = mesh.triangles[self.triangle as usize].map(|i| mesh.normals[i as usize]);
             let v = self.barycentric;
             let n = (a * (1.0 - v.x - v.y) + b * v.x + c * v.y).normalize_or(normal);
-            // Flip normals that oppose the winding: only their axis is used.
+            // Flip normals that oppose the winding: only the axis of a normal matters.
             normal = if n.dot(normal) < 0.0 { -n } else { n };
         }
         let Some(texture) = &material.normal_texture else { return normal };
@@ -104,25 +104,25 @@ impl Vertex {
         let texel = context.look_up(texture).truncate();
         let n = texel * 2.0 - Vec3::ONE;
         let t = (along_u - normal * normal.dot(along_u)).normalize_or_zero();
-        // Orient the bitangent: green points up in the image, towards smaller v.
+        // Orient the bitangent so that it points towards smaller v: green in a normal map points up in the image.
         let b = normal.cross(t);
         let b = if b.dot(along_v) > 0.0 { -b } else { b };
         (t * (n.x * material.normal_scale) + b * (n.y * material.normal_scale) + normal * n.z).normalize_or(normal)
     }
 }
 
-/// View-independent shading data of a surface point.
+/// The shading data of a surface point that do not depend on the viewer.
 pub struct Surface<'w> {
     substance: Substance,
-    /// Whether the material may have more than a diffuse layer.
+    /// Whether the material may have layers besides the diffuse one.
     layered: bool,
-    /// Shading normal and geometric normal of the front side.
+    /// Shading normal and geometric normal, both on the front side.
     normals: [Vec3; 2],
     table: Option<&'w AlbedoTable>,
 }
 
 impl<'w> Surface<'w> {
-    /// The BSDF seen from direction `wo`.
+    /// Returns the BSDF for a viewer in direction `wo`.
     #[inline]
     pub fn seen_from(&self, wo: Vec3) -> Bsdf<'w> {
         Bsdf::new(&self.substance, self.layered, self.normals, wo, self.table)

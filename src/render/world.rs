@@ -1,4 +1,4 @@
-//! A scene prepared for tracing.
+//! A scene prepared for path tracing, with ray queries that respect opacity and transmission.
 
 use super::compiled_material::CompiledMaterial;
 use super::emissive::Emitters;
@@ -16,49 +16,50 @@ use crate::scene::{AlphaMode, Environment, Material, Mesh, Scene, TextureRef};
 use glam::{DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
-/// A scene prepared for tracing: acceleration structure, triangle data and light distributions. Triangles have
-/// scene-wide numbers (ids), mesh after mesh. Internal coordinates are relative to a centre, so that scenes far from
-/// the origin keep their precision.
+/// A scene prepared for path tracing: acceleration structure, triangle data and light distributions. Triangles have
+/// scene-wide numbers (ids), mesh after mesh. World coordinates are relative to a centre, so that scenes far from the
+/// origin keep their precision.
 pub struct World {
     scene: Arc<Scene>,
     accel: Accel,
     centre: DVec3,
-    /// Id of the first triangle of each mesh, followed by the number of all triangles.
+    /// Id of the first triangle of each mesh, followed by the total number of triangles.
     first: Vec<u32>,
     facets: Vec<Facet>,
     compiled_materials: Vec<CompiledMaterial>,
     lights: Lights,
     albedo_table: Option<AlbedoTable>,
     requirements: Requirements,
-    /// Whether any material lets light through; only then does a ray test the opacity of its hits.
+    /// Whether any material lets light through. If not, rays do not test the opacity of their hits.
     any_see_through: bool,
 }
 
-/// A surface on a shadow ray that lets light pass in a straight line.
+/// A surface on a shadow ray through which light passes in a straight line: a clear pane, or a surface of partial
+/// opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pane {
-    /// Ray parameter of the hit, in units of the ray's direction.
+    /// Ray parameter of the hit, as a multiple of the ray's direction vector.
     pub t: f32,
     pub triangle: u32,
     /// Share of the light that misses the surface: 1 - opacity.
     pub beside: f32,
-    /// Share of the light transmitted by the surface, per channel.
+    /// Share of the light that the surface transmits, per channel.
     pub through: Vec3,
 }
 
 impl World {
-    /// Validates a scene and prepares it for rendering. The scene may be empty. Call it on the library's own thread
-    /// pool.
+    /// Validates a scene, which may be empty, and prepares it for rendering. Call it on the library's own thread pool.
     ///
     /// # Errors
-    /// Indices, sizes or values of the scene that are invalid, by name; too many triangles; no memory; cancelled.
+    /// Invalid indices, sizes or values of the scene, which the message names; too many triangles; no memory;
+    /// cancelled.
     pub fn build(scene: Arc<Scene>, job: Job) -> Result<Self> {
         check(&scene)?;
         let count: usize = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         if count >= 1 << 31 {
             return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));
         }
-        // Number the triangles of all meshes and make their coordinates relative to the centre.
+        // Number the triangles of all meshes, and make their coordinates relative to the centre.
         let centre = facet::centre(&scene.meshes);
         let mut first = Vec::with_capacity(scene.meshes.len() + 1);
         let mut facets = try_vec(count, Facet::EMPTY)?;
@@ -81,7 +82,7 @@ impl World {
         job.check()?;
         let (low, high) = accel.bounds();
         let lights = Lights::build(&scene, emitters, pieces, centre, (high - low).length() / 2.0)?;
-        // Analyse which shading features the scene requires.
+        // Find out which shading features the scene requires.
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
         let (mut requirements, compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
@@ -103,13 +104,13 @@ impl World {
         })
     }
 
-    /// The shading features that the scene requires; tracing omits the others.
+    /// Returns the shading features that the scene requires; tracing omits all others.
     pub fn requirements(&self) -> &Requirements {
         &self.requirements
     }
 
-    /// Discards the analysis of the scene, so that every hit evaluates every shading feature. Estimates change by
-    /// rounding only. Benchmarks use this function to measure what the analysis gains.
+    /// Discards the scene analysis, so that every hit evaluates every shading feature. This changes estimates only by
+    /// rounding. Benchmarks use this function to measure how much time the analysis saves.
     pub fn generalise(&mut self) {
         self.compiled_materials.iter_mut().for_each(|f| *f = f.without_analysis());
         self.facets.iter_mut().for_each(|f| *f = f.without_analysis());
@@ -120,12 +121,12 @@ impl World {
         &self.scene
     }
 
-    /// The acceleration structure, relative to the centre; it takes rays made by [`World::ray`].
+    /// Returns the acceleration structure, which is in world coordinates; [`World::ray`] makes rays for it.
     pub fn accel(&self) -> &Accel {
         &self.accel
     }
 
-    /// Converts a ray from scene coordinates to world coordinates.
+    /// Returns a ray in world coordinates for an origin in scene coordinates.
     pub fn ray(&self, origin: Vec3, direction: Vec3) -> Ray {
         Ray::new(self.from_scene(origin), direction)
     }
@@ -140,18 +141,18 @@ impl World {
         (position.as_dvec3() + self.centre).as_vec3()
     }
 
-    /// Id of a triangle of a mesh.
+    /// Returns the id of a triangle, from its index in the mesh.
     pub fn id(&self, mesh: u32, triangle: u32) -> u32 {
         self.first[mesh as usize] + triangle
     }
 
-    /// The mesh of a triangle id, and the index of the triangle in it.
+    /// Returns the mesh of a triangle, and the index of the triangle in the mesh.
     pub fn locate(&self, id: u32) -> (u32, u32) {
         let mesh = self.facets[id as usize].mesh;
         (mesh, id - self.first(mesh))
     }
 
-    /// Id of the first triangle of a mesh.
+    /// Returns the id of the first triangle of a mesh.
     #[inline]
     pub(super) fn first(&self, mesh: u32) -> u32 {
         self.first[mesh as usize]
@@ -172,7 +173,7 @@ impl World {
         &self.lights
     }
 
-    /// The environment, if it emits.
+    /// Returns the environment, if it emits.
     #[inline]
     pub(super) fn environment(&self) -> Option<&Environment> {
         self.scene.environment.as_ref().filter(|_| self.requirements.environment)
@@ -183,15 +184,15 @@ impl World {
         self.albedo_table.as_ref()
     }
 
-    /// Index of the emitter of a triangle, if the triangle emits.
+    /// Returns the index of the emitter that belongs to a triangle, if the triangle emits.
     #[inline]
     pub(super) fn emitter_of(&self, id: u32) -> Option<usize> {
         let emitter = self.facet(id).emitter;
         (emitter != NONE).then_some(emitter as usize)
     }
 
-    /// The nearest hit of a ray that leaves triangle `from`. `seed` decides at random whether the ray hits partly
-    /// transparent surfaces.
+    /// Finds the nearest hit of a ray that leaves triangle `from`. `seed` returns the seed of the random decision
+    /// whether the ray hits or passes a partly transparent surface.
     #[inline]
     pub(super) fn closest(&self, ray: &Ray, from: u32, seed: impl Fn() -> u64) -> Option<Hit> {
         if !self.any_see_through {
@@ -200,7 +201,7 @@ impl World {
         self.accel.closest(ray, |hit| hit.triangle != from && self.is_there(hit, &seed))
     }
 
-    /// Whether a hit counts, by the opacity of the surface: stochastic for blended materials.
+    /// Whether the surface is present at a hit, according to its opacity. With alpha blending, the decision is random.
     fn is_there(&self, hit: &Hit, seed: &impl Fn() -> u64) -> bool {
         let facet = self.facet(hit.triangle);
         if !self.compiled_material(facet).has_alpha {
@@ -217,8 +218,9 @@ impl World {
         }
     }
 
-    /// Transmittance per channel between the ends of a ray. The triangles at the two ends do not count. Partly
-    /// transparent surfaces and clear panes attenuate light. `panes` receives these surfaces in no particular order.
+    /// Returns the transmittance per channel between the ends of a ray. The triangles in `ends`, at the two ends, do
+    /// not count. Partly transparent surfaces and clear panes attenuate the light. `panes` receives these surfaces in
+    /// arbitrary order.
     pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], mut panes: Option<&mut Vec<Pane>>) -> Vec3 {
         if let Some(panes) = &mut panes {
             panes.clear();
@@ -227,7 +229,7 @@ impl World {
             let blocked = self.accel.occluded(ray, |hit| !ends.contains(&hit.triangle));
             return if blocked { Vec3::ZERO } else { Vec3::ONE };
         }
-        // Multiply in f64, so that the order of the hits does not show after rounding.
+        // Multiply in f64, so that the order of the hits does not affect the rounded result.
         let mut share = DVec3::ONE;
         let blocked = self.accel.occluded(ray, |hit| {
             if ends.contains(&hit.triangle) {
@@ -249,8 +251,8 @@ impl World {
         self.any_see_through
     }
 
-    /// Whether no surface lies between the ends of a ray. Transparent surfaces count; points whose opacity is 0 and the
-    /// triangles of the two ends do not.
+    /// Whether no surface lies between the ends of a ray. Transparent surfaces count; points of a surface whose
+    /// opacity is 0 and the triangles in `ends`, at the two ends, do not count.
     #[inline]
     pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
         let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;
@@ -282,7 +284,7 @@ impl World {
     }
 }
 
-/// Checks everything that tracing relies on.
+/// Checks all indices, sizes and values on which tracing relies.
 fn check(scene: &Scene) -> Result<()> {
     for (i, mesh) in scene.meshes.iter().enumerate() {
         check_mesh(scene, mesh).map_err(|e| e.context(format!("mesh {i} ({:?})", mesh.name)))?;

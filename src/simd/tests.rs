@@ -1,4 +1,4 @@
-//! Runs the library's pipelines at every level that the processor supports.
+//! Tests that the library's pipelines give equal results at every level that the processor supports.
 
 use super::{Level, forced};
 use crate::demo::{self, photo};
@@ -13,7 +13,8 @@ widest! {
     }
 }
 
-/// Asserts that `work` yields identical results at every level: pairs of a name and a text that represents every bit.
+/// Asserts that `work` gives identical results at every SIMD level. `work` returns pairs: the name of a result, and a
+/// text that encodes every bit of it.
 fn same_at_all_levels(work: impl Fn() -> Vec<(String, String)>) {
     let mut levels = forced::levels();
     let lowest = forced::at(levels.next().unwrap(), &work);
@@ -39,7 +40,8 @@ fn a_level_can_be_forced_and_ends_with_the_work() {
     same_at_all_levels(|| vec![("sum".into(), scaled_sum(&values, 0.1).to_string())]);
 }
 
-/// A photo of the demonstration's office at a size suitable for a test, and the demonstration's room.
+/// Renders a photo of the demonstration's office at a size suitable for a test. Returns it as input of a transfer to
+/// the demonstration's room, and the height of the ceiling above the camera in metres.
 fn input(pool: &Pool) -> (Input, f64) {
     let office = demo::exemplar_room().unwrap();
     let camera = office.scene.cameras[office.camera].clone();
@@ -56,8 +58,8 @@ fn input(pool: &Pool) -> (Input, f64) {
     (input, f64::from(office.ceiling_height - camera.position.y))
 }
 
-/// The stages of the lighting transfer, each fed with the result of the one before: features, masks, texture and
-/// lamps, solved light, rendered image.
+/// Runs all stages of the lighting transfer, each on the results of the previous stages, and compares the results of
+/// every stage.
 #[test]
 fn the_lighting_transfer_is_the_same_to_the_bit_at_every_level() {
     let pool = Pool::new(2).unwrap();

@@ -1,11 +1,12 @@
-//! Tests of the BSDF: samples against the pdf, the integral of the pdf, reciprocity, and energy conservation.
+//! Tests of the BSDF: whether samples follow the pdf, whether the pdf integrates to at most 1, reciprocity, and energy
+//! conservation.
 
 use super::*;
 use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
 use std::f32::consts::TAU;
 
-/// Roughnesses from the smallest non-specular one to 1, with three materials for each; the last material is diffuse.
+/// Substances of three roughnesses, each as a dielectric, a blend and a metal; the last substance is purely diffuse.
 fn substances() -> Vec<Substance> {
     let colour = Vec3::new(0.9, 0.5, 0.2);
     let mut all = Vec::new();
@@ -36,7 +37,7 @@ fn matt(colour: Vec3) -> Substance {
     }
 }
 
-/// A BSDF seen from `wo`, with the normal along the third axis.
+/// The BSDF of a substance seen from `wo`; the normal is the z axis.
 fn seen<'a>(substance: &Substance, wo: Vec3, table: &'a AlbedoTable) -> Bsdf<'a> {
     Bsdf::new(substance, substance.f90 > 0.0, [Vec3::Z; 2], wo, Some(table))
 }
@@ -58,7 +59,8 @@ fn sampled_directions_follow_the_stated_pdf() {
     for (number, substance) in substances.iter().enumerate() {
         for view in VIEWS {
             let bsdf = seen(substance, direction(view, 0.3), &table);
-            // Expected counts of bins of equal cosine and angle; the last one counts absorbed light.
+            // Compute the expected counts in bins of cosine and azimuth that have equal solid angles. The last entry
+            // counts absorbed samples.
             let mut expected = vec![0.0; ROWS * COLUMNS + 1];
             const SUB: usize = 24;
             for i in 0..ROWS * SUB {
@@ -73,7 +75,7 @@ fn sampled_directions_follow_the_stated_pdf() {
             let inside: f64 = expected.iter().sum();
             assert!(inside < 1.002 * f64::from(n), "densities integrate to at most 1: {inside}");
             expected[ROWS * COLUMNS] = (f64::from(n) - inside).max(0.0);
-            // Observed counts.
+            // Count the sampled directions per bin.
             let mut observed = vec![0.0; ROWS * COLUMNS + 1];
             let mut rng = Rng::new(11, &[number as u64, (view * 100.0) as u64]);
             for _ in 0..n {
@@ -110,7 +112,7 @@ fn the_bsdf_is_reciprocal() {
     }
 }
 
-/// Mean and standard error of the sample weights: the directional albedo.
+/// Returns the directional albedo, estimated as the mean of the sample weights, and its standard error.
 fn albedo(substance: &Substance, view: f32, table: &AlbedoTable) -> (f64, f64) {
     let bsdf = seen(substance, direction(view, 0.7), table);
     let n = 40_000;
@@ -127,7 +129,7 @@ fn albedo(substance: &Substance, view: f32, table: &AlbedoTable) -> (f64, f64) {
 
 #[test]
 fn a_white_dielectric_loses_energy_only_between_its_facets() {
-    // Kelemen and Szirmay-Kalos: the diffuse layer compensates the mean albedo of the top layer.
+    // The diffuse layer reflects all light that the top layer does not reflect (Kelemen and Szirmay-Kalos 2001).
     let table = AlbedoTable::new();
     for roughness in [0.0, 0.0005, 0.05, 0.2, 0.6, 1.0] {
         for view in [1.0, 0.5, 0.1] {
@@ -140,8 +142,8 @@ fn a_white_dielectric_loses_energy_only_between_its_facets() {
     assert_eq!(albedo(&matt(Vec3::ONE), 0.3, &table), (1.0, 0.0), "white without a top layer");
 }
 
-/// White furnace for metals: never more than 1, exactly 1 for a mirror, and a closed form for uniformly distributed
-/// microfacet normals.
+/// White furnace test for metals. The albedo never exceeds 1 and is exactly 1 for a mirror. At roughness 1 the
+/// microfacet normals are distributed uniformly, and the albedo has a closed form.
 #[test]
 fn a_white_metal_makes_no_light_at_any_roughness() {
     let table = AlbedoTable::new();
@@ -160,7 +162,7 @@ fn a_white_metal_makes_no_light_at_any_roughness() {
                 let expected = 1.0 - cosine * ((1.0 + cosine) / cosine).ln();
                 assert!((mean - expected).abs() < 4.0 * error + 1e-4, "{what}, expected {expected}");
             }
-            // Compare with the albedo table, which divides the energy between the layers.
+            // Compare with the albedo table, from which the BSDF computes how the layers share the energy.
             let share = table.row(roughness).directional(view).element_sum();
             assert!((mean - f64::from(share)).abs() < 0.02, "{what}, table {share}");
         }

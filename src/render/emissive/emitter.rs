@@ -1,4 +1,4 @@
-//! An emissive triangle.
+//! An emissive triangle, with the geometry and the texture look-up that sampling its emission needs.
 
 use crate::render::facet::Facet;
 use crate::scene::{Scene, Texture};
@@ -16,12 +16,13 @@ pub struct Emitter {
     pub double_sided: bool,
     pub(super) factor: Vec3,
     pub(super) texture: Option<usize>,
-    /// Texture coordinates of the corners, after the material's texture transform.
+    /// Texture coordinates of the corners in the emission texture, after the material's texture transform.
     pub(super) uv: [Vec2; 3],
 }
 
 impl Emitter {
-    /// `None` for a triangle that does not emit or is degenerate.
+    /// Returns `None` for a triangle that does not emit or has no area. `id` numbers the triangles of the whole scene;
+    /// `first` holds the id of each mesh's first triangle.
     pub(super) fn new(scene: &Scene, facet: &Facet, id: u32, first: &[u32]) -> Option<Self> {
         let (mesh, triangle) = (facet.mesh, id - first[facet.mesh as usize]);
         let m = &scene.meshes[mesh as usize];
@@ -56,7 +57,7 @@ impl Emitter {
         })
     }
 
-    /// Emission at a point in cd/m² per channel, and the texture coordinates of its look-up.
+    /// Returns the emission at a point in cd/m² per channel, and the texture coordinates of the look-up.
     pub fn emission(&self, scene: &Scene, barycentric: Vec2) -> (Vec3, Vec2) {
         let b = barycentric;
         let uv = self.uv[0] * (1.0 - b.x - b.y) + self.uv[1] * b.x + self.uv[2] * b.y;
@@ -66,7 +67,7 @@ impl Emitter {
         }
     }
 
-    /// Emission of a texel of the emitter's texture, mean of the channels.
+    /// Returns the emission of a texel of this colour in cd/m², averaged over the channels.
     pub(super) fn emission_of_texel(&self, colour: Vec4) -> f32 {
         mean_channel(self.factor * colour.truncate().max(Vec3::ZERO))
     }
@@ -75,19 +76,20 @@ impl Emitter {
         self.corners[0] * (1.0 - b.x - b.y) + self.corners[1] * b.x + self.corners[2] * b.y
     }
 
-    /// Whether the triangle emits on the side that a ray along `direction` hits.
+    /// Whether the triangle emits from the side that a ray with this direction hits.
     pub fn faces(&self, direction: Vec3) -> bool {
         self.double_sided || self.normal.dot(direction) < 0.0
     }
 
-    /// The corners in texel coordinates.
+    /// Returns the corners in texel coordinates of `texture`.
     pub(super) fn texels(&self, texture: &Texture) -> [DVec2; 3] {
         let size = DVec2::new(texture.image.width as f64, texture.image.height as f64);
         self.uv.map(|uv| uv.as_dvec2() * size)
     }
 }
 
-/// Mean of the channels: the brightness for sampling, which is positive wherever any channel is positive.
+/// Returns the mean of the channels. Light sampling uses this value as brightness, since it is positive wherever any
+/// channel is positive.
 pub fn mean_channel(v: Vec3) -> f32 {
     v.element_sum() / 3.0
 }

@@ -1,11 +1,11 @@
-//! Emissive triangles, whose textures are sampled in proportion to their emission.
+//! Emissive triangles. Points on textured emitters are sampled in proportion to the emission of the texels.
 //!
-//! Emitters are divided into pieces, which [`super::light`] selects: a triangle of uniform emission is one piece, and
-//! so is every emissive tile of 8 × 8 texels of a textured triangle. Within a piece a point is sampled in proportion to
-//! its emission, texel by texel; its area pdf is its emission divided by the intensity of the piece. Thousands of small
-//! lamps in one texture cost as much as one lamp, and no sample falls on a dark texel. Emission textures are therefore
-//! looked up without interpolation. A triangle whose texture coordinates have no area (or span too many texels) is one
-//! piece, sampled uniformly.
+//! Every emitter is divided into pieces, and [`super::light`] selects a piece. A triangle of uniform emission is one
+//! piece. A textured triangle is divided into tiles of 8 × 8 texels, and every tile that emits is a piece. Within a
+//! piece, points are sampled in proportion to the emission of their texel; the area pdf is the emission at the point
+//! divided by the intensity of the piece. So thousands of small lamps in one texture cost as much as one lamp, and no
+//! sample falls on a dark texel. For this reason, emission textures are looked up without interpolation. A triangle
+//! whose texture coordinates have no area or span too many texels is one piece and is sampled uniformly.
 
 mod emitter;
 mod polygon;
@@ -23,41 +23,41 @@ use polygon::uniform_in_triangle;
 use rayon::prelude::*;
 use tiles::{Tile, Tiling};
 
-/// Marks a missing piece or tiling.
+/// Index that stands for "no piece".
 const NONE: u32 = u32::MAX;
 
 pub struct Emitters {
     pub emitters: Vec<Emitter>,
-    /// The division of each emitter into pieces.
+    /// How each emitter is divided into pieces.
     divisions: Vec<Division>,
     tilings: Vec<Tiling>,
-    /// The piece of every tile of every tiling; `NONE` for dark tiles.
+    /// For each tile of each tiling, the index of the tile's piece; `NONE` for dark tiles.
     piece_of_tile: Vec<u32>,
-    /// The pieces: first the uniform triangles, then the tiles.
+    /// All pieces. Piece indices count the undivided triangles (`even`) first, then the emissive tiles.
     even: Vec<Even>,
     tiles: Vec<Tile>,
-    /// Flux of all emitters in lumens, one-sided.
+    /// Flux of all emitters in lumens; of a double-sided emitter only one side counts.
     pub power: f64,
 }
 
 #[derive(Clone, Copy)]
 enum Division {
-    /// A single piece; `NONE` for a dark triangle.
+    /// A single piece, by its index; `NONE` for a dark triangle.
     Even(u32),
-    /// A tiling whose tiles start at index `first` of `piece_of_tile`.
+    /// A tiling, by its index; its tiles are listed in `piece_of_tile` from index `first` on.
     Tiled { tiling: u32, first: usize },
 }
 
-/// A triangle that is one piece.
+/// A triangle that is not divided, but sampled uniformly as one piece.
 struct Even {
     emitter: u32,
-    /// Emission × area, mean of the channels: the luminous intensity (cd) along the normal.
+    /// Emission × area, mean of the channels: the luminous intensity along the normal, in cd.
     intensity: f32,
 }
 
 impl Emitters {
-    /// `facets` are the triangles of a validated scene, `first` the id of the first triangle of each mesh. Also
-    /// returns the bounds of every piece.
+    /// Finds the emitters among `facets`, the triangles of a validated scene, and divides them into pieces. `first`
+    /// holds the id of each mesh's first triangle. Also returns the bounds of every piece.
     pub fn build(scene: &Scene, facets: &[Facet], first: &[u32]) -> Result<(Self, Vec<Bounds>)> {
         let numbered = facets.iter().zip(0..);
         let emitters = try_collect(numbered.filter_map(|(f, id)| Emitter::new(scene, f, id, first)))?;
@@ -78,7 +78,7 @@ impl Emitters {
         Ok((this, bounds))
     }
 
-    /// Adds the pieces of undivided emitters, and the tilings of the others.
+    /// Adds the pieces of the undivided emitters, and makes the tilings of all other emitters.
     fn add_even(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) {
         for (index, emitter) in self.emitters.iter().enumerate() {
             let texture = emitter.texture.map(|t| &scene.textures[t]);
@@ -97,9 +97,9 @@ impl Emitters {
         }
     }
 
-    /// Adds a piece for every emissive tile.
+    /// Adds a piece for every tile that emits.
     fn add_tiled(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) -> Result<()> {
-        // Parallelise over rows of tiles, in the order of their emitters.
+        // Collect rows of tiles, in the order of their emitters, to process them in parallel.
         let mut rows = Vec::new();
         let mut count = 0;
         for (index, division) in self.divisions.iter_mut().enumerate() {
@@ -143,7 +143,9 @@ impl Emitters {
         Ok(())
     }
 
-    /// Samples a point of a piece in proportion to its emission; returns the emitter and the barycentric coordinates.
+    /// Samples a point of a piece (an undivided triangle, or a tile of a textured triangle). The density of the
+    /// samples is proportional to the emission at the point. Returns the index of the emitter and the barycentric
+    /// coordinates of the point.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
         let Some(tile) = piece.checked_sub(self.even.len()).map(|t| &self.tiles[t]) else {
@@ -154,7 +156,7 @@ impl Emitters {
         Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
-    /// The piece at a point of an emitter, by its texture coordinates; `None` for dark tiles.
+    /// Returns the piece that contains a point of an emitter, given by its texture coordinates; `None` for dark tiles.
     pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
         let piece = match self.divisions[emitter] {
             Division::Even(piece) => piece,
@@ -163,8 +165,8 @@ impl Emitters {
         (piece != NONE).then_some(piece as usize)
     }
 
-    /// Area pdf (per m²) with which [`Emitters::sample`] draws a point of a piece, whose emission (mean of the
-    /// channels) is `brightness`.
+    /// Returns the area pdf (per m²) with which [`Emitters::sample`] draws a point of a piece. `brightness` is the
+    /// emission at the point, mean of the channels.
     pub fn area_pdf(&self, piece: usize, brightness: f32) -> f32 {
         match piece.checked_sub(self.even.len()) {
             Some(tile) => brightness / self.tiles[tile].intensity,

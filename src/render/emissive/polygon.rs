@@ -1,4 +1,4 @@
-//! The intersection of a rectangle of texels with a triangle.
+//! Overlap of a rectangle of texels with a triangle: its class, its area, and uniform sampling of its points.
 
 use glam::{DVec2, Vec2};
 
@@ -9,11 +9,11 @@ pub struct Rectangle {
     pub high: DVec2,
 }
 
-/// The overlap of a rectangle with a triangle.
+/// How much of a rectangle a triangle covers.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Overlap {
     None,
-    /// Partly inside, or so close to an edge of the triangle that only clipping can decide.
+    /// The rectangle overlaps partly, or so close to an edge of the triangle that only clipping can decide.
     Part,
     Whole,
 }
@@ -23,7 +23,7 @@ impl Rectangle {
         (self.high - self.low).element_product()
     }
 
-    /// Classifies the overlap with a triangle by tests against its edges.
+    /// Classifies how much of the rectangle the triangle covers, by tests against the edges of the triangle.
     pub fn overlap(&self, triangle: &[DVec2; 3]) -> Overlap {
         let [a, b, c] = *triangle;
         let side = (b - a).perp_dot(c - a).signum();
@@ -43,7 +43,7 @@ impl Rectangle {
     }
 }
 
-/// A triangle clipped to a rectangle; it has at most seven corners.
+/// A triangle clipped to a rectangle. It has at most seven corners.
 pub struct Polygon {
     corners: [DVec2; 8],
     len: usize,
@@ -64,7 +64,7 @@ impl Polygon {
         &self.corners[..self.len]
     }
 
-    /// Clips to the half-plane where `inside` is not negative (Sutherland and Hodgman 1974).
+    /// Clips the polygon to the half-plane where `inside` is at least 0 (Sutherland and Hodgman 1974).
     fn clip(&mut self, inside: impl Fn(DVec2) -> f64) {
         let from = self.corners;
         let mut len = 0;
@@ -83,7 +83,7 @@ impl Polygon {
         self.len = len;
     }
 
-    /// Twice the area of triangle `i` of the triangle fan.
+    /// Returns twice the area of triangle `i` of the polygon's triangle fan.
     fn fan(&self, i: usize) -> f64 {
         let [a, b, c] = [self.corners[0], self.corners[i], self.corners[i + 1]];
         (b - a).perp_dot(c - a).abs()
@@ -93,7 +93,8 @@ impl Polygon {
         (1..self.len.saturating_sub(1)).map(|i| self.fan(i)).sum::<f64>() / 2.0
     }
 
-    /// A point uniform by area: `u` selects a triangle of the fan; its remainder and `v` select the point.
+    /// Samples a point uniformly by area: `u` selects a triangle of the polygon's fan. The remainder of `u`, rescaled
+    /// to `[0, 1]`, and `v` select the point in this triangle.
     pub fn sample(&self, (u, v): (f64, f32)) -> Option<DVec2> {
         let mut target = u * 2.0 * self.area();
         let last = self.len.checked_sub(2).filter(|&l| l > 0)?;
@@ -113,7 +114,7 @@ impl Polygon {
     }
 }
 
-/// Barycentric coordinates of corners 1 and 2 of a point uniform by area.
+/// Maps the unit square to a triangle, uniformly by area. Returns the barycentric coordinates of corners 1 and 2.
 pub fn uniform_in_triangle(v: Vec2) -> Vec2 {
     let root = v.x.sqrt();
     Vec2::new(root * (1.0 - v.y), root * v.y)
@@ -148,7 +149,7 @@ mod tests {
         let (side, n) = (12, 50_000);
         for triangle in &triangles {
             let polygon = Polygon::clipped(triangle, &whole);
-            // The expected count of a bin is proportional to the area of the triangle clipped to it.
+            // Each bin expects a count proportional to the area of the triangle clipped to the bin.
             let bin = |i: usize| DVec2::new((i % side) as f64, (i / side) as f64) / side as f64;
             let area = |i: usize| {
                 Polygon::clipped(triangle, &Rectangle { low: bin(i), high: bin(i) + 1.0 / side as f64 }).area()

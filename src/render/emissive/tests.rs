@@ -1,4 +1,4 @@
-//! Sampling of points on emitters: in proportion to emission, and with the stated pdf.
+//! Tests that points on emitters are sampled in proportion to their emission and with the stated pdf.
 
 use super::*;
 use crate::image::Image;
@@ -7,7 +7,7 @@ use crate::rng::Rng;
 use crate::scene::{Material, Mesh, Texture, TextureRef, Wrap};
 use glam::Vec3;
 
-/// A slanted triangle with a patchy texture, and a triangle without a texture.
+/// A slanted triangle whose texture has bright and dark patches, and a parallel triangle without a texture.
 fn scene(side: usize, uvs: [Vec2; 3], wrap: Wrap) -> Scene {
     let image = Image::from_fn(side, side / 2 + 1, |x, y| {
         let lit = if (x * 5 + y * 3) % 7 < 3 { (x + 2 * y + 1) as f32 } else { 0.0 };
@@ -48,7 +48,7 @@ fn coordinates() -> Vec<[Vec2; 3]> {
     ]
 }
 
-/// Emitter and intensity of every piece.
+/// The index of the emitter and the intensity of every piece.
 fn pieces(emitters: &Emitters) -> Vec<(u32, f32)> {
     let even = emitters.even.iter().map(|e| (e.emitter, e.intensity));
     even.chain(emitters.tiles.iter().map(|t| (t.emitter, t.intensity))).collect()
@@ -72,12 +72,12 @@ fn points_are_as_dense_as_the_light_they_emit() {
                 let (emitter, b) = emitters.sample(piece, (rng.next_f64(), rng.next_f32())).unwrap();
                 assert!(b.min_element() >= 0.0 && b.element_sum() < 1.0 + 1e-5);
                 let (emission, uv) = emitters.emitters[emitter].emission(&scene, b);
-                // Emission / pdf equals the intensity of the piece: importance sampling is perfect.
+                // Emission / pdf equals the intensity of the piece, so a single sample has no variance.
                 let estimate = mean_channel(emission) / emitters.area_pdf(piece, mean_channel(emission));
                 let agrees = (estimate / pieces[piece].1 - 1.0).abs() < 1e-5;
                 disagreed += usize::from(!agrees || emitters.piece_at(emitter, uv) != Some(piece));
             }
-            // Points within rounding of a texel's border may be looked up in the neighbouring texel.
+            // A point within rounding of a texel's border may be looked up in the neighbouring texel.
             assert!(disagreed <= 5, "{disagreed} of 5000, {wrap:?}, {uvs:?}");
         }
     }
@@ -99,12 +99,12 @@ fn sampled_points_follow_the_stated_pdf() {
         let mut counts = vec![0.0; bins * bins];
         let mut expected = vec![0.0; bins * bins];
         let bin = |b: Vec2| {
-            // The unit square maps to the triangle with constant area ratio.
+            // Invert `uniform_in_triangle`, which maps the unit square to the triangle with a constant ratio of areas.
             let side = |x: f32| ((x * bins as f32) as usize).min(bins - 1);
             let along = b.x + b.y;
             side(along * along) * bins + side(b.y / along.max(1e-9))
         };
-        // Select the pieces of the first emitter in proportion to their intensity.
+        // Select pieces of the first emitter in proportion to their intensity.
         let own: Vec<usize> = (0..pieces.len()).filter(|&p| pieces[p].0 == 0).collect();
         let weights = own.iter().map(|&p| f64::from(pieces[p].1));
         let table = crate::render::distribution::Distribution::new(weights.into_iter()).unwrap();
@@ -166,7 +166,7 @@ fn densities_of_a_piece_integrate_to_one() {
             }
         }
     }
-    // Average over all pieces: single pieces are small and have a large variance.
+    // Average over all pieces, since each piece is small and its estimate has a large variance.
     let mean = sums.iter().sum::<f64>() / sums.len() as f64;
     assert!((mean - 1.0).abs() < 0.01, "{mean}");
 }

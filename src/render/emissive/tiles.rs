@@ -1,8 +1,9 @@
-//! The part of a texture that a triangle covers, divided into tiles of 8 × 8 texels with a cumulative distribution
-//! each.
+//! Divides the part of an emission texture that a triangle covers into tiles of 8 × 8 texels. Each tile has a
+//! cumulative distribution of the emission over its texels.
 //!
-//! Tiles are aligned with the triangle's first texel and continue as the texture wraps. At the edges of the triangle
-//! only the covered part of a texel counts. The table of a tile takes four cache lines; dark tiles are not stored.
+//! The tile grid starts at the first texel of the triangle's bounding box and continues beyond the texture as the
+//! texture wraps. At the edges of the triangle, only the covered part of a texel counts. The table of a tile takes
+//! four cache lines; dark tiles are not stored.
 
 use super::emitter::Emitter;
 use super::polygon::{Overlap, Polygon, Rectangle};
@@ -13,42 +14,44 @@ use glam::{DMat2, DVec2, Vec2};
 /// Side of a tile in texels.
 pub const SIDE: usize = 8;
 
-/// A triangle is divided into tiles only if it spans at most this many texels, or four times the texels of the texture
-/// if that is more. The limit bounds memory. [convention]
+/// A triangle is divided into tiles only if its bounding box has at most this many texels, or at most four times as
+/// many texels as the texture. The limit bounds memory. [convention]
 const MAX_TEXELS: f64 = (1 << 26) as f64;
-/// Texture coordinates beyond this many texels cannot separate neighbouring texels in single precision. [rounding]
+/// Bound on texture coordinates, in texels. Beyond it, single precision cannot separate neighbouring texels.
+/// [rounding]
 const MAX_TEXEL_COORDINATE: f64 = 8e6;
 
-/// The division of a triangle into tiles.
+/// The division of a textured triangle into tiles.
 pub struct Tiling {
     /// The triangle's corners in texel coordinates.
     triangle: [DVec2; 3],
-    /// Converts an offset from the first corner, in texels, to barycentric coordinates.
+    /// Converts an offset from the triangle's first corner, in texels, to barycentric coordinates.
     to_barycentric: DMat2,
-    /// The first texel, and the number of tiles along u and v.
+    /// The first texel of the tile grid (`start`), and the number of tiles along u (`columns`) and v (`rows`).
     start: [i64; 2],
     pub columns: usize,
     pub rows: usize,
-    /// Size of the texture in texels, in f32 as in texture look-ups.
+    /// Size of the texture in texels, in f32 because texture look-ups compute in f32.
     size: Vec2,
 }
 
-/// An emissive tile, contiguous in memory.
+/// A tile that emits. Its distribution is stored inline and aligned to cache lines, so that sampling touches few of
+/// them.
 #[repr(align(64))]
 pub struct Tile {
     pub emitter: u32,
-    /// Emission × area, mean of the channels: the luminous intensity (cd) along the normal.
+    /// Emission × area, mean of the channels: the luminous intensity along the normal, in cd.
     pub intensity: f32,
     pub column: u32,
     pub row: u32,
     /// Whether the triangle covers the whole tile.
     whole: bool,
-    /// Cumulative distribution of the tile's intensity over its texels, row by row.
+    /// Cumulative distribution of the tile's intensity over its texels, row by row; the last entry is 1.
     shares: [f32; SIDE * SIDE],
 }
 
 impl Tiling {
-    /// `None` if the texture coordinates have no area, lie within a single texel, or span too many texels.
+    /// Returns `None` if the texture coordinates have no area, lie within a single texel, or span too many texels.
     pub fn new(emitter: &Emitter, texture: &Texture) -> Option<Self> {
         let triangle = emitter.texels(texture);
         let [a, b, c] = triangle;
@@ -76,25 +79,26 @@ impl Tiling {
         })
     }
 
-    /// Index of the tile at texture coordinates, row by row.
+    /// Returns the index of the tile at texture coordinates `uv`; tiles are numbered row by row.
     pub fn tile_at(&self, uv: Vec2) -> usize {
         let texel = (uv * self.size).floor();
         let tile = |texel: f32, start: i64, count: usize| {
-            // Clamp: rounding can put a point of the border one texel outside.
+            // Clamp, because rounding can put a point on the border one texel outside.
             ((texel as i64 - start) / SIDE as i64).clamp(0, count as i64 - 1) as usize
         };
         tile(texel.y, self.start[1], self.rows) * self.columns + tile(texel.x, self.start[0], self.columns)
     }
 
-    /// Whether the triangle covers a part of the tile and its texels may emit. Most tiles lie between the lamps; this
-    /// test rejects them cheaply.
+    /// Whether the triangle overlaps the tile and the texels of the tile may emit. This test rejects most tiles
+    /// cheaply, because most of them lie between the lamps.
     pub fn may_emit(&self, texture: &Texture, [column, row]: [usize; 2]) -> bool {
         let first = self.first_texel(column, row);
         rectangle(first, SIDE as f64).overlap(&self.triangle) != Overlap::None
             && !self.texel_inside(first).is_some_and(|texel| texture.is_black(texel, SIDE))
     }
 
-    /// The texel of the texture at the tile's first texel, if the whole tile lies within the texture.
+    /// Returns the column and row of the tile's first texel in the texture, or `None` if the tile extends beyond the
+    /// texture. `first` is that texel in unwrapped texel coordinates.
     fn texel_inside(&self, first: DVec2) -> Option<[usize; 2]> {
         let last = first + (SIDE - 1) as f64;
         let is_inside =
@@ -102,12 +106,12 @@ impl Tiling {
         is_inside.then_some([first.x as usize, first.y as usize])
     }
 
-    /// A tile of emitter number `index`, and the bounds of the light of the tile. A dark tile has zero intensity.
+    /// Builds a tile of the emitter with this index, and the bounds of its light. A dark tile has zero intensity.
     pub fn tile(&self, index: u32, emitter: &Emitter, texture: &Texture, [column, row]: [usize; 2]) -> (Tile, Bounds) {
         let first = self.first_texel(column, row);
         let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
         let first_texel = self.texel_inside(first);
-        // Area of a texel in m².
+        // Compute the area of a texel in m² (`scale`).
         let doubled = (self.triangle[1] - self.triangle[0]).perp_dot(self.triangle[2] - self.triangle[0]).abs();
         let scale = 2.0 * f64::from(emitter.area) / doubled;
         let mut sums = [0.0f64; SIDE * SIDE];
@@ -130,7 +134,7 @@ impl Tiling {
             *running = sum;
         }
         let intensity = if (sum as f32).is_finite() { sum as f32 } else { 0.0 };
-        // Bound the emissive part of the triangle.
+        // Bound the part of the triangle inside the rectangle of emissive texels.
         let lit = Polygon::clipped(&self.triangle, &Rectangle { low, high });
         let corners = lit.corners().iter().map(|&p| emitter.point(self.barycentric(p)));
         let bounds = Bounds::of_surface(corners, emitter.normal, emitter.double_sided, intensity);
@@ -139,7 +143,7 @@ impl Tiling {
         (Tile { emitter: index, intensity, column: column as u32, row: row as u32, whole, shares }, bounds)
     }
 
-    /// Area of the part of a rectangle that the triangle covers, in texels.
+    /// Returns the area, in texels, of the part of a rectangle that the triangle covers.
     fn covered(&self, rectangle: &Rectangle) -> f64 {
         match rectangle.overlap(&self.triangle) {
             Overlap::None => 0.0,
@@ -148,11 +152,12 @@ impl Tiling {
         }
     }
 
-    /// Samples a point of a tile in proportion to its emission, in barycentric coordinates: `u` selects the texel; its
-    /// remainder and `v` select the point.
+    /// Samples a point of a tile in proportion to its emission: `u` selects the texel. The remainder of `u`, rescaled
+    /// to `[0, 1]`, and `v` select the point within the texel. Returns barycentric coordinates.
     pub fn sample(&self, tile: &Tile, (u, v): (f64, f32)) -> Option<Vec2> {
         let (shares, target) = (&tile.shares, (u as f32).min(1.0 - f32::EPSILON));
-        // Compare with all entries instead of bisecting: the table is in the cache, and no branch can be mispredicted.
+        // Count the entries up to the target instead of bisecting: the table is in the cache, and the count has no
+        // branch that could be mispredicted.
         let before = shares.iter().map(|&share| u32::from(share <= target)).sum::<u32>() as usize;
         let index = before.min(SIDE * SIDE - 1);
         let texel = self.first_texel(tile.column as usize, tile.row as usize)
@@ -182,7 +187,8 @@ impl Tiling {
         (b / b.element_sum().max(1.0)).as_vec2()
     }
 
-    /// Mean emission of the texels around the triangle: positive if any part of the triangle emits.
+    /// Returns the mean emission of the texels in the triangle's bounding box. It is positive if any part of the
+    /// triangle emits.
     pub fn mean_around(emitter: &Emitter, texture: &Texture) -> f64 {
         let [a, b, c] = emitter.texels(texture);
         let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).floor());

@@ -1,16 +1,17 @@
 //! Adaptive sampling: decides how many paths each tile gets in the next pass.
 //!
-//! The first passes make a coarse image, then a few paths for every pixel, then twice as many, and so on: points are
-//! stratified best at powers of two. With an error target, each tile gets a count of its own after
-//! [`MIN_UNIFORM_PATHS`] paths. For a target on the error of the whole image, the number of paths is proportional to
-//! the standard deviation of a tile's paths (Neyman 1934), absolute or relative to its radiance; for a target on the
-//! error of each pixel, it follows from the tile's own error. Each adaptive pass doubles the paths of the tiles whose
-//! required number of paths is largest relative to the paths they have.
+//! The first passes render a coarse image. The next passes give every pixel a few paths, then twice as many, and so
+//! on, since sample points are stratified best at powers of two. With an error target, tiles get individual numbers of
+//! paths after [`MIN_UNIFORM_PATHS`] paths per pixel. If the target limits the error of the whole image, the number of
+//! paths is proportional to the standard deviation of the tile's paths, absolute or relative to the tile's radiance
+//! (Neyman 1934). If the target limits the error of each pixel, the number follows from the tile's own error. Each
+//! adaptive pass doubles the paths of the tiles whose required number of paths is largest relative to the paths they
+//! have.
 //!
-//! A small variance by chance must not stop the sampling of a tile: it is small where no bright path has been found
-//! yet, and the image would become too dark. Decisions are therefore made for whole tiles, with regard to their
-//! neighbours (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global
-//! illumination"). The tests and `benches/error_control.rs` measure the remaining bias.
+//! A tile in which no bright path has been found yet has a small variance by chance. If that stopped its sampling, the
+//! image would become too dark. Decisions are therefore made for whole tiles and take neighbouring tiles into account
+//! (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global illumination").
+//! The tests and `benches/error_control.rs` measure the remaining bias.
 
 use super::canvas::Canvas;
 use super::clock::Clock;
@@ -22,21 +23,21 @@ use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::params::Params;
 
-/// Paths per pixel of the first complete pass. [origin not recorded]
+/// Paths per pixel of the first pass after the coarse image is complete. [origin not recorded]
 const FIRST_PASS_PATHS: u32 = 4;
-/// Paths per pixel before the first adaptive decision. [origin not recorded]
+/// Paths per pixel before the first adaptive pass. [origin not recorded]
 pub const MIN_UNIFORM_PATHS: u32 = 16;
-/// Largest number of paths per pixel in a tile, relative to `samples`. Without a limit, light that few paths find (a
-/// caustic, the glossy reflection of a small lamp) would take all paths. [origin not recorded]
+/// Limit on the paths per pixel of a tile, as a multiple of `samples`. Without a limit, light that few paths find (a
+/// caustic, or the glossy reflection of a small lamp) would take all paths. [origin not recorded]
 const MAX_TILE_RATIO: u32 = 64;
-/// The error of a pixel is relative to its luminance, or to this share of the image's mean if the pixel is darker.
-/// [convention: the target error is defined with it]
+/// The error of a pixel is relative to its luminance. For pixels darker than this share of the image's mean, it is
+/// relative to this share of the mean. [convention: the target error is defined with it]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
 
-/// Chooses the passes of a render.
+/// Decides the passes of a render, one after the other.
 pub struct AdaptiveSampler<'p> {
     params: &'p Params,
-    /// Stride and paths per pixel of the last uniform pass.
+    /// Pixel stride and paths per pixel of the last uniform pass.
     stride: usize,
     uniform_paths: u32,
 }
@@ -46,13 +47,13 @@ impl<'p> AdaptiveSampler<'p> {
         Self { params, stride: 2 * coarse_stride(params.width, params.height), uniform_paths: 0 }
     }
 
-    /// The next pass; `None` if all targets are met or the time is over.
+    /// Returns the next pass; `None` if all targets are met, or the paths or the time are used up.
     pub fn next(&mut self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let Params { samples, target_error, relative_error, pixel_error, .. } = *self.params;
         if self.uniform_paths > 0 && clock.is_over() {
             return Ok(None);
         }
-        // Refine the coarse image down to one path per pixel.
+        // While the image is still coarse, halve the pixel stride. At a stride of 1, every pixel has one path.
         if self.stride > 1 {
             self.stride /= 2;
             self.uniform_paths = 1;
@@ -65,7 +66,7 @@ impl<'p> AdaptiveSampler<'p> {
         if self.uniform_paths >= samples {
             return Ok(None);
         }
-        // Double the paths of all pixels, within the time budget.
+        // Double the paths of all pixels, as far as the time budget allows.
         let doubled =
             if self.uniform_paths < FIRST_PASS_PATHS { FIRST_PASS_PATHS } else { self.uniform_paths.saturating_mul(2) };
         let affordable = clock.affordable_ratio().map_or(u32::MAX, |times| {
@@ -80,13 +81,14 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(Some(Pass { stride: self.stride, ..Pass::uniform(canvas.grid.tiles(), count)? }))
     }
 
-    /// A pass that doubles the paths of the tiles with the largest need.
+    /// Returns a pass that doubles the paths of some tiles, or `None` if no tile needs more paths. The tiles with the
+    /// largest need come first. The need of a tile is its required number of paths divided by its present number.
     fn adaptive_pass(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let statistics = canvas.statistics(|_, _| 1.0, job)?;
         let target_paths = self.target_paths(canvas, &statistics, job)?;
         let whole = whole(&statistics);
 
-        // Sum up the missing paths, limited by `samples` and the time budget.
+        // Sum up the missing paths of all tiles, limited by `samples` and the time budget.
         let max_paths = self.params.samples.saturating_mul(MAX_TILE_RATIO);
         let missing = |tile: usize| {
             (target_paths[tile].min(f64::from(max_paths)) - f64::from(statistics[tile].max_paths)).max(0.0)
@@ -101,7 +103,7 @@ impl<'p> AdaptiveSampler<'p> {
             .map(|tile| (target_paths[tile] / f64::from(statistics[tile].max_paths.max(1)), tile))
             .filter(|&(need, tile)| need > 1.0 && statistics[tile].max_paths < max_paths)
             .collect();
-        // Order tiles of equal need by their index.
+        // Sort tiles by decreasing need, and tiles of equal need by their index.
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
 
         let mut counts: Vec<u32> = statistics.iter().map(|t| t.max_paths).collect();
@@ -117,7 +119,7 @@ impl<'p> AdaptiveSampler<'p> {
         Ok((spent > 0.0).then_some(Pass { counts, stride: 1 }))
     }
 
-    /// The number of paths per pixel that each tile needs to meet the targets.
+    /// Returns the number of paths per pixel that each tile needs to meet all targets.
     fn target_paths(&self, canvas: &Canvas, statistics: &[Statistics], job: Job) -> Result<Vec<f64>> {
         let Params { target_error, relative_error, pixel_error, .. } = *self.params;
         let mean = whole(statistics).mean_radiance();
@@ -137,7 +139,7 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(target_paths)
     }
 
-    /// Raises the numbers of paths to the smallest allocation that meets a target on the error of all tiles together.
+    /// Raises `target_paths` to the smallest allocation that meets a target for the error of the whole image.
     fn add_allocation(
         &self,
         canvas: &Canvas,
@@ -152,8 +154,8 @@ impl<'p> AdaptiveSampler<'p> {
         let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
         let deviations: Vec<f64> =
             canvas.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
-        // With n = k d paths per pixel, where d is the deviation of the tile and k is a constant, the mean square error
-        // is mean(s / (k d)), where s is the variance of single paths.
+        // With n = k d paths per pixel, where d is the standard deviation of the tile and k a constant of the image,
+        // the mean square error is mean(s / (k d)), where s is the variance of single paths.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)

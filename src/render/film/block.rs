@@ -1,7 +1,8 @@
-//! Blocks of pixels whose paths share secondary vertices (`shared`).
+//! Blocks of pixels whose paths share secondary vertices (see `shared`).
 //!
-//! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its pixels
-//! do not show as blocks. The division into blocks depends only on the replication and the position in the image.
+//! A replication is one of the four point sequences of a pixel. A block covers 4 × 2 pixels of a tile, or 2 × 4 pixels
+//! in every second replication. The alternation keeps the correlated errors of its pixels from showing as blocks. The
+//! division into blocks depends only on the replication and the position in the image.
 
 use super::eye::Eye;
 use super::grid::{AREA, TILE};
@@ -15,12 +16,12 @@ use crate::rng;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Number of blocks in a tile.
+/// Number of blocks in one tile.
 const BLOCKS: usize = AREA / MAX_SHARED;
 /// Longer side of a block in pixels.
 const LONGER_SIDE: usize = 4;
 
-/// A pixel of a block.
+/// A pixel of a block, with the length limit and the seed of its paths in one replication.
 pub struct BlockPixel {
     /// Index of the pixel in its tile.
     pub pixel: usize,
@@ -31,18 +32,18 @@ pub struct BlockPixel {
 }
 
 impl BlockPixel {
-    /// A pixel for the paths of a replication; `seed` is the seed of the image.
+    /// Derives the seed of the pixel's paths in one replication from `seed`, the seed of the image.
     pub fn new(pixel: usize, at: [usize; 2], length: PathLength, seed: u64, replication: u32) -> Self {
         Self { pixel, at, length, seed: seed_of(seed, at, replication) }
     }
 }
 
-/// The seed of a pixel's paths in a replication.
+/// Returns the seed of the paths of the pixel at `at` in one replication.
 pub fn seed_of(seed: u64, at: [usize; 2], replication: u32) -> u64 {
     rng::mix(rng::hash(seed, &at.map(|v| v as u64)) ^ u64::from(replication))
 }
 
-/// Indices of the pixels of each block of a tile.
+/// Returns, for each block of a tile, the indices of its pixels in the tile.
 pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
     let wide = replication.is_multiple_of(2);
     let (width, height) =
@@ -54,11 +55,12 @@ pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
     })
 }
 
-/// Traces the paths of blocks, one block at a time.
+/// Traces the paths of blocks of pixels, one block at a time.
 pub struct BlockTracer<'a> {
     starts: Vec<Start>,
     scratch: Scratch<Sum>,
-    /// A recorder for each pixel of the block, if there are layers, with the scratch memory for their replays.
+    /// If the film has layers: a recorder for each pixel of a block, and the scratch memory for replaying recorded
+    /// paths.
     recorders: Option<(Vec<Recorder<'a>>, Scratch<LpeTape<'a>>)>,
 }
 
@@ -68,14 +70,14 @@ impl<'a> BlockTracer<'a> {
         Self { starts: Vec::with_capacity(MAX_SHARED), scratch: Scratch::default(), recorders }
     }
 
-    /// The recorders of the pixels of the block.
+    /// Returns the recorders of the pixels of the block.
     pub fn recorders(&mut self) -> Option<&mut [Recorder<'a>]> {
         self.recorders.as_mut().map(|(recorders, _)| &mut recorders[..])
     }
 
-    /// Sums of the radiance of each pixel's paths, for a range of path indices of one replication. Each recorder
-    /// records the paths of its pixel. Paths with a radiance that is not finite are dropped; `discarded` is called
-    /// with the index of their pixel in `members`.
+    /// Traces the paths with these indices, in one replication, for the pixels `members` of a block. Returns the sum
+    /// of the paths' radiance for each pixel. If there are recorders, each records the paths of its pixel. Paths whose
+    /// radiance is not finite are dropped; for each, `discarded` is called with the pixel's index in `members`.
     pub fn paths(
         &mut self,
         world: &World,

@@ -1,4 +1,4 @@
-//! The canvas: the pixels of an image with the sums of their paths.
+//! The canvas of a render in progress: for each pixel, the sums over its paths so far.
 
 use super::eye::Eye;
 use super::grid::{AREA, Grid};
@@ -18,13 +18,13 @@ use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
 use std::time::Instant;
 
-/// The sums of all paths so far.
+/// The sums over all paths so far, for every pixel of the image.
 pub struct Canvas<'a> {
     pub(super) world: &'a World,
     pub(super) eye: Eye,
     pub(super) seed: u64,
     pub(super) grid: Grid,
-    /// Pixels in the order of tiles.
+    /// Pixels tile by tile, [`AREA`] per tile.
     pub(super) pixels: Vec<Pixel>,
     pub(super) layers: Option<Layers<'a>>,
     /// Number of paths dropped because their radiance was not finite.
@@ -43,7 +43,7 @@ impl<'a> Canvas<'a> {
         Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
-    /// A canvas that consists of the pixels of a part, with the given sums.
+    /// Builds a canvas that holds the pixels of a rendered part, filled with the part's sums.
     pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
         let part = sums.part();
         let mut canvas = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
@@ -63,7 +63,7 @@ impl<'a> Canvas<'a> {
         Ok(canvas)
     }
 
-    /// Extends the paths of every pixel to the counts of a pass; stops at the deadline.
+    /// Traces paths until every pixel has the number of paths that `pass` asks for; stops early at the deadline.
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
         let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
         let layers = layers.as_ref();
@@ -71,7 +71,7 @@ impl<'a> Canvas<'a> {
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
         let context = TileContext { world, eye, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
-            // Skip tiles in which a coarse pass covers no pixel.
+            // Skip tiles of which a coarse pass covers no pixel.
             if !pass.passes_over(grid.corner(tile)) {
                 Tile::new(context, tile, pixels, layers).extend(pass, is_over);
             }
@@ -79,14 +79,14 @@ impl<'a> Canvas<'a> {
         job.check()
     }
 
-    /// Mean number of paths per pixel after a pass, relative to `samples`.
+    /// Returns the mean number of paths per pixel after a pass, relative to `samples`.
     pub fn progress(&self, pass: &Pass, samples: u32) -> f64 {
         let paths = |tile| self.grid.area(tile) as f64 * pass.per_pixel(tile);
         let pixels = (self.grid.width * self.grid.height) as f64;
         (0..self.grid.tiles()).map(paths).sum::<f64>() / (pixels * f64::from(samples))
     }
 
-    /// The pixels of a tile that lie within the image.
+    /// Returns the pixels of a tile that lie within the image.
     pub(super) fn tile(&self, tile: usize) -> impl Iterator<Item = &Pixel> {
         let pixels = self.pixels[tile * AREA..(tile + 1) * AREA].iter().enumerate();
         pixels.filter(move |(i, _)| self.grid.place(tile, *i).is_some()).map(|(_, pixel)| pixel)
@@ -97,7 +97,8 @@ impl<'a> Canvas<'a> {
         &self.pixels[tile * AREA + i]
     }
 
-    /// The pixel itself, or, if it has no paths yet, the nearest pixel of a coarser pass.
+    /// Returns the pixel itself, or, if it has no paths yet, the nearest pixel up and to the left that a coarser pass
+    /// covered.
     pub(super) fn nearest(&self, x: usize, y: usize) -> (usize, usize) {
         let (mut x, mut y, mut mask) = (x, y, !0);
         while self.pixel(x, y).count() == 0 && (x, y) != (0, 0) {
@@ -107,7 +108,8 @@ impl<'a> Canvas<'a> {
         (x, y)
     }
 
-    /// For each pixel of the image, the displayed pixel: its tile, its index in the tile, and its number of paths.
+    /// Returns for each pixel of the image which pixel is displayed in its place ([`Canvas::nearest`]): tile, index in
+    /// the tile, and number of paths.
     pub(super) fn places(&self, job: Job) -> Result<Vec<(u32, u32, u32)>> {
         let mut places = try_vec(self.grid.width * self.grid.height, (0, 0, 0))?;
         exec::for_rows(&mut places, self.grid.width, job, |y, row| {
@@ -120,7 +122,7 @@ impl<'a> Canvas<'a> {
         Ok(places)
     }
 
-    /// An image computed pixel by pixel.
+    /// Computes an image pixel by pixel, in parallel; `value` writes the channels of a pixel.
     pub(super) fn image(
         &self,
         channels: usize,
@@ -138,7 +140,7 @@ impl<'a> Canvas<'a> {
         self.image(3, job, |x, y, out| self.pixel(x, y).variance().as_vec3().write_to_slice(out))
     }
 
-    /// Images of two halves of the paths; equal for pixels of a single path.
+    /// Returns two images, each from one half of the paths. They are equal at pixels that have a single path.
     pub fn halves(&self, job: Job) -> Result<[Image; 2]> {
         let half = |which: usize| {
             self.image(3, job, |x, y, out| {

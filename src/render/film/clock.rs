@@ -1,31 +1,32 @@
-//! The time budget of a render.
+//! The time budget of a render: when to stop, and when to publish an image.
 
 use crate::error::Result;
 use std::time::{Duration, Instant};
 
-/// Smallest time between two published images, relative to the time that publishing takes. [origin not recorded]
+/// Smallest time between two published images, as a multiple of the time that publishing one takes. [origin not
+/// recorded]
 const PUBLISH_RATIO: u32 = 10;
 
-/// The time that a render has taken, and its budget.
+/// Measures the time that a render has taken, and compares it with the time budget.
 pub struct Clock {
     start: Instant,
     budget: Option<Duration>,
-    /// Time spent on tracing.
+    /// Total time spent on tracing paths.
     sampling: Duration,
-    /// Duration of the last publishing of an image.
+    /// Time that publishing the last image took.
     publishing: Duration,
     published: Option<Instant>,
 }
 
 impl Clock {
-    /// Starts with a budget in milliseconds; 0 = unlimited.
+    /// Starts the clock with a budget in milliseconds; 0 = unlimited.
     pub fn start(budget_ms: u32) -> Self {
         let budget = (budget_ms > 0).then(|| Duration::from_millis(budget_ms.into()));
         Self { start: Instant::now(), budget, sampling: Duration::ZERO, publishing: Duration::ZERO, published: None }
     }
 
-    /// Runs a pass with a deadline that leaves time for the last image. The first pass, which is coarse, has no
-    /// deadline, so that there is always an image.
+    /// Runs a pass with a deadline that leaves time for publishing the last image. The first pass, which is coarse,
+    /// has no deadline, so that every render yields an image.
     pub fn sample(&mut self, pass: impl FnOnce(Option<Instant>) -> Result<()>) -> Result<()> {
         let start = Instant::now();
         let deadline = self.budget.map(|b| self.start + b.saturating_sub(self.publishing));
@@ -34,7 +35,7 @@ impl Clock {
         result
     }
 
-    /// Makes and publishes an image.
+    /// Assembles and publishes an image with `publish`, and measures the time this takes.
     pub fn publish<T>(&mut self, publish: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let value = publish();
@@ -44,7 +45,7 @@ impl Clock {
         value
     }
 
-    /// Whether enough time has passed since the last image to publish another one; always for the first image.
+    /// Whether to publish another image now: enough time has passed since the last one, or there is none yet.
     pub fn is_publish_due(&self) -> bool {
         self.published.is_none_or(|published| published.elapsed() >= self.publishing * PUBLISH_RATIO)
     }
@@ -53,12 +54,12 @@ impl Clock {
         self.left().is_some_and(|left| left.is_zero())
     }
 
-    /// Time left for tracing relative to the time traced so far; `None` without a budget.
+    /// Returns the time left for tracing, relative to the time spent on tracing so far; `None` without a budget.
     pub fn affordable_ratio(&self) -> Option<f64> {
         self.left().map(|left| left.as_secs_f64() / self.sampling.as_secs_f64().max(1e-9))
     }
 
-    /// Spent share of the budget; 0 without a budget.
+    /// Returns the spent share of the budget; 0 without a budget.
     pub fn spent(&self) -> f64 {
         self.budget.map_or(0.0, |b| (self.start.elapsed().as_secs_f64() / b.as_secs_f64()).min(1.0))
     }

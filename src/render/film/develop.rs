@@ -1,4 +1,4 @@
-//! Assembles the images of a film from a canvas.
+//! Assembles the film (images, errors and counts) from the sums of a canvas.
 
 use super::canvas::Canvas;
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::render::output::Film;
 use std::sync::atomic::Ordering;
 
 impl Canvas<'_> {
-    /// The image of all paths so far.
+    /// Returns the film of all paths so far.
     pub fn film(&self, job: Job) -> Result<Film> {
         let beauty = self.image(3, job, |x, y, out| {
             let (x, y) = self.nearest(x, y);

@@ -1,4 +1,4 @@
-//! Camera paths: the rays of pixels, and the radiance along them.
+//! Camera paths: generates the rays of a pixel and traces the radiance along them.
 
 use crate::render::layers::Recorder;
 use crate::render::params::Params;
@@ -12,8 +12,8 @@ use glam::{DVec3, Vec3};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Sum of the radiance of some paths of a pixel. All callers use this one function, so that the inlined path tracer is
-/// compiled once.
+/// Returns the sum of the radiance of a pixel's paths with these indices. All callers use this one function, so that
+/// the inlined path tracer is compiled once.
 pub fn paths(
     world: &World,
     eye: &Eye,
@@ -35,7 +35,7 @@ pub fn paths(
     sum
 }
 
-/// One sample of a pixel's radiance.
+/// Traces one path and returns its radiance.
 fn radiance(
     world: &World,
     eye: &Eye,
@@ -59,7 +59,7 @@ fn radiance(
     }
 }
 
-/// A camera prepared for tracing: the direction through a pixel is linear in its coordinates.
+/// A camera prepared for path tracing. The unnormalised direction through a pixel is linear in the pixel coordinates.
 pub struct Eye {
     position: Vec3,
     corner: Vec3,
@@ -77,15 +77,15 @@ impl Eye {
         Self { position: camera.position, corner, right, down }
     }
 
-    /// Starts a path: the first block of random numbers selects the point in the pixel (box filter) and the light
-    /// sample at the primary vertex.
+    /// Starts a path through the pixel `at`. Its first random numbers select the point in the pixel (box filter) and
+    /// the light sample at the primary vertex.
     pub fn start(&self, world: &World, at: [usize; 2], length: PathLength, mut sampler: Sampler) -> Start {
         let place = sampler.next();
         let direction = self.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
         Start { ray: world.ray(self.position, direction), light_u: (place.fine(2), place.get(3)), length, sampler }
     }
 
-    /// The unit direction through a point of the image, in pixels.
+    /// Returns the unit direction through a point of the image, given in pixels.
     fn direction(&self, x: f64, y: f64) -> Vec3 {
         (self.corner + self.right * x as f32 + self.down * y as f32).normalize_or_zero()
     }

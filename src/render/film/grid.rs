@@ -1,17 +1,17 @@
-//! The tiles of an image, which define the storage order of pixels.
+//! The division of an image into tiles, which determines the storage order of pixels.
 
 use crate::error::Result;
 use crate::image::try_collect;
 
-/// Side of a tile in pixels: the unit of work and of adaptive sampling.
+/// Side of a tile in pixels. A tile is the unit of work and of adaptive sampling.
 pub const TILE: usize = 8;
 /// Number of pixels in a tile.
 pub const AREA: usize = TILE * TILE;
 
-/// Largest number of pixels in the coarsest image. [origin not recorded]
+/// Largest number of pixels in the coarsest image of a progressive render. [origin not recorded]
 const COARSE_PIXELS: usize = 1024;
 
-/// An image divided into tiles, row by row; the last tiles may extend beyond its right and lower borders.
+/// An image divided into tiles, row by row. The last tiles may extend beyond its right and lower borders.
 #[derive(Clone, Copy)]
 pub struct Grid {
     pub width: usize,
@@ -31,30 +31,30 @@ impl Grid {
         self.across() * self.down()
     }
 
-    /// Column and row of the first pixel of a tile.
+    /// Returns the column and row of a tile's first pixel.
     pub fn corner(&self, tile: usize) -> (usize, usize) {
         (tile % self.across() * TILE, tile / self.across() * TILE)
     }
 
-    /// Column and row of a pixel of a tile; `None` outside the image.
+    /// Returns the column and row in the image of a tile's pixel; `None` outside the image.
     pub fn place(&self, tile: usize, pixel: usize) -> Option<(usize, usize)> {
         let (left, top) = self.corner(tile);
         let (x, y) = (left + pixel % TILE, top + pixel / TILE);
         (x < self.width && y < self.height).then_some((x, y))
     }
 
-    /// The tile of a pixel, and the index of the pixel within it.
+    /// Returns the index of the tile that contains a pixel, and the index of the pixel within the tile.
     pub fn locate(&self, x: usize, y: usize) -> (usize, usize) {
         (y / TILE * self.across() + x / TILE, y % TILE * TILE + x % TILE)
     }
 
-    /// Number of pixels of a tile within the image.
+    /// Returns the number of pixels of a tile that lie within the image.
     pub fn area(&self, tile: usize) -> usize {
         let part = |at: usize, size: usize| TILE.min(size - at * TILE);
         part(tile % self.across(), self.width) * part(tile / self.across(), self.height)
     }
 
-    /// For each tile the mean over its 3 × 3 neighbourhood, or its own value if that is larger.
+    /// Returns for each tile the larger of its own value and the mean over its 3 × 3 neighbourhood.
     pub fn max_with_neighbourhood_mean(&self, values: &[f64]) -> Result<Vec<f64>> {
         let (across, down) = (self.across(), self.down());
         let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
@@ -68,7 +68,7 @@ impl Grid {
     }
 }
 
-/// Distance between the pixels of the coarsest image: a power of two.
+/// Returns the stride of the pixels of the coarsest image, a power of two.
 pub fn coarse_stride(width: usize, height: usize) -> usize {
     let mut stride = 1;
     while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {

@@ -1,15 +1,18 @@
-//! The film: sums of the paths of each pixel, their means and their errors.
+//! The film: the sums of the paths of each pixel, and the images, means and errors computed from them.
 //!
-//! `eye` makes the camera paths. `tile` traces the paths of a tile of the `canvas`, `block` those of pixels that share
-//! secondary vertices; `pixel` holds the sums of a pixel. Between passes, `statistics` gives the errors, `adaptive`
-//! allocates the paths of the next `pass`, and `roulette` sets the weights for Russian roulette. `develop` assembles
-//! the images of a film, `interval` and `pooling` give confidence intervals. A pass extends the paths of each pixel up
-//! to a count, so that an interrupted pass leaves a valid image with fewer paths in some pixels. The counts follow
-//! from the pixels of the pass before: they are the same for any number of threads.
+//! - `eye` generates and traces the camera paths. `tile` traces the paths of a tile of the `canvas`, `block` the paths
+//!   of pixels that share secondary vertices. `pixel` holds the sums of a pixel.
+//! - Between passes, `statistics` computes the errors, `adaptive` chooses the next `pass`, and `roulette` computes the
+//!   survival weights of Russian roulette.
+//! - `develop` assembles the images of a film; `interval` and `pooling` compute confidence intervals.
 //!
-//! For renders in parts, `sums` adds up the paths of some pixels independently of all others, with roulette weights
-//! from a `prepass` instead of previous passes. `pilot` predicts the cost and the error of an image from a few of its
-//! tiles, which it selects by their `tile_moments`.
+//! A pass extends the paths of each pixel to a given number, so that an interrupted pass leaves a valid image in which
+//! some pixels have fewer paths. These numbers depend only on the pixels after the previous pass, so they are the same
+//! for any number of threads.
+//!
+//! For renders in parts, `sums` adds up the paths of each pixel independently of all other pixels; the weights of
+//! Russian roulette then come from a `prepass` instead of previous passes. `pilot` predicts the cost and the error of
+//! an image from a few of its tiles, which it selects by their `tile_moments`.
 
 mod adaptive;
 mod block;

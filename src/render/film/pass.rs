@@ -1,19 +1,19 @@
-//! A pass over the image: how many paths each pixel has after it.
+//! One pass over the image: how many paths each pixel has after it.
 
 use super::grid::TILE;
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// The number of paths of each pixel after a pass.
+/// The number of paths that each pixel has after a pass.
 pub struct Pass {
-    /// Paths per pixel of each tile.
+    /// Number of paths per covered pixel, for each tile.
     pub(super) counts: Vec<u32>,
     /// The pass covers only pixels whose column and row are multiples of this power of two.
     pub(super) stride: usize,
 }
 
 impl Pass {
-    /// A pass of `count` paths for every pixel.
+    /// Returns a pass after which every pixel has `count` paths.
     pub fn uniform(tiles: usize, count: u32) -> Result<Self> {
         Ok(Self { counts: try_vec(tiles, count)?, stride: 1 })
     }
@@ -27,13 +27,13 @@ impl Pass {
         self.stride == 1
     }
 
-    /// Whether the pass covers no pixel of the tile with this corner; a coarse pass covers at most the first pixel of
-    /// a tile.
+    /// Whether the pass covers no pixel of the tile whose first pixel is given. A pass with a stride of [`TILE`] or
+    /// more covers at most the first pixel of a tile.
     pub fn passes_over(&self, (left, top): (usize, usize)) -> bool {
         self.stride >= TILE && (left | top) & (self.stride - 1) != 0
     }
 
-    /// Mean number of paths per pixel of a tile.
+    /// Returns the mean number of paths per pixel of a tile, including pixels that the pass does not cover.
     pub fn per_pixel(&self, tile: usize) -> f64 {
         f64::from(self.counts[tile]) / (self.stride * self.stride) as f64
     }

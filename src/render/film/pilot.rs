@@ -1,17 +1,20 @@
-//! Pilot sampling: predicts the cost and the error of an image from a few of its tiles.
+//! Pilot run: predicts the rendering time and the error of an image by rendering a few of its tiles.
 //!
-//! No count that is known before rendering predicts the cost and the variance of paths well. A sample of tiles is
-//! therefore rendered as in the image itself: at full resolution and with the same path sharing. A few tiles, such as
-//! those at the edge of a lamp, may have most of an image's error. Tiles are therefore selected with a probability
-//! proportional to the standard deviation of their light in a first look, and weighted by its reciprocal (Horvitz and
-//! Thompson 1952). The first look may miss the sliver of a lamp that a neighbouring tile shows, so the deviations are
-//! spread to neighbours. The interior of a lamp has no variance and is hardly ever selected, although it may have most
-//! of the image's light. The image's mean is therefore taken from the first look at all tiles, and the selected tiles
-//! correct it by their differences (the difference estimator of Särndal, Swensson and Wretman 1992).
+//! No number known before rendering predicts the cost and the variance of paths well. The pilot run therefore renders
+//! a sample of tiles exactly as the image would: at full resolution and with the same path sharing. A few tiles, such
+//! as those at the edge of a lamp, may cause most of an image's error. A first look at all tiles with few paths
+//! therefore estimates the standard deviation of each tile's light. Tiles are selected with a probability proportional
+//! to this deviation, and weighted by its reciprocal (Horvitz and Thompson 1952). The first look may miss the edge of
+//! a lamp in one tile but find it in the next, so the deviations are spread to neighbouring tiles.
+//!
+//! The interior of a lamp has no variance and is hardly ever selected, although it may have most of the image's light.
+//! The mean of the image is therefore taken from the first look at all tiles; the selected tiles only correct it, by
+//! the difference between their mean and the first look (the difference estimator of Särndal, Swensson and Wretman
+//! 1992).
 //!
 //! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. The
-//! variance is therefore measured at three numbers of paths. The largest number is traced only in some of the tiles,
-//! which are selected in proportion to their share of the variance at the second number.
+//! pilot run therefore measures the variance at three numbers of paths. It traces the largest number only in some of
+//! the tiles, selected in proportion to their share of the variance at the second number.
 
 pub use super::adaptive::MIN_UNIFORM_PATHS;
 use super::eye::Eye;
@@ -33,67 +36,69 @@ use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-/// Largest number of tiles to render. [origin not recorded]
+/// Largest number of tiles that the pilot run renders. [origin not recorded]
 const MAX_TILES: usize = 128;
-/// Paths per pixel in three passes: each replication has a power of four, at which points are stratified best.
+/// Paths per pixel of the three passes. Each of the four replications of a pixel gets a power of four of these paths,
+/// because points are stratified best at powers of four.
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
-/// Largest number of tiles with the last number of paths. [origin not recorded]
+/// Largest number of tiles that the third pass renders. [origin not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Selection weight of a tile without variance, relative to the mean standard deviation of all tiles. [origin not
-/// recorded]
+/// Constant part of the selection weight of each tile, as a multiple of the mean standard deviation over all tiles. It
+/// lets tiles without variance be selected, too. [origin not recorded]
 const MIN_CHANCE: f64 = 0.5;
-/// Separates the random numbers of the pilot from those of the image.
+/// Salt of the pilot's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
 
-/// Prediction for an image from a few of its tiles.
+/// What a pilot run predicts about the whole image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pilot {
-    /// Seconds per path with all threads at work.
+    /// Time per path in seconds, with all threads busy.
     pub seconds_per_path: f64,
-    /// The square of [`super::super::Film::error`] that the image would have with each of [`PATHS`] in every pixel.
+    /// Square of [`super::super::Film::error`] that the image would have with each number of [`PATHS`] in every pixel.
     pub squared_errors: [f64; 3],
-    /// Number of uniform paths over the number of adaptively allocated paths for equal error; at least 1.
+    /// Ratio of the number of uniform paths to the number of adaptively allocated paths for equal error; at least 1.
     pub adaptive_gain: f64,
-    /// Root mean square of the image's radiance relative to its mean. It converts a relative error common to all light
-    /// to the image's error.
+    /// Root mean square of the image's radiance, divided by its mean. If the error of every pixel is the same share of
+    /// the pixel's radiance, then [`super::super::Film::error`] is that share times `contrast`.
     pub contrast: f64,
 }
 
-/// The nets of points that make up `paths` paths of a pixel: for each replication, the powers of two that add up to its
-/// number of paths.
+/// Splits the `paths` paths of a pixel into scrambled nets. Returns the sizes of the nets: for each replication, the
+/// powers of two that add up to its number of paths.
 pub fn nets(paths: u32) -> impl Iterator<Item = u32> {
     let nets = |points: u32| (0..u32::BITS).map(move |bit| points & 1 << bit).filter(|&points| points > 0);
     (0..REPLICATIONS).flat_map(move |replication| nets(paths_of_replication(paths, replication)))
 }
 
-/// A selected tile.
+/// A tile that the pilot run renders.
 struct PilotTile {
     tile: usize,
-    /// Number of tiles it represents.
+    /// Number of the image's tiles that this tile represents.
     weight: f64,
-    /// Number of selected tiles it represents in the last pass; 0 if it is not part of that pass.
+    /// Number of pilot tiles that this tile represents in the third pass; 0 if the third pass leaves it out.
     deep_weight: f64,
-    /// Its mean radiance in the first look.
+    /// Mean radiance of the tile in the first look.
     expected: f64,
     pixels: [Pixel; AREA],
-    /// Number of paths of each pixel, and the time in seconds that all paths of the tile took.
+    /// Number of paths of each pixel (`paths`), and total time in seconds for all paths of the tile (`seconds`).
     paths: f64,
     seconds: f64,
 }
 
-/// Sums over the pixels of a tile, averaged over the channels.
+/// Sums over the pixels of a tile; radiance is averaged over the channels.
 #[derive(Clone, Copy, Default)]
 struct TileSums {
     weight: f64,
     pixels: f64,
-    /// The values of `mean` and `square` expected from the first look.
+    /// Predictions of the first look for the sums `mean` and `square`.
     expected: [f64; 2],
     mean: f64,
     square: f64,
     variance: f64,
 }
 
-/// Renders the pilot tiles; `clock` returns the time since an arbitrary start.
+/// Runs the pilot: selects tiles, renders them and returns the prediction. `clock` returns the time since an arbitrary
+/// start.
 ///
 /// # Errors
 /// A setting out of range; a degenerate camera; cancelled.
@@ -128,7 +133,7 @@ pub fn run(
     let area = (grid.width * grid.height) as f64;
     let mean = |tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64| total(tile_sums, of) / area;
 
-    // Measure the variance at three numbers of paths; at the last one only for some of the tiles.
+    // Measure the variance at three numbers of paths. Render only some of the tiles with the last number.
     let few = render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
     let middle = render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
     let part = |t: &TileSums| t.weight * t.variance;
@@ -140,7 +145,7 @@ pub fn run(
     let variances = [mean(&few, &|t| t.variance), mean(&middle, &|t| t.variance), many];
     let seconds = clock().saturating_sub(start).as_secs_f64();
 
-    // Estimate the mean and the mean square by the difference estimator.
+    // Estimate the mean and the mean square of the radiance by the difference estimator.
     let seen =
         |power: i32| (0..grid.tiles()).map(|t| grid.area(t) as f64 * expected[t].mean.powi(power)).sum::<f64>() / area;
     let brightness = (seen(1) + mean(&last, &|t| t.mean - t.expected[0])).max(f64::MIN_POSITIVE);
@@ -153,7 +158,7 @@ pub fn run(
     })
 }
 
-/// Extends the paths of the tiles of the current pass to `count` per pixel; returns the sums of all tiles.
+/// Extends the paths of the tiles in the current pass to `count` per pixel. Returns the sums of all pilot tiles.
 fn render_tiles(
     context: TileContext,
     chosen: &mut [PilotTile],
@@ -175,8 +180,9 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Time per path of the image, from the time that all pilot tiles took together: corrected for the difference between
-/// the selected tiles and all tiles of the image.
+/// Returns the time per path of the image in seconds. The mean time per path of the pilot tiles is corrected, because
+/// the selected tiles are not typical of the image: it is multiplied by the ratio of the weighted to the unweighted
+/// mean.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
@@ -186,7 +192,7 @@ fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f6
     seconds / paths * bias
 }
 
-/// Selects tiles by the standard deviation of their light.
+/// Selects pilot tiles with a probability that grows with the standard deviation of their light.
 fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<PilotTile>> {
     let variances = try_collect(expected.iter().map(|l| l.variance))?;
     let varies = grid.max_with_neighbourhood_mean(&variances)?;
@@ -214,7 +220,7 @@ fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<Pil
     Ok(chosen)
 }
 
-/// Systematic sampling: equidistant marks along the cumulative sum of the items' chances select items.
+/// Systematic sampling: marks at equal distances along the cumulative sum of the items' chances select the items.
 struct SystematicSampler {
     step: f64,
     next: f64,
@@ -222,14 +228,14 @@ struct SystematicSampler {
 }
 
 impl SystematicSampler {
-    /// Sets `count` marks along a cumulative sum that ends at `sum`.
+    /// Sets `count` marks along a cumulative sum whose total is `sum`.
     fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
         let step = sum / count as f64;
         Self { step, next: rng.next_f64() * step, end: 0.0 }
     }
 
-    /// The weight of the next item, which has this chance: the number of items it represents; 0 if it is not selected.
-    /// An item with a chance larger than a step may be selected more than once.
+    /// Returns the weight of the next item, which has this chance: the number of items that it represents, or 0 if it
+    /// is not selected. An item whose chance exceeds the distance between marks may be selected more than once.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
         let mut marks = 0.0;
@@ -253,13 +259,13 @@ fn tile_sums(grid: Grid, chosen: &PilotTile) -> TileSums {
     sum
 }
 
-/// Estimated sum over the image.
+/// Returns the estimated sum of a quantity over all tiles of the image.
 fn total(tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64) -> f64 {
     tile_sums.iter().map(|t| t.weight * of(t)).sum()
 }
 
-/// Ratio of the numbers of paths that uniform and adaptive sampling need for equal error. Adaptive sampling allocates
-/// paths in proportion to the standard deviation of each tile (Neyman 1934).
+/// Returns the number of paths that uniform sampling needs, divided by the number that adaptive sampling needs for
+/// equal error. Adaptive sampling allocates paths in proportion to the standard deviation of each tile (Neyman 1934).
 fn adaptive_gain(tile_sums: &[TileSums], area: f64) -> f64 {
     let deviation = total(tile_sums, &|t| (t.variance * t.pixels).sqrt());
     if deviation > 0.0 { (total(tile_sums, &|t| t.variance) * area / (deviation * deviation)).max(1.0) } else { 1.0 }
@@ -271,7 +277,7 @@ mod tests {
 
     #[test]
     fn systematic_samples_estimate_totals_without_bias() {
-        // The estimate of any sum is unbiased, and the sum of the chances is exact.
+        // Any estimated sum is unbiased; the estimated sum of the chances is exact in every sample.
         let chances = [0.1, 3.0, 0.0, 0.4, 1.5, 0.2, 7.0];
         let values = [5.0, 1.0, 0.0, 2.0, 4.0, 3.0, 9.0];
         let (mut rng, mut mean) = (Rng::new(3, &[]), 0.0);
@@ -283,7 +289,7 @@ mod tests {
             assert!((sum(&chances) - chances.iter().sum::<f64>()).abs() < 1e-9 && weights[2] == 0.0);
             mean += sum(&values) / f64::from(rounds);
         }
-        // The standard deviation of an estimate is about 30.
+        // A single estimate has a standard deviation of about 30.
         assert!((mean - 24.0).abs() < 4.0 * 30.0 / f64::from(rounds).sqrt(), "{mean}");
         assert_eq!(SystematicSampler::new(0.0, 4, &mut rng).weight_of(0.0), 0.0);
     }

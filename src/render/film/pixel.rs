@@ -1,32 +1,34 @@
-//! The estimate of one pixel: four replications of a point sequence, whose differences give its error.
+//! The estimate of one pixel: four independent replications of a point sequence. The differences between the
+//! replications give the error of the pixel.
 //!
-//! Owen scrambling makes the points of one sequence dependent: their variance does not give the error of their mean,
-//! but the variance among independent scramblings does (Owen 1997). The paths of a pixel are dealt in turn to four
-//! independently scrambled replications. Each replication continues from pass to pass, which preserves its
-//! stratification at every power of two. Fewer replications would preserve more stratification; more of them would
-//! make the variance of a single pixel more accurate. `interval` averages the variance over neighbouring pixels.
+//! Owen scrambling makes the points of one sequence dependent on each other. Their variance therefore does not give
+//! the error of their mean, but the variance between independent scramblings does (Owen 1997). The paths of a pixel
+//! are dealt in turn to four independently scrambled replications. Each replication continues from pass to pass, which
+//! preserves its stratification at every power of two. With fewer replications, each would be stratified better; with
+//! more, the variance of a single pixel would be estimated more accurately. `interval` averages the variance over
+//! neighbouring pixels.
 
 use glam::{DVec3, Vec3};
 
-/// Number of independent scramblings per pixel. [origin not recorded]
+/// Number of independently scrambled point sequences per pixel. [origin not recorded]
 pub const REPLICATIONS: u32 = 4;
 
-/// Sums of the paths so far.
+/// Sums over the paths of a pixel so far.
 #[derive(Clone, Copy, Default)]
 pub struct Pixel {
-    /// Sum of each replication, in f32. New paths are first summed in f64, and their sum is then added.
+    /// Sum of the radiance of each replication's paths, in f32. New paths are summed in f64 before they are added.
     sums: [Vec3; REPLICATIONS as usize],
-    /// Number of paths of all replications.
+    /// Total number of paths in all replications.
     count: u32,
 }
 
-/// Number of a pixel's first `count` paths that belong to a replication.
+/// Returns how many of the first `count` paths of a pixel belong to a replication.
 pub fn paths_of_replication(count: u32, replication: u32) -> u32 {
     (count + REPLICATIONS - 1 - replication) / REPLICATIONS
 }
 
 impl Pixel {
-    /// A pixel of `count` paths from the sums of its replications.
+    /// Builds a pixel of `count` paths from the sums of its replications.
     pub fn of_sums(sums: [DVec3; REPLICATIONS as usize], count: u32) -> Self {
         Self { sums: sums.map(|s| s.as_vec3()), count }
     }
@@ -35,8 +37,8 @@ impl Pixel {
         self.count
     }
 
-    /// Adds paths up to a total of `count`; `path(replication, indices)` returns the sum of the paths of an index
-    /// range.
+    /// Adds paths until the pixel has `count` paths. `path(replication, indices)` traces the paths of a replication
+    /// with these indices and returns the sum of their radiance.
     pub fn extend(&mut self, count: u32, mut path: impl FnMut(u32, std::ops::Range<u32>) -> DVec3) {
         for (replication, sum) in (0..REPLICATIONS).zip(&mut self.sums) {
             let indices = paths_of_replication(self.count, replication)..paths_of_replication(count, replication);
@@ -47,7 +49,7 @@ impl Pixel {
         self.count = count;
     }
 
-    /// Adds the sum of a replication's paths.
+    /// Adds `sum`, the summed radiance of new paths of a replication.
     pub fn add(&mut self, replication: u32, sum: DVec3) {
         self.sums[replication as usize] += sum.as_vec3();
     }
@@ -57,12 +59,13 @@ impl Pixel {
         self.count = count;
     }
 
-    /// Mean radiance; black without paths.
+    /// Returns the mean radiance; black if the pixel has no paths.
     pub fn mean(&self) -> DVec3 {
         self.sums.iter().map(|s| s.as_dvec3()).sum::<DVec3>() / f64::from(self.count.max(1))
     }
 
-    /// Means of the even and of the odd replications: independent if the pixel has at least two paths.
+    /// Returns the mean of the even and the mean of the odd replications. The two means are independent if the pixel
+    /// has at least two paths, and equal otherwise.
     pub fn halves(&self) -> [DVec3; 2] {
         [0, 1].map(|first| {
             let of = || (0..REPLICATIONS).zip(&self.sums).filter(|(replication, _)| replication % 2 == first);
@@ -73,8 +76,8 @@ impl Pixel {
         })
     }
 
-    /// Mean of the replications without the brightest and the darkest, averaged over the channels: robust against a
-    /// single bright path.
+    /// Returns the mean of the replications without the brightest and the darkest one, averaged over the channels. It
+    /// is robust against a single bright path.
     pub fn trimmed_mean(&self) -> f64 {
         let mut means: [f64; REPLICATIONS as usize] = std::array::from_fn(|i| {
             let paths = paths_of_replication(self.count, i as u32).max(1);
@@ -85,7 +88,7 @@ impl Pixel {
         middle.iter().sum::<f64>() / middle.len() as f64
     }
 
-    /// Unbiased estimate of the variance of the mean; infinite below two paths.
+    /// Returns an unbiased estimate of the variance of the mean; infinite for fewer than two paths.
     pub fn variance(&self) -> DVec3 {
         if self.count < 2 {
             return DVec3::INFINITY;
@@ -95,8 +98,8 @@ impl Pixel {
         for (replication, sum) in (0..REPLICATIONS).zip(&self.sums) {
             let paths = paths_of_replication(self.count, replication);
             if paths > 0 {
-                // Weight by the number of paths, as if the variance of a replication were inversely proportional to
-                // that number.
+                // Weight each replication by its number of paths, on the assumption that its variance is inversely
+                // proportional to this number.
                 let distance = sum.as_dvec3() / f64::from(paths) - mean;
                 squares += distance * distance * f64::from(paths);
                 used += 1;
@@ -131,7 +134,7 @@ mod tests {
 
     #[test]
     fn variance_is_that_of_the_mean_for_any_count() {
-        // Independent paths of variance 1/12.
+        // Each path contributes a uniform random number, whose variance is 1/12.
         for count in [2, 3, 5, 6, 8, 21] {
             let n = 20_000;
             let mut sum = 0.0;
@@ -142,7 +145,7 @@ mod tests {
                 sum += pixel.variance().x;
             }
             let ratio = sum / n as f64 * 12.0 * f64::from(count);
-            // The relative standard deviation of one variance estimate is below 1.5.
+            // The relative standard deviation of a single variance estimate is below 1.5.
             assert!((ratio - 1.0).abs() < 5.0 * 1.5 / (n as f64).sqrt(), "{count} paths: {ratio}");
         }
         assert_eq!(Pixel::default().variance(), DVec3::INFINITY);

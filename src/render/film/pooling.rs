@@ -1,15 +1,15 @@
-//! Pooling of variances over neighbouring pixels.
+//! Averages the variances of pixels over their neighbours, which makes them accurate enough for confidence intervals.
 
 use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Binomial weights of the pixels at a distance of 0, 1, 2, 3 along an axis. [bench error_control]
+/// Binomial weights of the pixels at distances 0, 1, 2 and 3 along an axis. [bench error_control]
 const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 
-/// Weighted means of the finite variances over the 7 × 7 pixels around each pixel; infinite where the pixel's own
-/// variance is infinite.
+/// Returns the weighted mean of the finite variances over the 7 × 7 pixels around each pixel; infinite where the
+/// pixel's own variance is infinite.
 pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
     let (width, height, channels) = (variance.width, variance.height, variance.channels);
     let mut along = Image::new(width, height, channels)?;
@@ -30,7 +30,8 @@ pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
     Ok(pooled)
 }
 
-/// Weighted mean of the finite values around a position on a line of `n`, per channel; infinite if no value is finite.
+/// Computes, per channel, the weighted mean of the finite values around position `at` on a line of `n` values;
+/// infinite if no value is finite.
 fn mean_around<'a>(at: usize, n: usize, out: &mut [f32], value: impl Fn(usize) -> &'a [f32]) {
     let radius = WEIGHTS.len() - 1;
     for (channel, out) in out.iter_mut().enumerate() {

@@ -1,8 +1,9 @@
-//! A prepass of a few paths over a scene, for the roulette weights of renders in parts (`roulette`).
+//! Prepass: traces a few paths over the scene, from which renders in parts take their weights for Russian roulette
+//! (see `roulette`).
 //!
 //! A render of the whole image takes these weights from its own earlier passes. The parts of a distributed render do
-//! not know each other's paths; instead each part traces the same few paths over the image and over each of its tiles,
-//! with equal results. These paths have seeds of their own and are not part of the image, so that they bias no
+//! not know each other's paths. Instead, each part traces the same few paths over the image and over each of its
+//! tiles, and gets the same weights. These paths have their own seeds and are not part of the image, so they bias no
 //! estimate.
 
 use super::block::seed_of;
@@ -19,11 +20,12 @@ use crate::render::world::World;
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
 
-/// Paths of each sampled pixel for the median radiance of the image. [origin not recorded]
+/// Paths per sampled pixel for the median radiance of the image. [origin not recorded]
 const PATHS: u32 = 4;
-/// Distance between the sampled pixels of a tile, with one path each. [origin not recorded]
+/// For the roulette weight of a tile, one path is traced through every pixel whose column and row are multiples of
+/// this stride. [origin not recorded]
 const STEP: usize = 2;
-/// Separates the random numbers of the prepass from those of the image.
+/// Salt of the prepass's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7375_7276_6579_6564;
 
 pub struct Prepass<'a> {
@@ -45,12 +47,12 @@ impl<'a> Prepass<'a> {
         Ok(prepass)
     }
 
-    /// Median radiance of the sampled pixels, per channel; `None` without pixels.
+    /// Returns the median radiance of the sampled pixels, per channel; `None` without pixels.
     pub fn median_radiance(&self) -> Option<DVec3> {
         self.median_radiance
     }
 
-    /// Roulette weight of the tile with this corner.
+    /// Returns the roulette weight of the tile whose first pixel is given.
     pub fn weight(&self, [left, top]: [usize; 2]) -> Option<Vec3> {
         let end = |start: usize, size: usize| (start + TILE).min(size);
         let (right, bottom) = (end(left, self.params.width), end(top, self.params.height));
@@ -61,10 +63,10 @@ impl<'a> Prepass<'a> {
             .map(|median_radiance| RouletteWeights::of(&pixels, median_radiance).weight(&Pixel::default()))
     }
 
-    /// Samples `count` paths of a pixel.
+    /// Traces `count` paths of a pixel and returns their sums.
     pub fn sample_pixel(&self, at: [usize; 2], count: u32) -> Pixel {
         let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: None };
-        // Drop paths that are not finite, as in the image, but do not count them.
+        // Drop paths whose radiance is not finite, as in the image, but do not report their number.
         let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));
         pixel.extend(count, |replication, indices| {
             let seed = seed_of(self.params.seed ^ SALT, at, replication);

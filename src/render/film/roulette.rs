@@ -1,8 +1,10 @@
-//! Weights for Russian roulette. Errors matter relative to the radiance of the pixel.
+//! Weights for the survival probabilities of Russian roulette. The weight of a pixel is the median radiance of the
+//! image relative to the radiance of the pixel.
 //!
-//! In relative terms, the same light changes a pixel in the shade more than a pixel under a lamp, and a black surface
-//! more than a white surface. Paths of dark pixels are therefore traced further. The weights come from earlier paths.
-//! Survival probabilities may depend on them without bias ([`super::super::sampler::Sampler::chance`]).
+//! Errors matter relative to the radiance of the pixel: the same light changes a pixel in the shade more than a pixel
+//! under a lamp, and a black surface more than a white one. Paths of dark pixels are therefore continued with a higher
+//! probability. The weights come from earlier paths. Survival probabilities may depend on earlier paths without bias
+//! ([`super::super::sampler::Sampler::chance`]).
 
 use super::grid::AREA;
 use super::pixel::Pixel;
@@ -12,21 +14,21 @@ use crate::image::try_collect;
 use crate::job::Job;
 use glam::{DVec3, Vec3};
 
-/// Number of paths as which a prior counts: the mean of the tile for a pixel, the median of the image for a tile.
-/// [origin not recorded]
+/// A mean is blended with a prior that counts as this number of paths. The prior of a pixel is the mean of its tile;
+/// the prior of a tile is the median of the image. [origin not recorded]
 const PRIOR_PATHS: f64 = 8.0;
-/// Largest ratio of the median radiance to a pixel's radiance that is used; the smallest ratio is its reciprocal.
-/// [origin not recorded]
+/// Upper bound on the ratio of the median radiance to a pixel's radiance; its reciprocal is the lower bound. [origin
+/// not recorded]
 const MAX_WEIGHT: f64 = 50.0;
 
-/// Median over the tiles of their mean radiance, per channel; `None` without any paths.
+/// Returns the median over all tiles of the tile's mean radiance, per channel; `None` if no pixel has paths.
 pub fn median_radiance(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
     let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
     let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;
     Ok(median(&try_collect(means.into_iter().flatten())?))
 }
 
-/// The median of each channel; `None` for an empty list.
+/// Returns the median of each channel; `None` for an empty list.
 pub fn median(means: &[DVec3]) -> Option<DVec3> {
     let median = |channel: usize| {
         let mut values: Vec<f64> = means.iter().map(|m| m[channel]).collect();
@@ -36,7 +38,7 @@ pub fn median(means: &[DVec3]) -> Option<DVec3> {
     (!means.is_empty()).then(|| DVec3::from_array([0, 1, 2].map(median)))
 }
 
-/// Mean of the pixels that have paths, and the number of their paths.
+/// Returns the mean radiance of the pixels that have paths, and the total number of their paths.
 pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f64)> {
     let (mut sum, mut count, mut paths) = (DVec3::ZERO, 0.0, 0.0);
     for pixel in pixels.into_iter().filter(|p| p.count() > 0) {
@@ -45,19 +47,20 @@ pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f
     (count > 0.0).then(|| (sum / count, paths))
 }
 
-/// Weight in `[0, 1)` of a mean of `paths` paths against a prior that counts as [`PRIOR_PATHS`] paths.
+/// Returns the weight, in `[0, 1)`, of a mean of `paths` paths against a prior that counts as [`PRIOR_PATHS`] paths.
 pub fn shrinkage(paths: f64) -> f64 {
     paths / (paths + PRIOR_PATHS)
 }
 
-/// The radiances that give the roulette weights of a tile: the median of the image, and the mean of the tile.
+/// Computes the roulette weights of a tile's pixels, from the median radiance of the image and the mean radiance of
+/// the tile (`tile`).
 pub struct RouletteWeights {
     median_radiance: DVec3,
     tile: DVec3,
 }
 
 impl RouletteWeights {
-    /// The weights of a tile from its pixels, with the [`median_radiance`] of the image.
+    /// Prepares the weights of a tile from its pixels and the [`median_radiance`] of the image.
     pub fn of(tile: &[Pixel], median_radiance: DVec3) -> Self {
         Self {
             median_radiance,
@@ -65,11 +68,11 @@ impl RouletteWeights {
         }
     }
 
-    /// Median radiance of the image relative to the radiance of a pixel, per channel; positive.
+    /// Returns the median radiance of the image relative to the radiance of a pixel, per channel; always positive.
     pub fn weight(&self, pixel: &Pixel) -> Vec3 {
         let radiance = self.tile.lerp(pixel.mean(), shrinkage(f64::from(pixel.count())));
         let weight = (self.median_radiance / radiance).clamp(DVec3::splat(1.0 / MAX_WEIGHT), DVec3::splat(MAX_WEIGHT));
-        // Where the median is 0, the channel is unknown: use 1.
+        // Use the weight 1 in channels whose median is 0, because the ratio says nothing there.
         DVec3::select(self.median_radiance.cmpgt(DVec3::ZERO), weight, DVec3::ONE).as_vec3()
     }
 }
@@ -90,7 +93,7 @@ mod tests {
         let job = Monitor::default();
         let unseen = vec![Pixel::default(); 3 * AREA];
         assert!(median_radiance(&unseen, job.job()).unwrap().is_none());
-        // A lamp in view does not change the median.
+        // One bright tile, a lamp in view, does not change the median.
         let mut pixels = unseen;
         for (tile, radiance) in [2.0, 1000.0, 0.5].into_iter().enumerate() {
             pixels[tile * AREA..(tile + 1) * AREA].fill(pixel(DVec3::new(radiance, radiance, 0.0), 64));
@@ -102,7 +105,7 @@ mod tests {
         };
         assert!((weight(0, &pixels[0]) - Vec3::ONE).abs().max_element() < 1e-5);
         assert!((weight(2, &pixels[2 * AREA]) - Vec3::new(4.0, 4.0, 1.0)).abs().max_element() < 0.05);
-        // With few paths, the tile determines the weight of a pixel that is dark by chance.
+        // The tile dominates the weight of a pixel that has few paths and is dark by chance.
         let dark = weight(0, &pixel(DVec3::ZERO, 1)).x;
         assert!(dark > 1.0 && dark < 1.2, "{dark}");
         // Weights are bounded on both sides.

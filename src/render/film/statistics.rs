@@ -1,4 +1,4 @@
-//! Error statistics of tiles and of the image.
+//! Error statistics of a tile or of the whole image, computed from the variances of the pixels.
 
 use super::canvas::Canvas;
 use super::grid::AREA;
@@ -12,23 +12,24 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::DVec3;
 
-/// In the error of the whole image, the error of a pixel is relative to its radiance, or to this share of the image's
-/// mean if the pixel is darker. The share may be lower than for targets on single pixels, where a dark pixel would hold
-/// up all others. [convention: the relative error is defined with it]
+/// In the relative error of the whole image, the error of a pixel is divided by its radiance. For pixels darker than
+/// this share of the image's mean, it is divided by this share of the mean. The share may be lower than for targets on
+/// single pixels, where one dark pixel would delay the whole image. [convention: the relative error is defined with
+/// it]
 const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
-/// Sums over the pixels of a tile or of the image.
+/// Sums of paths, radiance and variance over the pixels of a tile or of the image.
 #[derive(Clone, Copy, Default)]
 pub struct Statistics {
     pub paths: u64,
     pub pixels: u32,
-    /// Largest number of paths of a pixel.
+    /// Largest number of paths in a pixel.
     pub max_paths: u32,
-    /// Sum of the means of the pixels, averaged over the channels.
+    /// Sum over the pixels of their mean radiance, averaged over the channels.
     mean: f64,
-    /// Sum of the variances of these means.
+    /// Sum over the pixels of the variance of their mean radiance.
     variance: f64,
-    /// Sum of the variances of single paths.
+    /// Sum over the pixels of the variance of single paths.
     pub path_variance: f64,
 }
 
@@ -42,12 +43,12 @@ impl Statistics {
         self.path_variance += other.path_variance;
     }
 
-    /// Mean radiance of the pixels.
+    /// Returns the mean radiance of the pixels, averaged over the channels.
     pub fn mean_radiance(&self) -> f64 {
         self.mean / f64::from(self.pixels.max(1))
     }
 
-    /// Root mean square of the standard errors, relative to the mean radiance.
+    /// Returns the root mean square of the pixels' standard errors, divided by their mean radiance.
     pub fn error(&self) -> f64 {
         let variance = self.variance / f64::from(self.pixels.max(1));
         if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
@@ -55,20 +56,21 @@ impl Statistics {
 }
 
 impl Canvas<'_> {
-    /// The statistics of the whole image.
+    /// Returns the statistics of the whole image.
     pub fn total(&self, job: Job) -> Result<Statistics> {
         Ok(whole(&self.statistics(|_, _| 1.0, job)?))
     }
 
-    /// The statistics of the whole image, with the error of each pixel relative to its own radiance.
+    /// Returns the statistics of the whole image, in which the error of each pixel is relative to its own radiance.
     pub fn relative_total(&self, job: Job) -> Result<Statistics> {
         let mean = self.total(job.part(0.0, 0.0))?.mean_radiance();
         Ok(whole(&self.relative_statistics(mean, job)?))
     }
 
-    /// Statistics with relative errors. A pixel with a rare bright path has a large variance and a large mean; its
-    /// error is therefore taken relative to the mean without that path. With few paths, the mean of the tile is used
-    /// instead.
+    /// Returns the statistics of each tile, in which errors are relative to the radiance of the pixel; `mean` is the
+    /// mean of the image. A pixel with a rare bright path has a large variance and a large mean. Its error is
+    /// therefore divided by a mean that excludes that path ([`Pixel::trimmed_mean`]), blended with the mean of the
+    /// tile if there are few paths.
     pub fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
         let weight = |pixel: &Pixel, tile: f64| {
             let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
@@ -77,7 +79,8 @@ impl Canvas<'_> {
         self.statistics(weight, job)
     }
 
-    /// `weight` is the factor on the error of a pixel, given the mean of its tile.
+    /// Returns the statistics of each tile. `weight` computes the factor on the error of a pixel from the pixel and
+    /// the mean radiance of its tile.
     pub fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
         exec::map(self.grid.tiles(), job, |tile| {
             let mut sum = Statistics::default();
@@ -95,14 +98,14 @@ impl Canvas<'_> {
         })
     }
 
-    /// For each tile, the mean square over its pixels of the half-width of the 95 % interval, relative to the luminance
-    /// of the pixel or to `floor` if the pixel is darker.
+    /// Returns for each tile the mean square of the relative errors of its pixels. The relative error of a pixel is
+    /// the half-width of its 95 % confidence interval, divided by its luminance, or by `floor` if the pixel is darker.
     pub fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
         let variance = pooled(&self.variance(job)?, job)?;
         exec::map(self.grid.tiles(), job, |tile| {
             let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
             let square = |(x, y): (usize, usize)| {
-                // Add standard errors instead of variances, because the channels are correlated within a path.
+                // Add standard errors rather than variances, because the noise of the channels is correlated.
                 let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
                 let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
                 if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }
@@ -112,12 +115,12 @@ impl Canvas<'_> {
     }
 }
 
-/// Mean of the channels.
+/// Returns the mean of the channels.
 fn average(v: DVec3) -> f64 {
     v.element_sum() / 3.0
 }
 
-/// Sums of the statistics of all tiles.
+/// Adds up the statistics of all tiles.
 pub fn whole(statistics: &[Statistics]) -> Statistics {
     let mut whole = Statistics::default();
     statistics.iter().for_each(|t| whole.add(t));

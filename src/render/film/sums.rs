@@ -1,8 +1,9 @@
-//! Sums over some paths of some pixels, which add up with the sums of other paths and pixels to an image.
+//! Lossless sums of a rendered part: some paths of some pixels. Added to the sums of all other paths and pixels, they
+//! give the image.
 //!
-//! The path of a given index in a pixel is the same in every part, as are its replication and its position in the point
-//! sequence. The sums are in f64, so that the order and the partition of the additions hardly ever change the f32
-//! image.
+//! The path with a given index in a pixel is the same in every part; it belongs to the same replication and has the
+//! same position in the point sequence. The sums are in f64, so that the f32 image hardly ever depends on how the
+//! paths are divided into parts or in which order the sums are added.
 
 use super::block::{BlockPixel, BlockTracer, blocks};
 use super::eye::Eye;
@@ -22,27 +23,27 @@ use crate::scene::Camera;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Numbers per pixel for the radiance: three for each replication.
+/// Length of the radiance sums of a pixel: three channels for each replication.
 const LIGHT: usize = 3 * REPLICATIONS as usize;
-/// Paths of a pixel between two checks for cancellation. [convention]
+/// Number of paths of a pixel between two checks for cancellation. [convention]
 const SLICE: u32 = 16;
 
-/// The sums of a part.
+/// The sums of a part, for each of its pixels.
 pub struct Sums {
     part: Part,
-    /// First pixel of the tiles that the part touches.
+    /// First pixel of the tile that contains the part's first pixel; `grid` starts there.
     corner: [usize; 2],
     grid: Grid,
-    /// Numbers per pixel: radiance, then layers.
+    /// Length of a pixel's sums in numbers: radiance sums, then the sums of the layers.
     width: usize,
-    /// The sums of all pixels, `width` numbers for each; the pixels are ordered tile by tile.
+    /// The sums of all pixels in `grid`, tile by tile, `width` numbers for each pixel.
     numbers: Vec<f64>,
     /// Number of paths dropped because their radiance was not finite.
     discarded: u64,
 }
 
 impl Sums {
-    /// Sums without any paths.
+    /// Returns the sums of a part without any paths.
     pub fn new(part: &Part, layers: Option<&Layers>) -> Result<Self> {
         let corner = [part.x / TILE * TILE, part.y / TILE * TILE];
         let grid = Grid { width: part.x + part.width - corner[0], height: part.y + part.height - corner[1] };
@@ -51,7 +52,7 @@ impl Sums {
         Ok(Self { part: *part, corner, grid, width, numbers, discarded: 0 })
     }
 
-    /// Sums of the paths of a part.
+    /// Traces the paths of a part and returns their sums.
     pub fn trace(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Self> {
         let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
         let mut sums = Self::new(part, layers.as_ref())?;
@@ -66,8 +67,8 @@ impl Sums {
                 roulette_weight: prepass.weight([corner[0] + left, corner[1] + top]),
             };
             let mut tracer = BlockTracer::new(layers.as_ref());
-            // The paths of a block share secondary vertices, so its pixels outside this part are traced too. Their
-            // layers go into this buffer, which is never read.
+            // The paths of a block share secondary vertices, so the pixels of the block outside this part are traced
+            // too. The layers of these pixels go into this buffer, which is never read.
             let mut others_of_neighbours = vec![0.0; *width - LIGHT];
             for replication in 0..REPLICATIONS {
                 for block in blocks(replication) {
@@ -112,7 +113,7 @@ impl Sums {
         Ok(sums)
     }
 
-    /// Adds the sums of a part that lies within this one.
+    /// Adds the sums of `other`, a part that lies within this one.
     pub fn join(&mut self, other: &Self, layers: Option<&Layers>, job: Job) -> Result<()> {
         let Self { corner, grid, width, numbers, .. } = self;
         exec::for_rows(numbers, AREA * *width, job, |tile, numbers| {
@@ -145,19 +146,20 @@ impl Sums {
         self.discarded = discarded;
     }
 
-    /// Numbers per pixel.
+    /// Returns the length of a pixel's sums in numbers.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// The sums of each replication, beginning with the replication of the first path, and the sums of the layers.
+    /// Returns the radiance sum of each replication, beginning with the replication of the part's first path, and the
+    /// sums of the layers.
     pub fn pixel(&self, x: usize, y: usize) -> ([DVec3; REPLICATIONS as usize], &[f64]) {
         let (light, others) = self.numbers([x, y]).split_at(LIGHT);
         let first = self.part.first as usize;
         (std::array::from_fn(|i| DVec3::from_slice(&light[3 * ((first + i) % REPLICATIONS as usize)..])), others)
     }
 
-    /// All numbers of a pixel of the part.
+    /// Returns all sums of a pixel of the part: radiance, then layers.
     pub fn numbers(&self, at: [usize; 2]) -> &[f64] {
         &self.numbers[self.place(at)..][..self.width]
     }

@@ -1,4 +1,4 @@
-//! Traces the paths of one tile of the image, pass by pass.
+//! One tile of the image in a pass: traces the paths of its pixels, alone or in blocks.
 
 use super::block::{BlockPixel, BlockTracer, blocks, seed_of};
 use super::eye::{Eye, paths};
@@ -12,30 +12,31 @@ use crate::render::world::World;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Paths of a pixel between two checks of the clock, for single pixels and for blocks. [convention]
+/// Number of paths of a pixel between two checks of the clock: when pixels are traced alone (`SLICE`), and in blocks
+/// (`BLOCK_SLICE`). [convention]
 const SLICE: u32 = 64;
 const BLOCK_SLICE: u32 = 16;
 
-/// Context common to all tiles.
+/// The data that the tracing of all tiles shares.
 #[derive(Clone, Copy)]
 pub struct TileContext<'a> {
     pub world: &'a World,
     pub eye: &'a Eye,
     pub seed: u64,
     pub grid: Grid,
-    /// Median radiance of the image's tiles.
+    /// Median of the mean radiances of the image's tiles; `None` before the first path.
     pub median_radiance: Option<DVec3>,
     /// Number of paths dropped because their radiance was not finite.
     pub discarded: &'a AtomicU64,
 }
 
-/// A tile that a worker processes.
+/// A tile while one worker thread traces its paths.
 pub struct Tile<'a> {
     context: TileContext<'a>,
     number: usize,
     pixels: &'a mut [Pixel],
     roulette: Option<RouletteWeights>,
-    /// The totals of its layers.
+    /// The film totals of the tile's layers.
     totals: Option<TileTotals<'a>>,
     tracer: BlockTracer<'a>,
 }
@@ -58,9 +59,9 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// Extends the paths of every pixel to the counts of a pass, or until the time is over.
+    /// Traces paths until every pixel has the number of paths that `pass` asks for, or until `is_over` returns true.
     pub fn extend(&mut self, pass: &Pass, is_over: impl Fn() -> bool) {
-        // Trace the first path of each pixel alone, as in coarse passes; trace the others in blocks.
+        // Trace the first path of each pixel alone, as coarse passes do; trace all further paths in blocks.
         for i in 0..AREA {
             let Some((x, y)) = self.context.grid.place(self.number, i) else { continue };
             let wanted = pass.count(self.number, x, y);
@@ -86,7 +87,7 @@ impl<'a> Tile<'a> {
         PathLength { max_bounces: MAX_BOUNCES, roulette_weight }
     }
 
-    /// Extends the paths of a single pixel.
+    /// Traces paths of a single pixel until it has `count` paths.
     fn extend_pixel(&mut self, pixel: usize, at: [usize; 2], count: u32) {
         let length = self.length(pixel);
         let TileContext { world, eye, seed, discarded, .. } = self.context;
@@ -100,7 +101,7 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// Extends the paths of all pixels, which have equal counts, in blocks.
+    /// Traces paths in blocks until every pixel has `count` paths. All pixels must have equal numbers of paths before.
     fn extend_blocks(&mut self, count: u32) {
         let TileContext { world, eye, seed, grid, discarded, .. } = self.context;
         let places: [_; AREA] = std::array::from_fn(|i| grid.place(self.number, i));

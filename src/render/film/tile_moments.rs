@@ -1,4 +1,4 @@
-//! A first look at all tiles of an image with few paths: mean and variance of the radiance of each tile.
+//! A first look at all tiles of an image with few paths: the mean and the variance of each tile's radiance.
 
 use super::grid::{Grid, TILE};
 use super::prepass::Prepass;
@@ -6,14 +6,14 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// The paths of a tile are reduced, down to their minimum, until all tiles together have at most this number of paths.
-/// [origin not recorded]
+/// The paths per tile are reduced until all tiles together have at most this number of paths, but not below
+/// `MIN_ALONG` × `MIN_ALONG`. [origin not recorded]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
-/// Largest and smallest number of paths along each side of a tile: powers of two, as its side is.
+/// Largest and smallest number of paths along each side of a tile. Both are powers of two, as is the side of a tile.
 const MAX_ALONG: usize = TILE;
 const MIN_ALONG: usize = 2;
 
-/// Moments of a tile's radiance, averaged over the channels.
+/// Moments of a tile's radiance, which is averaged over the channels.
 #[derive(Clone, Copy)]
 pub struct TileMoments {
     /// Mean radiance.
@@ -22,7 +22,7 @@ pub struct TileMoments {
     pub variance: f64,
 }
 
-/// The moments of all tiles.
+/// Estimates the moments of all tiles.
 pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileMoments>> {
     let mut along = MAX_ALONG;
     while along > MIN_ALONG && grid.tiles() * along * along > MAX_TOTAL_PATHS {
@@ -32,8 +32,8 @@ pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileM
 }
 
 impl TileMoments {
-    /// Traces one path in each of `along` by `along` squares of a tile, at a different position in each row of
-    /// squares.
+    /// Traces one path in each of `along` × `along` squares of a tile. The position within the square differs from
+    /// square to square in a row.
     fn of(prepass: &Prepass, grid: Grid, tile: usize, along: usize) -> Self {
         let (left, top) = grid.corner(tile);
         let (mut sum, mut squares) = (0.0, 0.0);

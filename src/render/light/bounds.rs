@@ -1,9 +1,10 @@
-//! Bounds of the positions, directions and intensities of lights, and the importance of a cluster of lights for a
-//! receiver.
+//! Bounds on the positions, directions and intensities of a cluster of lights, and the cluster's importance for a
+//! receiver, by which the light tree selects lights.
 //!
-//! The importance of a cluster is its intensity times bounds of the cosines at the emitters and at the receiver,
-//! divided by the squared distance (Conty Estevez and Kulla 2018, "Importance sampling of many lights with adaptive
-//! tree splitting", section 4). It is never 0 where light of the cluster could arrive.
+//! The importance is the intensity of the cluster, times an upper bound of the cosine at the emitters, times an upper
+//! bound of the cosine at the receiver, divided by the squared distance (Conty Estevez and Kulla 2018, "Importance
+//! sampling of many lights with adaptive tree splitting", section 4). It is never 0 if light of the cluster can reach
+//! the receiver.
 
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -12,32 +13,32 @@ use std::f32::consts::{FRAC_PI_2, PI};
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
     pub position: Vec3,
-    /// Unit normal of the lit side.
+    /// Unit normal on the side that receives light.
     pub normal: Vec3,
 }
 
-/// Bounds of one light or of several.
+/// Bounds of a single light or of a cluster of lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     pub low: Vec3,
     pub high: Vec3,
-    /// Unit axis of the emission, or 0 if `cone_angle` covers all directions. The intensity vanishes beyond
-    /// `cone_angle` (radians) from the axis. Within cone_angle - 90° of the axis, the intensity may be full. At a
-    /// larger angle θ from the axis, it is at most cos(θ + 90° - cone_angle) times full intensity: with a cone angle of
-    /// 90° it falls with the cosine.
+    /// Unit axis of the emission; 0 if `cone_angle` covers all directions. `cone_angle` is in radians, and no light is
+    /// emitted at a larger angle to the axis. Up to an angle of cone_angle - 90°, the bound is the full intensity. At
+    /// a larger angle θ, it is the full intensity times cos(θ + 90° - cone_angle). So with a cone angle of 90°, the
+    /// bound falls with the cosine, as for a flat surface.
     pub axis: Vec3,
     pub cone_angle: f32,
-    /// Whether every light also emits backwards.
+    /// Whether all lights of the cluster also emit backwards.
     pub two_sided: bool,
-    /// Sum of the luminous intensities along the axis in cd, mean of the channels.
+    /// Sum of the lights' full luminous intensities in cd, mean of the channels.
     pub intensity: f32,
 }
 
-/// The cone angle of a light with full intensity in all directions. [convention]
+/// The cone angle of a light that may have full intensity in all directions. [convention]
 const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
 impl Bounds {
-    /// A flat surface; `points` must enclose it.
+    /// Returns the bounds of a flat emitting surface; `points` are corners of a polygon that encloses it.
     pub fn of_surface(points: impl IntoIterator<Item = Vec3>, normal: Vec3, two_sided: bool, intensity: f32) -> Self {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for point in points {
@@ -50,15 +51,16 @@ impl Bounds {
         Self { low: position, high: position, axis: Vec3::ZERO, cone_angle: FULL_SPHERE, two_sided: false, intensity }
     }
 
-    /// A point light that emits up to an angle off its axis.
+    /// Returns the bounds of a point light that emits up to `angle` (radians) off its axis.
     pub fn of_cone(position: Vec3, axis: Vec3, angle: f32, intensity: f32) -> Self {
         Self { axis, cone_angle: angle, ..Self::of_point(position, intensity) }
     }
 
-    /// Bounds of all `parts` together; there must be at least one part.
+    /// Returns the bounds of all `parts` together; there must be at least one part.
     pub fn union(parts: &[Self]) -> Self {
         let mut whole = parts[0];
-        // Average the axes by intensity; the axes of two-sided lights have an arbitrary sign.
+        // Average the axes, weighted by intensity. The axis of a two-sided light may point either way, so it is
+        // flipped into the half-space of the other axes.
         let mut sum = Vec3::ZERO;
         whole.intensity = 0.0;
         for part in parts {
@@ -75,7 +77,7 @@ impl Bounds {
             let cosine = whole.axis.dot(part.axis);
             let cosine = if whole.two_sided { cosine.abs() } else { cosine };
             let one_way = whole.two_sided || !part.two_sided;
-            // Treat axes that agree up to rounding as equal: flat clusters are the common case.
+            // Treat axes that agree up to rounding as equal, since most clusters are flat.
             let angle = if cosine > 1.0 - 1e-6 { 0.0 } else { cosine.clamp(-1.0, 1.0).acos() };
             whole.cone_angle =
                 whole.cone_angle.max(if one_way { angle + part.cone_angle } else { FULL_SPHERE }).min(FULL_SPHERE);
@@ -86,7 +88,8 @@ impl Bounds {
         whole
     }
 
-    /// Whether two lights have the same importance for every receiver, up to a factor.
+    /// Whether the bounds of two lights are equal except for the intensity. The ratio of the lights' importances is
+    /// then the same for every receiver.
     pub fn differs_only_in_intensity(&self, other: &Self) -> bool {
         Self { intensity: 0.0, ..*self } == Self { intensity: 0.0, ..*other }
     }
@@ -101,35 +104,38 @@ impl Bounds {
     }
 }
 
-/// Number of bounds evaluated together, one per SIMD lane. [convention]
+/// Number of clusters whose importance is computed together, one per SIMD lane. [convention]
 pub const LANES: usize = 8;
 type Lanes = [f32; LANES];
 
-/// Bounds of several clusters in structure-of-arrays layout. Empty lanes have zero intensity.
+/// Bounds of up to [`LANES`] clusters in structure-of-arrays layout. Unused lanes have zero intensity.
 #[derive(Clone)]
 #[repr(align(32))]
 pub struct BoundsLanes {
     centre: [Lanes; 3],
-    /// Half the size of the box, widened by the rounding error of a point.
+    /// Half-extents of the box, widened by the rounding error of a point.
     half: [Lanes; 3],
-    /// Reciprocal of the squared distance from the centre to a corner.
+    /// Reciprocal of the squared distance from the centre of the box to a corner.
     inverse_square: Lanes,
     axis: [Lanes; 3],
-    /// Half-extent of the box along the axis; the radius of the box if the cone angle is not 90°.
+    /// Half-extent of the box along the axis of the emission; if the cone angle is not 90°, half the diagonal of the
+    /// box.
     box_extent: Lanes,
-    /// -1 for two-sided lights, else 1.
+    /// -1 for two-sided lights, 1 for all others.
     back_sign: Lanes,
-    /// Sine and cosine of `cone_angle` - 90°, and the smallest cosine of full intensity.
+    /// Sine and cosine of `cone_angle` - 90° (`cone_rotation`), and the smallest cosine to the axis at which the bound
+    /// is the full intensity (`full_cosine`).
     cone_rotation: [Lanes; 2],
     full_cosine: Lanes,
     intensity: Lanes,
 }
 
-/// A cosine may be positive if its bound is above minus this margin, because of rounding. [rounding]
+/// The true cosine may be positive if its computed upper bound exceeds minus this margin, because the bound is
+/// rounded. [rounding]
 const MARGIN: f32 = 1e-4;
 
 impl BoundsLanes {
-    /// `scale` multiplies the intensities.
+    /// Builds the lanes from at most [`LANES`] bounds, whose intensities are multiplied by `scale`.
     pub fn new(bounds: impl IntoIterator<Item = Bounds>, scale: f32) -> Self {
         let zero = [0.0; LANES];
         let mut lanes = Self {
@@ -161,30 +167,31 @@ impl BoundsLanes {
             lanes.cone_rotation[1][i] = cosine;
             let narrow = b.cone_angle < FRAC_PI_2;
             lanes.full_cosine[i] = if narrow { 2.0 } else { cosine };
-            // Normalise narrow cones to full intensity on their axis.
+            // Scale cones narrower than 90° so that the bound on their axis is the full intensity.
             lanes.intensity[i] = b.intensity * scale / if narrow { cosine.max(0.05) } else { 1.0 };
         }
         lanes
     }
 
-    /// The importance of each cluster for a receiver. `nearest` (squared, positive) is the smallest distance that
-    /// counts.
+    /// Returns the importance of each cluster for a receiver. The squared distance counts as at least `nearest`, which
+    /// must be positive.
     pub fn importance(&self, receiver: &Receiver, nearest: f32) -> Lanes {
         let (p, n, m) = (receiver.position, receiver.normal, receiver.normal.abs());
-        // Evaluate lane by lane without branches, so that the compiler can vectorise.
+        // Evaluate all lanes without branches, so that the compiler vectorises the loop.
         let mut importance = [0.0; LANES];
         for i in 0..LANES {
             let d = [self.centre[0][i] - p.x, self.centre[1][i] - p.y, self.centre[2][i] - p.z];
             let squared = larger(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], nearest);
             let inverse = 1.0 / squared.sqrt();
-            // Bound the cosine at the emitters: the angle to the axis minus `cone_angle` plus 90°, widened by the box.
+            // Bound the cosine at the emitters. Its angle is the angle to the axis, reduced by `cone_angle` - 90° and
+            // by the extent of the box.
             let cosine = -(self.axis[0][i] * d[0] + self.axis[1][i] * d[1] + self.axis[2][i] * d[2]) * inverse;
             let cosine = larger(cosine, cosine * self.back_sign[i]);
             let sine = larger(1.0 - cosine * cosine, 0.0).sqrt();
             let turned = cosine * self.cone_rotation[1][i] + sine * self.cone_rotation[0][i];
             let turned = if cosine >= self.full_cosine[i] { 1.0 } else { turned };
             let emitted = turned + self.box_extent[i] * inverse;
-            // Bound the cosine at the receiver.
+            // Bound the cosine at the receiver, which is largest at a corner of the box.
             let reached = n.x * d[0] + n.y * d[1] + n.z * d[2];
             let widened = m.x * self.half[0][i] + m.y * self.half[1][i] + m.z * self.half[2][i];
             let received = (reached + widened) * inverse;
@@ -195,7 +202,7 @@ impl BoundsLanes {
     }
 }
 
-/// Clamps the bound of a cosine to [`MARGIN`, 1]; 0 only where it is clearly negative.
+/// Clamps the bound of a cosine to [`MARGIN`, 1]; returns 0 if the cosine is certainly negative.
 fn clamp_cosine(cosine: f32) -> f32 {
     let positive = smaller(larger(cosine, MARGIN), 1.0);
     if cosine < -MARGIN { 0.0 } else { positive }

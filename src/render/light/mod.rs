@@ -1,9 +1,9 @@
-//! Light sampling: the distribution over all lights of a scene, the points on them, and their pdf.
+//! Light sampling: selects one of a scene's lights, samples a point on it, and computes the pdf.
 //!
-//! A [`LightTree`] selects among lights at finite distance (pieces of surfaces, points and spots) by their importance
-//! for the receiver. Directional lights and the environment, infinitely far away, are groups of their own. Half of the
-//! selection probability of a group is proportional to its power, and half is uniform. Power alone ignores occlusion by
-//! walls and could leave a group with too few samples.
+//! A [`LightTree`] selects among the lights at a finite distance (pieces of emissive surfaces, points, spots and
+//! luminaires) by their importance for the receiver. The directional lights form a second group, and the environment a
+//! third. Half of the probability is divided among the groups in proportion to their power, and half is divided
+//! equally. Power alone would ignore occlusion by walls and could leave a group with too few samples.
 
 pub(super) mod bounds;
 mod punctual;
@@ -25,31 +25,32 @@ use tree::LightTree;
 pub struct Lights {
     pub emitters: Emitters,
     punctual: Vec<Punctual>,
-    /// Selects among the lights at a finite distance: first the pieces of the emitters, then the points, spots and
-    /// luminaires.
+    /// Selects among the lights at a finite distance. Their indices in the tree count first the pieces of the
+    /// emitters, then the points, spots and luminaires.
     tree: LightTree,
     pieces: usize,
-    /// For each light of the tree after the pieces, its index among the punctual lights.
+    /// For each light of the tree after the pieces, its index among the punctual lights of the scene.
     near: Vec<u32>,
-    /// Selects among the directional lights; all other punctual lights have zero weight.
+    /// Selects among the directional lights. It has an entry for every punctual light; all others have zero weight.
     directional: Distribution,
     environment: Option<EnvironmentSampler>,
-    /// Selection probabilities of the groups: lights at a finite distance, directional lights, environment.
+    /// Selection probabilities of the three groups: lights at a finite distance, directional lights, environment.
     groups: [f64; 3],
 }
 
-/// A light sample at a receiver.
+/// A sample of the light that reaches a receiver.
 pub struct LightSample {
     pub source: LightSource,
     /// Unit direction from the receiver to the light.
     pub direction: Vec3,
-    /// The sampled position; `None` if infinitely far away.
+    /// The sampled position; `None` if it is infinitely far away.
     pub end: Option<LightEnd>,
-    /// Radiance in cd/m², intensity in cd, or illuminance in lux, depending on the light.
+    /// Radiance in cd/m² of a surface or the environment, intensity in cd of a punctual light at a finite distance, or
+    /// illuminance in lux of a directional light.
     pub emission: Vec3,
-    /// `emission / pdf` estimates the illuminance of a surface perpendicular to the light. `pdf` is the solid-angle pdf
-    /// for surfaces and the environment, the pmf × squared distance for punctual lights at a finite distance, and the
-    /// pmf for directional lights.
+    /// The divisor of the light sample: `emission / pdf` estimates the illuminance on a surface perpendicular to
+    /// `direction`. It is the solid-angle pdf for surfaces and the environment, pmf × squared distance for punctual
+    /// lights at a finite distance, and the pmf for directional lights.
     pub pdf: f32,
     /// Solid-angle pdf for MIS against BSDF samples; `None` for punctual lights, which no BSDF sample can hit.
     pub mis_pdf: Option<f32>,
@@ -57,13 +58,13 @@ pub struct LightSample {
 
 pub enum LightEnd {
     Point(Vec3),
-    /// Index of an emitter, and the barycentric coordinates of the point on it.
+    /// A point on an emissive triangle: index of the emitter, and barycentric coordinates.
     Emitter(usize, Vec2),
 }
 
 impl Lights {
-    /// `pieces` are the bounds of the emitters' pieces. Positions are relative to `centre`; `radius` is the radius of
-    /// the scene.
+    /// Builds the distribution over all lights. `pieces` are the bounds of the emitters' pieces. Positions are
+    /// relative to `centre`; `radius` is the radius of the scene in metres.
     pub fn build(scene: &Scene, emitters: Emitters, pieces: Vec<Bounds>, centre: DVec3, radius: f32) -> Result<Self> {
         let count = pieces.len();
         let mut bounds = pieces;
@@ -86,7 +87,7 @@ impl Lights {
             Some((sampler, mean)) => (Some(sampler), mean),
             None => (None, 0.0),
         };
-        // Take the flux through a sphere around the scene as the environment's power.
+        // Take the flux through the surface of a sphere around the scene as the environment's power.
         let r2 = f64::from(radius).powi(2).max(f64::MIN_POSITIVE);
         let powers = [near_power, directional.total(), mean * PI * 4.0 * PI * r2];
         let present = powers.iter().filter(|&&p| p > 0.0).count().max(1) as f64;
@@ -104,12 +105,13 @@ impl Lights {
         })
     }
 
-    /// Number of pieces of surfaces that emit.
+    /// Returns the number of pieces of emissive surfaces.
     pub fn pieces(&self) -> usize {
         self.pieces
     }
 
-    /// Samples a light for a receiver: `u` selects the light; its remainder and `v` select the point on it.
+    /// Samples a light for a receiver: `u` selects the light. The remainder of `u`, rescaled to `[0, 1)`, and `v`
+    /// select the point on the light. Returns `None` if no light can be sampled or the sampled point faces away.
     #[inline]
     pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {
         let [near, directional, environment] = self.groups;
@@ -196,8 +198,9 @@ impl Lights {
         })
     }
 
-    /// Solid-angle pdf with which [`Lights::sample`] draws a point of an emitter along a unit direction. The emission
-    /// and the texture coordinates of the point are those that [`super::emissive::Emitter::emission`] returns.
+    /// Returns the solid-angle pdf with which [`Lights::sample`] draws a point of an emitter. The point lies along the
+    /// unit vector `direction` at `distance`; its emission and texture coordinates are those that
+    /// [`super::emissive::Emitter::emission`] returns.
     pub fn surface_pdf(
         &self,
         receiver: &Receiver,
@@ -212,13 +215,13 @@ impl Lights {
         to_solid_angle(pdf, self.emitters.emitters[emitter].normal.dot(direction), distance)
     }
 
-    /// Solid-angle pdf with which [`Lights::sample`] draws a direction of the environment.
+    /// Returns the solid-angle pdf with which [`Lights::sample`] draws a direction towards the environment.
     pub fn environment_pdf(&self, direction: Vec3) -> f32 {
         self.environment.as_ref().map_or(0.0, |e| e.pdf(direction) * self.groups[2] as f32)
     }
 }
 
-/// Converts an area pdf to a solid-angle pdf.
+/// Converts an area pdf to a solid-angle pdf; `cosine` is the cosine at the light.
 fn to_solid_angle(pdf: f32, cosine: f32, distance: f32) -> f32 {
     pdf * distance * distance / cosine.abs()
 }

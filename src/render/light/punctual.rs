@@ -1,4 +1,5 @@
-//! Punctual lights: points, spots, directional lights (`KHR_lights_punctual`) and measured luminaires.
+//! Punctual lights prepared for light sampling: points, spots, directional lights (`KHR_lights_punctual`) and measured
+//! luminaires.
 
 use super::bounds::Bounds;
 use crate::photometry::Luminaire;
@@ -8,28 +9,28 @@ use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// A punctual light prepared for sampling.
+/// A punctual light in the form that light sampling needs.
 pub enum Punctual {
     Near {
         position: Vec3,
         intensity: Vec3,
         shape: Shape,
     },
-    /// Infinitely far away; `towards` is the unit direction to the light.
+    /// A directional light, infinitely far away; `towards` is the unit direction to the light.
     Far {
         towards: Vec3,
         illuminance: Vec3,
     },
 }
 
-/// Dependence of the intensity on the direction.
+/// How the intensity of a light depends on the direction.
 pub enum Shape {
     Isotropic,
     Cone(Cone),
     Measured(Measured),
 }
 
-/// A measured luminous intensity distribution with its axes.
+/// A measured luminous intensity distribution with the axes of the luminaire.
 pub struct Measured {
     axis: Vec3,
     c0: Vec3,
@@ -37,7 +38,7 @@ pub struct Measured {
     luminaire: Arc<Luminaire>,
 }
 
-/// glTF's spot cone: the square of `(cosine - outer) * scale`, clamped to [0, 1].
+/// The spot cone of glTF: the factor on the intensity is the square of `(cosine - outer) * scale`, clamped to [0, 1].
 pub struct Cone {
     axis: Vec3,
     outer: f32,
@@ -45,7 +46,7 @@ pub struct Cone {
 }
 
 impl Punctual {
-    /// `distributions` are those of the scene.
+    /// Prepares a light; `distributions` are the luminous intensity distributions of the scene.
     pub fn new(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Self {
         match *light {
             PunctualLight::Point { position, intensity } => Self::Near { position, intensity, shape: Shape::Isotropic },
@@ -69,7 +70,7 @@ impl Punctual {
         }
     }
 
-    /// Bounds of an emissive light at a finite distance; `None` for others.
+    /// Returns the bounds of a light at a finite distance; `None` if the light is directional or dark.
     pub fn bounds(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Option<Bounds> {
         let bounds = match *light {
             PunctualLight::Point { position, intensity } => {
@@ -77,14 +78,14 @@ impl Punctual {
             }
             PunctualLight::Spot { position, direction, intensity, outer_angle, .. } => {
                 let axis = direction.normalize_or(Vec3::Y);
-                // Widen the cone slightly, against rounding.
+                // Widen the cone slightly, to allow for rounding.
                 Bounds::of_cone(position, axis, outer_angle + 0.01, mean_channel(intensity.max(Vec3::ZERO)))
             }
             PunctualLight::Directional { .. } => return None,
             PunctualLight::Luminaire { position, axis, colour, distribution, .. } => {
                 let luminaire = &*distributions[distribution];
                 // Assume full intensity up to the widest angle at which the luminaire emits, plus a margin for
-                // rounding. Bounds have full intensity up to 90° less than the cone angle, so 90° are added.
+                // rounding. The bounds have full intensity up to `cone_angle` - 90°, so add 90°.
                 let cone_angle = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
                 let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
                 Bounds::of_cone(position, axis, cone_angle, peak * mean_channel(colour.max(Vec3::ZERO)))
@@ -93,7 +94,9 @@ impl Punctual {
         (bounds.intensity > 0.0).then_some(bounds)
     }
 
-    /// Luminous flux in lumens; for directional lights the flux through a sphere around the scene.
+    /// Returns the luminous flux in lumens by which groups of lights are selected. A spot counts with its full
+    /// intensity throughout the outer cone, a directional light with the flux through the cross-section of a sphere
+    /// around the scene.
     pub fn flux(light: &PunctualLight, distributions: &[Arc<Luminaire>], radius: f32) -> f64 {
         let (solid_angle_or_area, strength) = match *light {
             PunctualLight::Point { intensity, .. } => (4.0 * std::f64::consts::PI, intensity),
@@ -109,7 +112,7 @@ impl Punctual {
     }
 }
 
-/// The light with its position relative to a centre.
+/// Returns the light with its position relative to `centre`.
 pub fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
     let mut light = *light;
     match &mut light {
@@ -124,7 +127,8 @@ pub fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
 }
 
 impl Shape {
-    /// Factor on the intensity in a unit direction: a share, or the candelas of a measured luminaire.
+    /// Returns the factor on the intensity in a unit direction: a share in `[0, 1]`, or for a measured luminaire the
+    /// intensity in candela.
     pub fn factor(&self, direction: Vec3) -> f32 {
         match self {
             Self::Isotropic => 1.0,
@@ -144,7 +148,7 @@ impl Measured {
 }
 
 impl Cone {
-    /// Intensity in a unit direction relative to the intensity on the axis.
+    /// Returns the intensity in a unit direction, relative to the intensity on the axis.
     pub fn share(&self, direction: Vec3) -> f32 {
         let x = ((direction.dot(self.axis) - self.outer) * self.scale).clamp(0.0, 1.0);
         x * x

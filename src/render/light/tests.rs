@@ -1,4 +1,5 @@
-//! Light sampling: observed frequencies against stated probabilities, and estimates against closed forms.
+//! Tests of light sampling: sampled frequencies against stated probabilities, and estimates of irradiance against
+//! closed forms.
 
 use super::*;
 use crate::exec::Pool;
@@ -24,7 +25,8 @@ fn within(rng: &mut Rng, side: f32) -> Vec3 {
     (Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) - 0.5) * side
 }
 
-/// Triangles of all sizes, one-sided and two-sided, points and cones, at `offset` from the origin.
+/// Bounds and corners of random lights near `offset`: points, cones, and one-sided and two-sided triangles of all
+/// sizes.
 fn lights(count: usize, offset: Vec3, rng: &mut Rng) -> Vec<(Bounds, [Vec3; 3])> {
     let mut light = |i: usize| {
         let intensity = 10f32.powf(4.0 * rng.next_f32() - 2.0);
@@ -65,14 +67,13 @@ fn sampled_lights_follow_the_pmf_of_the_tree() {
             assert!(total < 1.0 + 1e-5);
             let mut counts = vec![0.0; count + 1];
             for i in 0..n {
-                // Stratify the samples: chi-squared then stays even further below its limit, unless the sampling is
-                // wrong.
+                // Stratify the samples. If the sampling is right, the stratification only lowers chi-squared.
                 match tree.sample(&receiver, (f64::from(i) + rng.next_f64()) / f64::from(n)) {
                     None => counts[count] += 1.0,
                     Some((light, pmf, rest)) => {
                         counts[light] += 1.0;
                         assert!((0.0..1.0).contains(&rest));
-                        // The two pmfs multiply the same factors in opposite order.
+                        // Compare loosely: the two pmfs multiply the same factors in opposite order.
                         assert!((f64::from(pmf) / stated[light] - 1.0).abs() < 1e-5);
                     }
                 }
@@ -86,8 +87,8 @@ fn sampled_lights_follow_the_pmf_of_the_tree() {
 
 #[test]
 fn sampling_the_tree_can_be_inverted() {
-    // The random numbers that select a light form an interval of the length of its pmf; the remainder is the position
-    // in it.
+    // The values of `u` that select a light form an interval whose length is the light's pmf; `rest` is the relative
+    // position of `u` in this interval.
     let mut rng = Rng::new(44, &[]);
     for count in [2, 9, 300] {
         let tree = tree(&lights(count, Vec3::ZERO, &mut rng));
@@ -104,7 +105,7 @@ fn sampling_the_tree_can_be_inverted() {
     }
 }
 
-/// A floor under an emissive square, six punctual lights of all kinds, and an environment.
+/// A floor under an emissive square, with six punctual lights of all kinds and an environment.
 fn every_light() -> Scene {
     let mut scene =
         over_floor(vec![Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)], vec![matt(0.0, 3.0)]);
@@ -139,7 +140,8 @@ fn every_light() -> Scene {
 fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
     let world = world(every_light());
     let receiver = Receiver { position: Vec3::new(0.1, 0.0, 0.0), normal: Vec3::Y };
-    // Count the punctual lights, the surface, the environment, and samples without a light.
+    // Count the samples of the six punctual lights, of the surface and of the environment, and the samples without a
+    // light.
     let (mut counts, mut stated) = ([0.0; 9], [0.0; 9]);
     let (mut surface, n) = (0.0, 100_000);
     let mut rng = Rng::new(45, &[]);
@@ -151,7 +153,7 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
         };
         match sample.source {
             LightSource::Punctual(index) => {
-                // The pdf of a punctual light is its pmf × the squared distance.
+                // For a punctual light at a finite distance, `pdf` is the pmf × the squared distance.
                 let distance2 = match sample.end {
                     Some(LightEnd::Point(p)) => p.distance_squared(receiver.position),
                     _ => 1.0,
@@ -161,7 +163,7 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
-                // The mean of 1 / pdf is the solid angle divided by the probability of a valid sample.
+                // The mean of 1 / pdf over all samples is the solid angle of the lamp.
                 surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
@@ -171,17 +173,19 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
         }
     }
     assert!(counts[..8].iter().all(|&c| c > 100.0), "{counts:?}");
-    // The lamp's selection probability is unknown: use the remainder after the others and the invalid samples.
+    // The selection probability of the lamp is unknown: use the remainder after the other lights and the invalid
+    // samples.
     stated[8] = counts[8];
     stated[6] = f64::from(n) - stated.iter().sum::<f64>();
     assert_follows(&stated, &counts, 1, "kinds of lights");
-    // A square of 1 m² at 2 m, slightly off centre, seen from below; a valid sample is a Bernoulli trial.
+    // The lamp is a square of 1 m² at a height of 2 m, slightly off centre. A sample of it is a Bernoulli trial.
     let (expected, share) = (solid_angle_of_lamp(), counts[6] / f64::from(n));
     let error = expected * ((1.0 - share) / (share * f64::from(n))).sqrt();
     assert!((surface - expected).abs() < 4.0 * error + 1e-3 * expected, "{surface} ± {error}, expected {expected}");
 }
 
-/// Solid angle of a square of 1 × 1 m at a height of 2 m, 10 cm off its centre: four rectangles (Khadjavi 1968).
+/// Returns the solid angle of a square of 1 × 1 m, seen from a point 2 m below and 10 cm off its centre, as the sum of
+/// four rectangles with a corner above the point (Khadjavi 1968).
 fn solid_angle_of_lamp() -> f64 {
     let corner = |a: f64, b: f64, d: f64| (a * b / (d * (a * a + b * b + d * d).sqrt())).atan();
     2.0 * (corner(0.4, 0.5, 2.0) + corner(0.6, 0.5, 2.0))
@@ -215,7 +219,7 @@ fn no_light_that_can_arrive_has_probability_0() {
 
 #[test]
 fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
-    // A ceiling of 40 × 40 lamps at a height of 3 m.
+    // Build a ceiling of 40 × 40 lamps at a height of 3 m.
     let lamp = |i: usize| {
         let corner = Vec3::new((i % 40) as f32, 3.0, (i / 40) as f32);
         Bounds::of_surface([corner, corner + Vec3::new(0.1, 0.0, 0.1)], Vec3::NEG_Y, false, 1.0)
@@ -228,7 +232,7 @@ fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
         let around = (0..1600).filter(|&i| (bounds[i].low - position).length() < 9.0);
         around.map(|i| tree.pmf(&receiver, i)).sum()
     };
-    // E = ∫ h² / (h² + r²)² dA: the share within r = √72 of h = 3 m is 72 / 81.
+    // E = ∫ h² / (h² + r²)² dA, so 72 / 81 of the light comes from within r = √72 m at a height of h = 3 m.
     assert!((near(Vec3::Y) - 72.0 / 81.0).abs() < 0.05, "{}", near(Vec3::Y));
     assert_eq!(near(Vec3::NEG_Y), 0.0);
     let from_above = Receiver { position: position + Vec3::Y * 4.0, normal: Vec3::NEG_Y };
@@ -273,7 +277,7 @@ fn matt(albedo: f32, emission: f32) -> Material {
     Material { emission: Vec3::splat(emission), double_sided: false, ..Material::diffuse("", Vec3::splat(albedo)) }
 }
 
-/// A black floor of 2 × 2 mm around the origin, facing up, with other meshes.
+/// A scene of the given meshes and a black floor of 2 × 2 mm around the origin, which faces up.
 fn over_floor(meshes: Vec<Mesh>, materials: Vec<Material>) -> Scene {
     let floor = Mesh::parallelogram(Vec3::new(-1e-3, 0.0, -1e-3), Vec3::Z * 2e-3, Vec3::X * 2e-3, 0);
     let meshes = std::iter::once(floor).chain(meshes).collect();
@@ -294,7 +298,7 @@ impl PathSink for Sum {
 
 const ORIGIN: SurfacePoint = SurfacePoint { mesh: 0, triangle: 0, barycentric: Vec2::new(0.0, 0.5), front: true };
 
-/// Mean irradiance of the floor and its standard error.
+/// Returns the mean irradiance at the floor's centre, and its standard error.
 fn measure(scene: Scene) -> (f64, f64) {
     let world = world(scene);
     let (batches, per_batch) = (32u32, 512);
@@ -310,18 +314,19 @@ fn measure(scene: Scene) -> (f64, f64) {
     (mean, (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt())
 }
 
-/// `slack` is the relative difference between the closed form and the geometry.
+/// Compares a measured mean and its standard error with a closed form. `slack` is the relative error of the closed
+/// form for the tested geometry.
 fn assert_close((mean, error): (f64, f64), expected: f64, slack: f64, what: &str) {
     assert!((mean - expected).abs() < 4.0 * error + slack * expected, "{what}: {mean} ± {error}, expected {expected}");
 }
 
-/// Irradiance at the origin, facing up, of a polygon of radiance 1 above the horizon (Lambert 1760).
+/// Returns the irradiance at the origin, facing up, from a polygon of radiance 1 above the horizon (Lambert 1760).
 fn lambert(corners: &[Vec3]) -> f64 {
     let edge = |i: usize| {
         let a = corners[i].as_dvec3().normalize();
         let b = corners[(i + 1) % corners.len()].as_dvec3().normalize();
         let across = a.cross(b);
-        // Compute the angle by its tangent: the cosine of a small angle is too close to 1.
+        // Compute the angle from its tangent, because the cosine of a small angle is too close to 1.
         across.length().atan2(a.dot(b)) * across.normalize_or_zero().y
     };
     (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
@@ -329,8 +334,8 @@ fn lambert(corners: &[Vec3]) -> f64 {
 
 #[test]
 fn many_triangles_light_as_their_closed_forms_add_up_to() {
-    // One triangle in each of 16 × 8 solid angles, so that none occludes another; distances, sizes and powers vary
-    // widely.
+    // Place one triangle in each of 16 × 8 solid angles, so that none occludes another. Distances, sizes and powers
+    // vary widely.
     let mut rng = Rng::new(51, &[]);
     for (near, far) in [(1.0, 1.0), (0.5, 200.0)] {
         let (mut meshes, mut materials, mut expected) = (Vec::new(), Vec::new(), 0.0);
@@ -344,7 +349,7 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
             let distance = near * (far / near as f32).powf(rng.next_f32());
             corners = corners.map(|c| c * distance * (0.9 + 0.2 * rng.next_f32()));
             let faces = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(corners[0]) < 0.0;
-            // Every third triangle is two-sided; of the others, only triangles that face the floor light it.
+            // Every third triangle is two-sided. The others light the floor only if they face it.
             let emission = 10f32.powf(2.0 * rng.next_f32());
             let double_sided = i % 3 == 0;
             expected += if faces || double_sided { lambert(&corners) * f64::from(emission) } else { 0.0 };
@@ -355,21 +360,22 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
         }
         let measured = measure(over_floor(meshes, materials));
         assert_close(measured, expected, 1e-5, "triangles");
-        // Half of the lights of a cluster face away, so that some samples are invalid; the measured error is 1.5 %.
+        // Half of the lights in a cluster face away, so that some samples are invalid. The measured error is 1.5 %.
         assert!(measured.1 < 0.02 * expected, "{measured:?}");
     }
 }
 
 #[test]
 fn discs_and_spheres_light_by_their_form_factors() {
-    // A disc overhead with a radius of half its height: r² / (r² + h²); the area of 720 corners is 1e-5 too small.
+    // A disc overhead, with a radius of half its height: E = π L r² / (r² + h²). The area of the polygon with 720
+    // corners is 1e-5 smaller.
     let rim = |i: usize| Vec3::new((TAU * i as f32 / 720.0).cos(), 2.0, (TAU * i as f32 / 720.0).sin());
     let mut disc = Mesh { material: 1, positions: (0..720).map(rim).collect(), ..Mesh::default() };
     disc.triangles = (1..719).map(|i| [0, i, i + 1]).collect();
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere overhead: r² / d²; the facets make it less than 1 % too small.
+    // A sphere overhead: E = π L r² / d². Its facets make the irradiance less than 1 % smaller.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);
@@ -384,7 +390,7 @@ fn discs_and_spheres_light_by_their_form_factors() {
                 let first = sphere.positions.len() as u32;
                 sphere.positions.extend(t);
                 sphere.triangles.push([first, first + 1, first + 2]);
-                // All faces of a convex body that face the receiver are visible.
+                // Of a convex body, all triangles that face the receiver are visible.
                 exact += if normal.dot(t[0]) < 0.0 && normal.length() > 1e-6 { lambert(&t) } else { 0.0 };
             }
         }
@@ -406,7 +412,8 @@ fn textured_lamps_light_as_the_polygons_of_their_texels() {
             let texel = Vec2::new(width / 37.0, width / 23.0);
             let place = corner + Vec3::new(x as f32 * texel.x, 0.0, y as f32 * texel.y);
             let emission = f64::from(image.pixel(x, y)[0]) * 1e6;
-            // For triangles far smaller than their distance the closed form cancels; use the solid angle instead.
+            // For texels far smaller than their distance, the closed form suffers from cancellation; use the solid
+            // angle instead.
             expected += emission
                 * if width < 0.1 {
                     f64::from(texel.x) * f64::from(texel.y)
@@ -440,7 +447,7 @@ fn lamps_without_area_or_power_are_none_and_extreme_ones_are_exact() {
         let measured = measure(over_floor(vec![up(1.0)], vec![matt(0.0, emission)]));
         assert_close(measured, one * f64::from(emission), 1e-5, "intensity");
     }
-    // A dim lamp beside a lamp 1e12 times as bright that faces away from the floor.
+    // Test a dim lamp beside a lamp 1e12 times as bright that faces away from the floor.
     let away = Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::Z, Vec3::X, 2);
     let measured = measure(over_floor(vec![up(1.0), away], vec![matt(0.0, 1.0), matt(0.0, 1e12)]));
     assert_close(measured, one, 1e-5, "beside");
@@ -511,7 +518,7 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
 
 #[test]
 fn light_transport_between_two_surfaces_is_reciprocal() {
-    // Reciprocity between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
+    // Test reciprocity between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
     let quads = || {
         vec![
             Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
@@ -561,6 +568,7 @@ fn the_floor_of_a_hall_with_thousands_of_lamps_sees_them_all() {
     }
     let measured = measure(over_floor(vec![lamps], vec![matt(0.0, 1000.0)]));
     assert_close(measured, expected, 1e-5, "hall");
-    // Selection by power alone would find the few lamps overhead once in hundreds of samples.
+    // If lights were selected by power alone, few of the samples would hit the lamps overhead, which give most of the
+    // light.
     assert!(measured.1 < 0.005 * expected, "{measured:?}");
 }

@@ -1,48 +1,50 @@
-//! A light tree, traversed by importance for a receiver with a single random number.
+//! A light tree: a hierarchy of light clusters. Sampling descends it with a single random number, selecting children
+//! in proportion to their importance for the receiver.
 //!
-//! Nodes have up to eight children, evaluated together: wide nodes need fewer steps and rely less on the coarse bounds
-//! of large clusters. Splits minimise the surface area orientation heuristic of Conty Estevez and Kulla (2018, section
-//! 4.4), with the squared diagonal for the area (which is positive also for lamps in one line) and the length of the
-//! mean direction for the solid angle.
+//! Nodes have up to eight children, whose importances are computed together. Compared with binary nodes, wide nodes
+//! need fewer steps and rely less on the coarse bounds of large clusters. Splits minimise the surface area orientation
+//! heuristic of Conty Estevez and Kulla (2018, section 4.4), with two replacements. The squared diagonal replaces the
+//! surface area, because it is positive also for lamps in one line. The length of the mean emission direction replaces
+//! the solid angle.
 
 use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use glam::{Vec3, Vec3A};
 
-/// Candidate splits per axis are the borders of this many bins. [convention]
+/// Number of bins per axis; their borders are the candidate splits. [convention]
 const BINS: usize = 12;
-/// From this depth on, splits halve the number of lights, regardless of the heuristic. [convention]
+/// From this depth on, splits halve the number of lights instead of minimising the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Smallest cluster that is split in parallel. [origin not recorded]
+/// Clusters of at least this many lights are split in parallel. [origin not recorded]
 const PARALLEL_FROM: usize = 1024;
-/// Marks a missing parent or child.
+/// Index that stands for "no parent" or "no child".
 const NONE: u32 = u32::MAX;
-/// Flag of children that are lights.
+/// Bit that marks the index of a child as the index of a light.
 const LIGHT: u32 = 1 << 31;
 
 pub struct LightTree {
-    /// Selection probabilities of the lights, if they are few and their relative importance does not depend on the
-    /// receiver: a single light, or lights in one box such as the two triangles of a rectangle. All probabilities are
-    /// positive, and there are at most as many as a node has children. The tree then has no nodes.
+    /// Selection probabilities of the lights if the tree has no nodes; all are positive. A tree has no nodes if it has
+    /// at most eight lights and their relative importance does not depend on the receiver. Examples are a single
+    /// light, and lights whose bounds differ only in intensity, such as the two triangles of a rectangle.
     fixed: Vec<f64>,
     nodes: Vec<Node>,
-    /// For every light its slot: eight times the node plus the lane.
+    /// For each light its slot: 8 × the index of its node, plus its lane in the node.
     slots: Vec<u32>,
-    /// Squared smallest distance; see [`BoundsLanes::importance`].
+    /// Smallest squared distance that counts; see [`BoundsLanes::importance`].
     nearest: f32,
 }
 
 #[derive(Clone)]
 struct Node {
     bounds: BoundsLanes,
-    /// Indices of nodes, or of lights with the flag `LIGHT`.
+    /// Indices of child nodes, or of lights with the bit `LIGHT`; `NONE` for unused lanes.
     children: [u32; LANES],
-    /// The slot in the parent node.
+    /// The slot of this node in its parent node.
     parent: u32,
 }
 
-/// A light during construction.
+/// A light while the tree is built.
 struct Item {
     bounds: Bounds,
     extent: Extent,
@@ -50,19 +52,19 @@ struct Item {
     light: u32,
 }
 
-/// A cluster of several lights, divided in two. Its index in the list of clusters is the index of the first light of
-/// its second part, which is unique.
+/// A cluster of at least two lights, divided into two parts. Its index in the list of clusters is the index of the
+/// first light of its second part. No two clusters share this index.
 #[derive(Clone, Copy, Default)]
 struct Cluster {
-    /// Cost of the cluster before the split.
+    /// Value of the split heuristic for the undivided cluster.
     cost: f32,
-    /// Indices of the two parts in the list; for a part of a single light the index of the light with the flag
-    /// `LIGHT`.
+    /// Indices of the two parts in the list of clusters; for a part that is a single light, the index of the light
+    /// with the bit `LIGHT`.
     parts: [u32; 2],
 }
 
 impl LightTree {
-    /// For fewer than 2^31 lights, each of positive intensity.
+    /// Builds the tree. There must be fewer than 2^31 lights, each of positive intensity.
     pub fn build(lights: &[Bounds]) -> Result<Self> {
         let mut tree = Self { fixed: Vec::new(), nodes: Vec::new(), slots: Vec::new(), nearest: f32::MIN_POSITIVE };
         if lights.len() <= LANES && lights.windows(2).all(|pair| pair[0].differs_only_in_intensity(&pair[1])) {
@@ -80,21 +82,23 @@ impl LightTree {
         let mut clusters = try_vec(lights.len(), Cluster::default())?;
         let root = divide(&mut items, &mut clusters, 0, 0);
         tree.slots = try_vec(lights.len(), NONE)?;
-        // Scale intensities by their sum and distances by the scene, so that importances cannot overflow.
+        // Scale intensities by their sum, and limit distances relative to the scene, so that importances cannot
+        // overflow.
         let whole = Bounds::union(lights);
         tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
         tree.add(&items, &clusters, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
         Ok(tree)
     }
 
-    /// Appends the nodes of a cluster, parents before children. Returns the cluster as a child with its bounds.
+    /// Appends the nodes of a cluster, parents before children. Returns the cluster as a child of slot `slot`, and its
+    /// bounds.
     fn add(&mut self, items: &[Item], clusters: &[Cluster], cluster: u32, slot: u32, scale: f32) -> (u32, Bounds) {
         if cluster & LIGHT != 0 {
             let item = &items[(cluster & !LIGHT) as usize];
             self.slots[item.light as usize] = slot;
             return (LIGHT | item.light, item.bounds);
         }
-        // Divide the most expensive part until there are eight parts or only lights.
+        // Divide the most expensive part until there are eight parts, or all parts are single lights.
         let mut parts = vec![cluster];
         while parts.len() < LANES {
             let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
@@ -117,7 +121,9 @@ impl LightTree {
         (index as u32, Bounds::union(&bounds))
     }
 
-    /// Samples a light by importance; returns its pmf and the position of `u` within its share, in `[0, 1)`.
+    /// Samples a light in proportion to its importance for the receiver. Returns the light, its pmf, and the relative
+    /// position of `u` in the interval that selects the light, in `[0, 1)`. Returns `None` if no light can reach the
+    /// receiver.
     #[inline]
     pub fn sample(&self, receiver: &Receiver, u: f64) -> Option<(usize, f32, f64)> {
         let (mut pmf, mut u) = (1.0, u);
@@ -134,7 +140,7 @@ impl LightTree {
             if !(sum > 0.0) {
                 return None;
             }
-            // Find the lane in which the cumulative importance passes the target.
+            // Find the lane whose interval of the cumulative importance contains the target.
             let target = u * f64::from(sum);
             let (mut lane, mut below, mut running) = (0, 0.0, 0.0);
             for (i, &share) in importance.iter().enumerate() {
@@ -154,7 +160,7 @@ impl LightTree {
         }
     }
 
-    /// Pmf with which [`LightTree::sample`] selects a light.
+    /// Returns the pmf with which [`LightTree::sample`] selects a light.
     pub fn pmf(&self, receiver: &Receiver, light: usize) -> f32 {
         if let Some(&share) = self.fixed.get(light) {
             return share as f32;
@@ -176,8 +182,8 @@ impl LightTree {
     }
 }
 
-/// Divides a cluster down to its lights, in parallel; returns its index in the list. `clusters` is the part of the
-/// list from index `first` on.
+/// Divides a cluster down to single lights, in parallel. Returns the index of the cluster in the list of clusters.
+/// `clusters` is the part of this list from index `first` on.
 fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;
@@ -194,12 +200,12 @@ fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32
     (first + at) as u32
 }
 
-/// Aggregates of a cluster for the split heuristic.
+/// Sums over a cluster from which the split heuristic is computed.
 #[derive(Clone, Copy)]
 struct Extent {
     low: Vec3A,
     high: Vec3A,
-    /// Intensity-weighted sum of the axes; the axes of two-sided lights are flipped into one half-space.
+    /// Sum of the emission axes, weighted by intensity. The axes of two-sided lights are flipped into one half-space.
     direction: Vec3A,
     intensity: f32,
     count: u32,
@@ -234,7 +240,8 @@ impl Extent {
         self.count += other.count;
     }
 
-    /// The heuristic: a solid angle term from 1 (parallel) to 4 (all directions) × squared diagonal × intensity.
+    /// Returns the split heuristic: intensity × squared diagonal × a factor for the spread of directions, from 1 (all
+    /// parallel) to 4 (all directions).
     fn cost(&self) -> f32 {
         if self.count == 0 {
             return 0.0;
@@ -244,13 +251,14 @@ impl Extent {
     }
 }
 
-/// Divides a cluster of at least two lights in place; returns the size of the first part. Neither part is empty.
+/// Splits a cluster of at least two lights by reordering `items`. Returns the size of the first part. Neither part is
+/// empty.
 fn split(items: &mut [Item]) -> usize {
     let low = items.iter().fold(Vec3A::INFINITY, |a, i| a.min(i.centre));
     let high = items.iter().fold(Vec3A::NEG_INFINITY, |a, i| a.max(i.centre));
     let binning = [0, 1, 2].map(|axis| Binning::new(low[axis], high[axis]));
     let mut bins = [[Extent::NOTHING; BINS]; 3];
-    // Skip axes without extent: the lamps of a ceiling have the same height.
+    // Skip axes without extent, such as the vertical for the lamps of a flat ceiling.
     let axes = (0..3).filter(|&axis| binning[axis].scale > 0.0);
     for item in items.iter() {
         for axis in axes.clone() {
@@ -260,7 +268,8 @@ fn split(items: &mut [Item]) -> usize {
     let mut best = (f32::INFINITY, 0, 0);
     for axis in axes {
         let bins = &bins[axis];
-        // Accumulate the costs above each bin, then add those below.
+        // For each border between two bins, compute the cost of the lights above the border, then add the cost of the
+        // lights below it.
         let mut above = [0.0; BINS];
         let mut extent = Extent::NOTHING;
         for i in (1..BINS).rev() {
@@ -283,7 +292,7 @@ fn split(items: &mut [Item]) -> usize {
     items.len() / 2
 }
 
-/// Equal bins over an interval; a single bin if the interval is empty.
+/// Equal bins over an interval. If the interval is empty, all values fall into the first bin.
 struct Binning {
     low: f32,
     scale: f32,
@@ -300,7 +309,7 @@ impl Binning {
     }
 }
 
-/// Moves the items for which `first` holds to the front; returns their number.
+/// Moves the items for which `first` is true to the front. Returns their number.
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for i in 0..items.len() {

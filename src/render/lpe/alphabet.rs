@@ -1,4 +1,5 @@
-//! The numbered events of a scene. Objects whose labels no expression distinguishes share their events.
+//! The alphabet of the light path automaton: the numbered events that can occur in a scene. Objects share events
+//! unless an expression distinguishes them by a label.
 
 use super::parse::{Event, kind, mode};
 use super::{EmitterAs, Expression};
@@ -10,7 +11,7 @@ use glam::Vec2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The kinds of scattering at a surface.
+/// The kinds of scattering at a surface. The discriminants index [`SCATTERS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scatter {
     Diffuse,
@@ -20,22 +21,23 @@ pub enum Scatter {
 }
 
 pub struct Alphabet {
-    /// Scattering events: four for each class of meshes, in the order of [`Scatter`].
+    /// Scattering events: four for each class of meshes, in the order of [`Scatter`]. Meshes belong to one class if no
+    /// expression distinguishes them.
     pub scatters: Vec<Event>,
-    /// Events at the light end of a path.
+    /// Light events, at the light end of a path.
     pub lights: Vec<Event>,
-    /// Class of each mesh; also the index of its light event.
+    /// Index of each mesh's class, which is also the index of the light event of the class.
     class_of_mesh: Vec<u32>,
-    /// The lamps of each mesh, if an expression distinguishes them.
+    /// The lamps of each mesh, if an expression names one of them.
     lamps: Vec<Option<Lamps>>,
     punctual: Vec<u32>,
     environment: u32,
 }
 
-/// The lamps of an emission texture: each connected patch has a light event of its own.
+/// The lamps of an emission texture: each connected patch of emissive texels has its own light event.
 struct Lamps {
     texture: Arc<LampTexture>,
-    /// The light event of texels outside all patches, then the light event of each patch.
+    /// Index of the light event of the texels outside all patches, followed by the index of each patch's light event.
     lights: Vec<u32>,
 }
 
@@ -46,6 +48,8 @@ struct LampTexture {
 }
 
 impl Alphabet {
+    /// Numbers the events of the scene that the expressions distinguish.
+    ///
     /// # Errors
     /// An expression names a label that does not exist in the scene.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
@@ -57,8 +61,8 @@ impl Alphabet {
             let set: BTreeSet<&String> = names.iter().filter(|n| named_labels.contains(*n)).collect();
             set.into_iter().cloned().collect()
         };
-        // Meshes of equal labels form a class. The class without labels always exists, so that the set of matchable
-        // expressions does not depend on the scene.
+        // Group meshes with equal labels into classes. The class without labels always exists, so that the scene does
+        // not affect which expressions can match a path.
         let mut classes = BTreeMap::new();
         let (mut scatters, mut lights) = (Vec::new(), Vec::new());
         let mut class = |labels: Vec<String>| {
@@ -72,7 +76,7 @@ impl Alphabet {
         };
         class(Vec::new());
         let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(keep_named(&names(mesh)))).collect();
-        // Punctual lights and the environment: lights of equal kinds and labels share an event.
+        // Number the punctual lights and the environment. Lights of equal kinds and labels share an event.
         let mut by_labels = BTreeMap::new();
         let mut light = |kinds: u8, labels: Vec<String>| {
             *by_labels.entry((kinds, labels.clone())).or_insert_with(|| {
@@ -89,7 +93,7 @@ impl Alphabet {
             let texture = lamp_textures.get(&mesh.material)?.clone();
             let of_lamp = |i: usize| {
                 let of_it = names(mesh).map(|name| lamp_label(&name, i));
-                // A lamp that no expression names belongs to its mesh's class.
+                // A lamp that no expression names shares the light event of its mesh's class.
                 if of_it.iter().any(|name| named_labels.contains(name)) {
                     light(surface_kinds(emitter_as), keep_named(&[names(mesh), of_it].concat()))
                 } else {
@@ -103,7 +107,7 @@ impl Alphabet {
         Ok(Self { scatters, lights, class_of_mesh, lamps, punctual, environment })
     }
 
-    /// Number of mesh classes.
+    /// Returns the number of classes of meshes.
     #[inline]
     pub fn classes(&self) -> usize {
         self.scatters.len() / SCATTERS.len()
@@ -134,12 +138,12 @@ impl Lamps {
     }
 }
 
-/// The names of a mesh and of its material.
+/// Returns the names of a mesh and of its material.
 fn names_of(scene: &Scene, mesh: &Mesh) -> [String; 2] {
     [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
 }
 
-/// The labels of all meshes, materials, lights and lamps of a scene.
+/// Returns the labels of all meshes, materials, lights and lamps of a scene.
 fn existing_labels(scene: &Scene, lamp_textures: &BTreeMap<usize, Arc<LampTexture>>) -> BTreeSet<String> {
     let names = |mesh: &Mesh| names_of(scene, mesh);
     let mut existing: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
@@ -151,7 +155,8 @@ fn existing_labels(scene: &Scene, lamp_textures: &BTreeMap<usize, Arc<LampTextur
     existing
 }
 
-/// The emission textures whose lamps an expression may name, as in `'Ceiling#3'`, by mesh or by material.
+/// Finds the emission textures whose lamps an expression may name, as in `'Ceiling#3'` (by mesh or by material).
+/// Returns them by the index of the material.
 fn lamp_textures(
     scene: &Scene,
     expressions: &[&Expression],
@@ -185,7 +190,7 @@ fn punctual_label(index: usize) -> String {
     format!("light{index}")
 }
 
-/// Types and modes in the order of [`Scatter`].
+/// Types and modes of the scattering events, in the order of [`Scatter`].
 pub const SCATTERS: [(u8, u8); 4] = [
     (kind::REFLECT, mode::DIFFUSE),
     (kind::REFLECT, mode::GLOSSY),
@@ -209,7 +214,7 @@ fn environment_kinds(emitter_as: EmitterAs) -> u8 {
     }
 }
 
-/// The labels that expressions name. Fails if a label that an event must have does not exist in the scene.
+/// Returns the labels that expressions name. Fails if an expression requires a label that does not exist in the scene.
 fn named_labels(expressions: &[&Expression], existing: &BTreeSet<String>) -> Result<BTreeSet<String>> {
     let mut named_labels = BTreeSet::new();
     for expression in expressions {

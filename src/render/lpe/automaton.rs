@@ -1,10 +1,9 @@
-//! All expressions of a render as one deterministic finite automaton (Thompson 1968; subset construction by Rabin and
-//! Scott 1959; minimised by partition refinement, Moore 1956).
+//! Compiles all expressions of a render into one deterministic finite automaton (Thompson 1968; subset construction by
+//! Rabin and Scott 1959; minimisation by partition refinement, Moore 1956).
 //!
 //! A path consists of the camera, scattering events and a light. It moves through the automaton with one look-up per
-//! event. All states from which no light can complete an expression are merged into [`DEAD`]; the share of a path that
-//! reaches this state is dropped. Equivalent states are merged, so that a path has as few components as the expressions
-//! allow.
+//! event. States from which no light can complete an expression are merged into [`DEAD`]; light in this state is
+//! dropped. Equivalent states are merged too, because a path stores its light separately for each state.
 
 use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, Node, kind};
@@ -17,27 +16,30 @@ use std::collections::BTreeMap;
 /// The state from which no expression can be completed.
 pub const DEAD: u16 = 0;
 
-/// Limits of the construction: states of the nondeterministic automaton, states before minimisation, transitions
-/// visited. [convention]: bounds time and memory.
+/// Limits of the construction: number of states of the nondeterministic automaton, number of states before
+/// minimisation, and number of visited transitions. [convention]: bounds time and memory.
 const MAX_NFA_STATES: usize = 20_000;
 const MAX_STATES: usize = 4096;
 const MAX_TRANSITIONS: usize = 20_000_000;
 
-/// The automaton over the events of a scene.
+/// The automaton of all expressions, over the events of a scene.
 pub struct Automaton {
     alphabet: Alphabet,
     start: u16,
-    /// The next states by state, class of meshes and kind of scattering.
+    /// The next state for each state, class of meshes and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// For each state and light, the index in `lists` of the expressions that accept a path which ends there.
+    /// For each state and light event, the index in `lists` of the expressions that accept a path which ends at this
+    /// light.
     ends: Vec<u16>,
-    /// Lists of expressions that accept the same paths; the first list is empty.
+    /// Lists of expressions: every path is accepted by exactly the expressions of one list. List 0 is empty.
     lists: Vec<Vec<u16>>,
-    /// States that every scattering event leaves unchanged.
+    /// For each state, whether every scattering event leaves it unchanged.
     absorbing: Vec<bool>,
 }
 
 impl Automaton {
+    /// Compiles the expressions. The index of an expression in `expressions` identifies it in [`Automaton::lists`].
+    ///
     /// # Errors
     /// A label that does not exist in the scene; an expression that no path can match; too many states.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
@@ -51,7 +53,7 @@ impl Automaton {
         let mut construction = SubsetConstruction::new(&nfa, &alphabet);
         let first = construction.explore(start)?;
         let SubsetConstruction { next, ends, lists, .. } = construction;
-        // Reject expressions that accept no path.
+        // Refuse expressions that accept no path.
         for (number, expression) in expressions.iter().enumerate() {
             if !lists.iter().flatten().any(|&n| usize::from(n) == number) {
                 return Err(Error::argument(format!(
@@ -64,24 +66,25 @@ impl Automaton {
         Ok(Self { start: first, next: next.to_vec(), ends, lists, alphabet, absorbing: Vec::new() }.minimised())
     }
 
-    /// The state of a path that has left the camera.
+    /// Returns the state of a path that has left the camera.
     pub fn start(&self) -> u16 {
         self.start
     }
 
-    /// Class of a mesh: expressions do not distinguish the meshes of a class.
+    /// Returns the class of a mesh. No expression distinguishes the meshes of a class.
     #[inline]
     pub fn class(&self, mesh: u32) -> usize {
         self.alphabet.class(mesh)
     }
 
-    /// The states after scattering off a mesh of a class, in the order of [`Scatter`].
+    /// Returns the states after each kind of scattering at a mesh of a class, in the order of [`Scatter`].
     #[inline]
     pub fn next(&self, state: u16, class: usize) -> &[u16; SCATTERS.len()] {
         &self.next[usize::from(state) * self.alphabet.classes() + class]
     }
 
-    /// Adds to `states` the states after non-specular scattering off a mesh, by any of its layers.
+    /// Adds to `states` the states that follow after diffuse scattering at a mesh and, if `is_layered`, after glossy
+    /// scattering. Leaves out the dead state.
     pub fn spread(&self, state: u16, mesh: u32, is_layered: bool, states: &mut Vec<u16>) {
         let next = self.next(state, self.class(mesh));
         for scatter in [Scatter::Diffuse, Scatter::Glossy].into_iter().take(1 + usize::from(is_layered)) {
@@ -92,19 +95,20 @@ impl Automaton {
         }
     }
 
-    /// Index of the event of a light.
+    /// Returns the index of the light event of a light.
     #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         self.alphabet.light(source)
     }
 
-    /// Index of the list of expressions that accept a path which ends at a light. List 0 is empty.
+    /// Returns the index in [`Automaton::lists`] of the expressions that accept a path which reaches `light` in
+    /// `state`. List 0 is empty.
     #[inline]
     pub fn accepting(&self, state: u16, light: usize) -> u16 {
         self.ends[usize::from(state) * self.alphabet.lights.len() + light]
     }
 
-    /// The lists of expressions that accept the same paths.
+    /// Returns the lists of expressions. Every path is accepted by exactly the expressions of one list.
     pub fn lists(&self) -> &[Vec<u16>] {
         &self.lists
     }
@@ -120,11 +124,12 @@ impl Automaton {
         self.ends.len() / self.alphabet.lights.len()
     }
 
-    /// The automaton with equivalent states merged.
+    /// Returns the automaton with equivalent states merged.
     fn minimised(self) -> Self {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
-        // Separate states by the expressions they accept, then repeatedly by the groups of their successors.
+        // Separate states by the expressions they accept; then repeatedly by the groups of the states that follow
+        // them.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {
@@ -145,7 +150,7 @@ impl Automaton {
             }
             groups = found;
         }
-        // Groups are numbered by their first state, so that the dead state 0 stays 0.
+        // Groups are numbered in the order of their first states, so that the dead state 0 stays 0.
         let mut next = vec![[0; SCATTERS.len()]; groups * classes];
         let mut ends = vec![0; groups * lights];
         for state in 0..count {
@@ -162,12 +167,12 @@ impl Automaton {
     }
 }
 
-/// The expressions as one nondeterministic finite automaton.
+/// All expressions as one nondeterministic finite automaton (NFA).
 #[derive(Default)]
 struct Nfa<'a> {
-    /// Epsilon transitions of each state.
+    /// Targets of the epsilon transitions of each state.
     epsilon: Vec<Vec<u32>>,
-    /// The event transition of each state.
+    /// The event transition of each state, if it has one: the accepted events, and the next state.
     transitions: Vec<Option<(&'a EventSet, u32)>>,
     accepts: Vec<Vec<u16>>,
 }
@@ -187,7 +192,7 @@ impl<'a> Nfa<'a> {
         self.epsilon[from as usize].push(to);
     }
 
-    /// Adds states and transitions that match a node, starting from state `from`; returns the end state.
+    /// Adds states and transitions that match `node`, starting from state `from`. Returns the end state.
     fn build(&mut self, node: &'a Node, from: u32) -> Result<u32> {
         match node {
             Node::Event(set) => {
@@ -230,18 +235,19 @@ impl<'a> Nfa<'a> {
     }
 }
 
-/// Subset construction: sets of NFA states become states.
+/// The subset construction: each set of NFA states that a path can be in becomes one state.
 struct SubsetConstruction<'a> {
     nfa: &'a Nfa<'a>,
     scatters: &'a [Event],
     lights: &'a [Event],
-    /// Indices of the sets and of the lists seen so far.
+    /// Index of each set of NFA states found so far, and of each list of expressions found so far.
     number_of_set: BTreeMap<Vec<u32>, u16>,
     number_of_list: BTreeMap<Vec<u16>, u16>,
     next: Vec<u16>,
     ends: Vec<u16>,
     lists: Vec<Vec<u16>>,
-    /// For each NFA state, the number of the last call of `closure` that visited it; and the number of calls so far.
+    /// For each NFA state, the number of the last call of `closure` that visited it (`visited`), and the number of
+    /// calls so far (`rounds`).
     visited: Vec<u32>,
     rounds: u32,
     transitions_left: usize,
@@ -264,7 +270,7 @@ impl<'a> SubsetConstruction<'a> {
         }
     }
 
-    /// Visits all states that a path can reach after the camera event; returns the state right after that event.
+    /// Visits all states that a path can reach after the camera event. Returns the state right after the camera event.
     fn explore(&mut self, start: u32) -> Result<u16> {
         let camera = Event { kinds: kind::CAMERA, modes: 0, labels: Vec::new() };
         let mut sets = vec![Vec::new()];
@@ -316,7 +322,8 @@ impl<'a> SubsetConstruction<'a> {
         self.closure(&reached)
     }
 
-    /// Epsilon closure of some NFA states. It omits states that have only epsilon transitions and accept no expression.
+    /// Returns the epsilon closure of NFA states, without the states that have no event transition and accept no
+    /// expression.
     fn closure(&mut self, from: &[u32]) -> Result<Vec<u32>> {
         self.rounds += 1;
         let matters = |p: usize| self.nfa.transitions[p].is_some() || !self.nfa.accepts[p].is_empty();

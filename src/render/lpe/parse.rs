@@ -1,13 +1,14 @@
-//! Parses the text of an expression into a tree of events. The tree is camera first, whatever the order of the text.
+//! Parses the text of a light path expression into a tree of event patterns. The tree is in camera-first order,
+//! whatever the order of the text.
 
 use crate::error::{Error, Result};
 
-/// Longest text, deepest nesting, and largest number of repetitions in braces. [convention]
+/// Largest number of characters in an expression, of nested parentheses, and of repetitions in braces. [convention]
 const MAX_CHARACTERS: usize = 2048;
 const MAX_DEPTH: usize = 32;
 const MAX_REPEATS: u32 = 64;
 
-/// Bits of an event's type.
+/// Bits of the types of an event.
 pub mod kind {
     pub const REFLECT: u8 = 1;
     pub const TRANSMIT: u8 = 2;
@@ -19,7 +20,7 @@ pub mod kind {
     pub const SCATTER: u8 = REFLECT | TRANSMIT | VOLUME;
 }
 
-/// Bits of an event's scattering mode; lights and the camera have none.
+/// Bits of the scattering modes of an event; lights and the camera have none.
 pub mod mode {
     pub const DIFFUSE: u8 = 1;
     pub const GLOSSY: u8 = 2;
@@ -27,7 +28,7 @@ pub mod mode {
     pub const STRAIGHT: u8 = 8;
 }
 
-/// An event of a path. It can have several types or modes, such as a lamp that is both `L` and `O`.
+/// An event of a light path. It may have several types or modes: a lamp may be both `L` and `O`.
 #[derive(Clone, Debug)]
 pub struct Event {
     pub kinds: u8,
@@ -40,18 +41,18 @@ pub enum Node {
     Event(EventSet),
     Sequence(Vec<Node>),
     Either(Vec<Node>),
-    /// Smallest and largest number of repetitions.
+    /// The node, with the smallest and the largest number of its repetitions; `None` for no upper limit.
     Repeat(Box<Node>, u32, Option<u32>),
 }
 
-/// Events that match one of the patterns, or, if negated, none of them.
+/// The set of events that match at least one of the patterns, or, if negated, none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventSet {
     pub patterns: Vec<Pattern>,
     pub negated: bool,
 }
 
-/// `<type mode labels>`.
+/// The pattern `<type mode labels>`, which an event matches if all its parts match.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     kinds: Bits,
@@ -59,14 +60,14 @@ pub struct Pattern {
     labels: Vec<Labels>,
 }
 
-/// Any bit of a set, or, if negated, none of the bits.
+/// Matches events that have any of these bits, or, if negated, none of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bits {
     bits: u8,
     negated: bool,
 }
 
-/// Any label of a set, or, if negated, none of the labels.
+/// Matches events that have any of these labels, or, if negated, none of them.
 #[derive(Clone, Debug, PartialEq)]
 struct Labels {
     names: Vec<String>,
@@ -101,7 +102,7 @@ impl EventSet {
 }
 
 impl Node {
-    /// Calls `see` for every label, with a flag that says whether an event must have the label.
+    /// Calls `see` for every label of the tree, with a flag that says whether an event must have the label to match.
     pub fn labels(&self, see: &mut impl FnMut(&str, bool)) {
         match self {
             Node::Event(set) => {
@@ -127,7 +128,7 @@ impl Node {
     }
 }
 
-/// Parses an expression in either order.
+/// Parses an expression in light-first or camera-first order.
 pub fn parse(text: &str) -> Result<Node> {
     let characters: Vec<char> = text.chars().collect();
     if characters.len() > MAX_CHARACTERS {
@@ -161,7 +162,7 @@ impl Parser<'_> {
         Error::argument(format!("expression {:?}, column {}: {what}", self.text, at + 1))
     }
 
-    /// An error at the next character that is not a space.
+    /// Returns an error at the next character that is not a space.
     fn unexpected(&mut self, expected: &str) -> Error {
         let found = self.peek().map_or("the end".to_string(), |c| format!("{c:?}"));
         self.error(self.at, &format!("found {found}; expected {expected}"))
@@ -180,7 +181,7 @@ impl Parser<'_> {
         found
     }
 
-    /// Detects the order: `C` means camera first, `E` means light first.
+    /// Finds out the order of the text: `C` means camera first, `E` means light first.
     fn find_order(&mut self) -> Result<()> {
         let mut quoted = false;
         let mut seen = [None; 2];
@@ -198,7 +199,7 @@ impl Parser<'_> {
                 "C and E in one expression; use C for camera-first or E for light-first order",
             )),
             [None, None] => {
-                // Report syntax errors in either order before the missing camera or eye.
+                // Report any other syntax error first, rather than that both camera and eye are missing.
                 self.either()?;
                 self.unexpected_unless_end()?;
                 let end = self.characters.len();
@@ -254,7 +255,7 @@ impl Parser<'_> {
         Ok(Node::Repeat(node.into(), min, max))
     }
 
-    /// Parses `n}`, `n,}` or `n,m}`.
+    /// Parses the repetition counts `n}`, `n,}` or `n,m}` after an opening brace.
     fn counts(&mut self) -> Result<(u32, Option<u32>)> {
         let start = self.at;
         let min = self.number()?;
@@ -304,7 +305,7 @@ impl Parser<'_> {
         Ok(Node::Event(EventSet { patterns: vec![pattern], negated: false }))
     }
 
-    /// Parses a letter, a label, or `<...>`.
+    /// Parses a single event: a letter, a label, or `<...>`.
     fn event(&mut self, expected: &str) -> Result<Pattern> {
         if self.next_if('<') {
             return self.pattern();
@@ -334,7 +335,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Parses the remainder of `<...>`.
+    /// Parses the remainder of `<...>` after the opening bracket.
     fn pattern(&mut self) -> Result<Pattern> {
         let start = self.at;
         let kinds = self.part("a type: R T V L O B, '.', or a set of them", Self::kind_bits)?;
@@ -368,7 +369,7 @@ impl Parser<'_> {
         Ok(Pattern { kinds, modes, labels })
     }
 
-    /// Parses a letter, `.`, or a set of letters.
+    /// Parses the type or the mode of a pattern: a letter, `.`, or a set of letters in brackets.
     fn part(&mut self, expected: &str, bits: impl Fn(&Self, char) -> Option<u8>) -> Result<Bits> {
         if self.next_if('.') {
             return Ok(Bits::ANY);

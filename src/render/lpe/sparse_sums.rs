@@ -1,16 +1,16 @@
-//! Sums of light by index, of which a path changes only a few.
+//! An array of light sums of which each path changes only a few, so that clearing it is cheap.
 
 use glam::Vec3A;
 
 #[derive(Default)]
 pub struct SparseSums {
     sums: Vec<Vec3A>,
-    /// A bit for each sum that may differ from zero.
+    /// One bit for each sum, set if the sum may differ from zero.
     touched: Vec<u64>,
 }
 
 impl SparseSums {
-    /// Clears the sums and provides at least `count` of them.
+    /// Clears all sums and makes room for at least `count` sums.
     #[inline]
     pub fn begin(&mut self, count: usize) {
         self.drain(|_, _| ());
@@ -26,7 +26,7 @@ impl SparseSums {
         self.touched[number / 64] |= 1 << (number % 64);
     }
 
-    /// Takes and clears the changed sums in the order of their indices.
+    /// Calls `take` with each changed sum, in the order of the indices, and clears the sums.
     #[inline]
     pub fn drain(&mut self, mut take: impl FnMut(usize, Vec3A)) {
         for (word, bits) in self.touched.iter_mut().enumerate() {
@@ -55,7 +55,7 @@ mod tests {
         sums.drain(|number, light| taken.push((number, light.x)));
         assert_eq!(taken, [(3, 10.0), (64, 4.0), (130, 1.0), (199, 16.0)]);
         sums.drain(|number, _| panic!("{number} was taken before"));
-        // `begin` discards the sums that were not drained.
+        // `begin` discards sums that were not drained.
         sums.add(5, Vec3A::ONE);
         sums.begin(10);
         sums.drain(|number, _| panic!("{number} was forgotten"));

@@ -1,4 +1,4 @@
-//! Expressions against written-out paths, and invalid expressions.
+//! Tests of light path expressions: which written-out paths they accept, and which expressions are refused.
 
 use super::alphabet::Scatter;
 use super::automaton::DEAD;
@@ -26,9 +26,10 @@ fn automaton(expressions: &[&str], emitter_as: EmitterAs) -> Automaton {
     Automaton::new(&scene(), &parsed.iter().collect::<Vec<_>>(), emitter_as).unwrap()
 }
 
-/// The expressions that accept a path, written camera first as `D G@Ball S T L`: modes, `T` for a pane, and at the end
-/// `L` for a lamp, `P` or `Q` for one of two punctual lights, `B` for the environment. The objects are the floor, the
-/// ball for `S`, and the window for `T`, unless named.
+/// Returns the indices of the expressions that accept a path. The path is written camera first, as in `D G@Ball S T
+/// L`. Scattering events are the modes `D`, `G` and `S`, and `T` for a pane. The last event is `L` for a lamp, `P` or
+/// `Q` for one of two punctual lights, or `B` for the environment. `@` names the object; by default it is the ball for
+/// `S`, the window for `T`, the lamp for `L`, and the floor for `D` and `G`.
 fn accepted(automaton: &Automaton, path: &str) -> Vec<u16> {
     let mut state = automaton.start();
     for event in path.split_whitespace() {
@@ -52,7 +53,7 @@ fn accepted(automaton: &Automaton, path: &str) -> Vec<u16> {
     panic!("{path} does not end at a light");
 }
 
-/// An expression, paths that it accepts, and paths that it rejects.
+/// An expression, paths that it must accept, and paths that it must reject.
 type Row = (&'static str, &'static [&'static str], &'static [&'static str]);
 
 const LIGHT_FIRST: &[Row] = &[
@@ -142,7 +143,7 @@ fn all_expressions_together_accept_what_each_accepts_alone() {
         assert!(yes.iter().all(|p| accepted(&together, p).contains(&number)), "{expression}");
         assert!(!no.iter().any(|p| accepted(&together, p).contains(&number)), "{expression}");
     }
-    // The paper's five expressions need few states, so that paths have few components.
+    // The paper's five expressions need few states, so that paths store their light for few states.
     let five = automaton(&["L.*E", "LDE", "LSE", "L.*DDE", "LD{1,2}E"], EmitterAs::Both);
     assert!(five.states() <= 8, "{} states", five.states());
 }
@@ -182,7 +183,7 @@ fn built_in_kinds_of_light_add_up_to_the_whole() {
         for parts in parts {
             let automaton = automaton(parts, emitter_as);
             for path in paths {
-                // A punctual light is invisible.
+                // A punctual light is invisible to the camera, so no expression needs to accept the path.
                 if path != "P" {
                     assert_eq!(accepted(&automaton, path).len(), 1, "{path}, {emitter_as:?}");
                 }
@@ -254,7 +255,7 @@ fn refused(text: &str) -> Error {
 
 #[test]
 fn expressions_with_too_many_states_are_refused() {
-    // The automaton must remember the last 12 of any number of scatterings, in at least 2^12 states.
+    // For `C.*D.{12}L`, the automaton must remember the last 12 scattering events, which takes at least 2^12 states.
     automaton(&["C.*D.{8}L"], EmitterAs::Both);
     for text in ["C.*D.{12}L", "L(DD|....+.(DD|....+...S?){8}E?){6}E"] {
         let error = refused(text);
@@ -270,7 +271,7 @@ fn expressions_that_no_path_can_match_are_refused() {
     let error = refused("C<RD'Flor'>L");
     assert_eq!(error.kind, ErrorKind::NotFound);
     assert!(error.message.contains("'Flor'") && error.message.contains("'Floor'"), "{}", error.message);
-    // Exponentially many states, and more NFA states than anyone writes by hand.
+    // Test expressions with exponentially many states, and with more NFA states than anyone writes by hand.
     let states = format!("C.*D{}L", ".".repeat(20));
     assert!(refused(&states).message.contains("states"));
     assert!(refused("C((D{64}G){64}S){64}L").message.contains("states"));

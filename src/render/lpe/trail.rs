@@ -1,12 +1,14 @@
-//! The states of a path in the automaton: components, each a state with its share of the path's light.
+//! Tracks a light path through the automaton of light path expressions, as components. A component is a state of the
+//! automaton with its share of the path's light.
 //!
-//! A sample of a surface with a diffuse and a glossy layer stands for both layers (Veach 1997, 9.2.4: it is weighed by
-//! the sum of the layers). A component therefore splits in two, in proportion to the layers' values, channel by
-//! channel. Components of equal state are merged: there are never more components than states, and no truncation is
-//! needed. Components in the dead state are dropped. Once all components are in absorbing states, further scattering
-//! costs nothing.
+//! A sample at a surface with a diffuse and a glossy layer stands for both layers, as it is weighted by the sum of the
+//! layers (Veach 1997, 9.2.4). A component therefore splits in two, in proportion to the values of the layers, channel
+//! by channel. Components with equal states are merged, so there are never more components than states, and none needs
+//! to be truncated. Components in the dead state are dropped. Once all components are in absorbing states, further
+//! scattering costs nothing.
 //!
-//! A subpath that several paths replay is tracked once, from each state in which they may join it.
+//! A subpath that several paths reuse is traced only once, and tracked separately for each state in which these paths
+//! may join it.
 
 use super::alphabet::Scatter;
 use super::automaton::{Automaton, DEAD};
@@ -17,16 +19,17 @@ use crate::render::path::Strategy;
 use crate::render::world::{Pane, World};
 use glam::{Vec3, Vec3A};
 
-/// A state with its share of the path.
+/// A state of the automaton with its share of the path's light.
 #[derive(Clone, Copy)]
 struct Component {
-    /// Index of the first sum of the component. Each initial state of the path has one sum per list of expressions.
+    /// Index in `Trail::sums` of the first sum of the component. For each initial state, there is one sum per list of
+    /// expressions.
     offset: u32,
     state: u16,
     share: Vec3A,
 }
 
-/// Light of a recorded subpath for one initial state and one list of expressions.
+/// Light of a recorded subpath for one initial state (`origin`) and one list of expressions.
 pub struct PathOutcome {
     origin: u16,
     list: u16,
@@ -38,15 +41,15 @@ pub struct Trail<'a> {
     components: Vec<Component>,
     /// Whether all components are in absorbing states.
     absorbing: bool,
-    /// Scratch memory: the components before an event, and those at a light.
+    /// Scratch memory: the components before an event (`before`), and the components at a light (`ends`).
     before: Vec<Component>,
     ends: Vec<Component>,
-    /// The panes between a vertex and its light sample.
+    /// The panes between the current vertex and its light sample.
     panes: Vec<Pane>,
-    /// Light of the path so far, by initial state and list.
+    /// Light of the path so far, for each initial state and each list of expressions.
     sums: SparseSums,
-    /// Light that has arrived from the light event `rest_light` since all states became absorbing. This light is
-    /// distributed to the components later.
+    /// Light from the light event `rest_light` that has arrived since all states became absorbing. `flush_rest`
+    /// distributes it to the components.
     rest: Vec3A,
     rest_light: usize,
 }
@@ -64,7 +67,7 @@ impl<'a> Trail<'a> {
         self.start_from(&[self.automaton.start()]);
     }
 
-    /// Begins a subpath, tracked from each of several initial states.
+    /// Begins a subpath that is tracked from each of the given initial states.
     #[inline]
     pub fn start_from(&mut self, origins: &[u16]) {
         self.sums.begin(origins.len() * self.automaton.lists().len());
@@ -72,7 +75,7 @@ impl<'a> Trail<'a> {
         self.set_out(origins);
     }
 
-    /// Returns to the camera, to leave it along another path. The sums are kept.
+    /// Goes back to the camera to begin another path of the same pixel. The sums are kept.
     #[inline]
     pub fn restart(&mut self) {
         self.flush_rest();
@@ -88,14 +91,15 @@ impl<'a> Trail<'a> {
         self.absorbing = origins.iter().all(|&state| self.automaton.is_absorbing(state));
     }
 
-    /// Continues along a recorded subpath.
+    /// Continues along a recorded subpath: adds its light, multiplied by `importance`, for the states of all
+    /// components.
     pub fn follow(&mut self, outcome: &[PathOutcome], importance: Vec3A) {
         for component in &self.components {
             replay_outcome(&mut self.sums, component.state, component.share * importance, outcome);
         }
     }
 
-    /// Returns to the camera, scatters at the primary vertex on a mesh, and continues along a recorded subpath.
+    /// Starts at the camera, scatters at the primary vertex on a mesh, and continues along a recorded subpath.
     #[inline]
     pub fn follow_from(&mut self, mesh: u32, lobes: Lobes, outcome: &[PathOutcome], importance: Vec3A) {
         let [diffuse, glossy, ..] = *self.automaton.next(self.automaton.start(), self.automaton.class(mesh));
@@ -110,7 +114,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Sets the panes between a vertex and its light sample, if any state depends on them.
+    /// Sets the panes between a vertex and its light sample, unless no state depends on them any more.
     pub fn set_panes(&mut self, panes: &[Pane]) {
         if !self.absorbing && !(panes.is_empty() && self.panes.is_empty()) {
             self.panes.clear();
@@ -118,7 +122,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// A list for the panes between a vertex and its light sample, if any state depends on them.
+    /// Returns the list to fill with the panes between a vertex and its light sample, or `None` if no state depends on
+    /// them any more.
     #[inline]
     pub fn panes_wanted(&mut self) -> Option<&mut Vec<Pane>> {
         if self.absorbing { None } else { Some(&mut self.panes) }
@@ -135,7 +140,7 @@ impl<'a> Trail<'a> {
             ScatterKind::Pane => Some(Scatter::Pane),
         };
         match (way, &mut self.components[..]) {
-            // Most paths have a single component.
+            // Handle the common case of a single component.
             (Some(way), [component]) => {
                 component.state = self.automaton.next(component.state, self.automaton.class(mesh))[way as usize];
                 self.absorbing = self.automaton.is_absorbing(component.state);
@@ -144,7 +149,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Handles several components, and scattering that splits a component.
+    /// Advances several components, or a component that a diffuse and a glossy layer split.
     #[inline(never)]
     fn divide(&mut self, mesh: u32, way: Option<Scatter>, lobes: Lobes) {
         let Self { automaton, components, before, .. } = self;
@@ -153,8 +158,8 @@ impl<'a> Trail<'a> {
         self.absorbing = components.iter().all(|component| automaton.is_absorbing(component.state));
     }
 
-    /// Adds the contribution of a light that the path or a light sample has reached to the list of expressions that
-    /// each component ends in.
+    /// Adds the contribution of a light that the path has hit or that a light sample has found. Each component adds
+    /// its share to the list of expressions that accept the component's path.
     #[inline(always)]
     pub fn add(&mut self, world: &World, contribution: Vec3A, source: LightSource, strategy: Strategy) {
         let light = self.automaton.light(source);
@@ -186,7 +191,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Adds a light sample at a vertex.
+    /// Adds the contribution of a light sample at a vertex.
     #[inline(never)]
     fn connect(&mut self, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, sums, .. } = self;
@@ -212,12 +217,13 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Adds a light sample at a vertex behind panes; each pane splits the components.
+    /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits the components:
+    /// a share of the light passes through the pane, and, if the opacity is below 1, another share misses the pane.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, before, ends, panes, sums, .. } = self;
         advance(automaton, automaton.class(mesh), only_layer(lobes), lobes, components, ends);
-        // Sort the panes by distance from the vertex.
+        // Sort the panes by their distance from the vertex.
         panes.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         for pane in panes.iter() {
             let (mesh, _) = world.locate(pane.triangle);
@@ -247,14 +253,14 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Ends the path: passes the light of each list of expressions to `take`.
+    /// Ends the path. Calls `take` with the index of each list of expressions and its light.
     #[inline]
     pub fn end(&mut self, take: impl FnMut(usize, Vec3A)) {
         self.flush_rest();
         self.sums.drain(take);
     }
 
-    /// Ends a subpath: stores its light by initial state and list.
+    /// Ends a subpath. Stores in `outcome` its light for each initial state and each list of expressions.
     pub fn end_from(&mut self, origins: &[u16], outcome: &mut Vec<PathOutcome>) {
         let lists = self.automaton.lists().len();
         outcome.clear();
@@ -264,7 +270,7 @@ impl<'a> Trail<'a> {
     }
 }
 
-/// Adds a contribution to the sum of a list, for one initial state.
+/// Adds light to the sum of a list; `offset` selects the initial state.
 #[inline(always)]
 fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     if list != 0 {
@@ -272,7 +278,7 @@ fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     }
 }
 
-/// Adds the light of a recorded subpath that a component joins in `state`.
+/// Adds the light of a recorded subpath that a component joins in `state`, multiplied by `importance`.
 #[inline(always)]
 fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome: &[PathOutcome]) {
     for PathOutcome { list, light, .. } in outcome.iter().filter(|b| b.origin == state) {
@@ -280,7 +286,7 @@ fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome:
     }
 }
 
-/// The only layer with a non-zero value, if there is just one.
+/// Returns the layer that scatters, if only one layer has a non-zero value.
 #[inline]
 fn only_layer(lobes: Lobes) -> Option<Scatter> {
     if lobes.glossy == Vec3::ZERO {
@@ -292,7 +298,7 @@ fn only_layer(lobes: Lobes) -> Option<Scatter> {
     }
 }
 
-/// Advances all components by one event, or by the layers of a surface.
+/// Advances all components by the event `scatter`, or, if it is `None`, by scattering at both layers of a surface.
 fn advance(
     automaton: &Automaton,
     class: usize,
@@ -314,7 +320,7 @@ fn advance(
     }
 }
 
-/// Splits a component: the share `first` goes to one state, the remainder to another.
+/// Splits a component: the share `first` goes to state `one`, the remainder to state `other`.
 #[inline]
 fn split_component(to: &mut Vec<Component>, component: &Component, one: u16, other: u16, first: Vec3A) {
     if one == other {
@@ -325,7 +331,7 @@ fn split_component(to: &mut Vec<Component>, component: &Component, one: u16, oth
     add(to, component, other, component.share - first);
 }
 
-/// Adds a component, or merges it with an existing component of equal offset and state.
+/// Adds a component in `state`, or merges it with an existing component of equal offset and state.
 #[inline(always)]
 fn add(components: &mut Vec<Component>, from: &Component, state: u16, share: Vec3A) {
     if state == DEAD {
@@ -342,7 +348,7 @@ fn diffuse_fraction(lobes: Lobes) -> Vec3A {
     fraction(lobes.diffuse, lobes.sum())
 }
 
-/// Ratio per channel; 0 where the whole is 0.
+/// Returns the ratio `component / whole` per channel; 0 where `whole` is 0.
 #[inline]
 fn fraction(component: Vec3, whole: Vec3) -> Vec3A {
     let (component, whole) = (Vec3A::from(component), Vec3A::from(whole));

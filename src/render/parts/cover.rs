@@ -1,4 +1,4 @@
-//! Checks that parts cover an image: every path of every pixel must be in exactly one part.
+//! Checks that the parts of a render cover its image: each path of each pixel must belong to exactly one part.
 
 use super::file::File;
 use super::part::Part;
@@ -7,7 +7,8 @@ use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::params::Params;
 
-/// Checks the cover and returns the order of summation: by first path, then from top to bottom and from left to right.
+/// Checks the cover. Returns the order in which to add up the parts: by their first path, then from top to bottom,
+/// then from left to right.
 pub fn order(files: &[File], params: &Params, job: Job) -> Result<Vec<usize>> {
     check_overlaps(files, job)?;
     check_holes(files, params, job)?;
@@ -16,7 +17,7 @@ pub fn order(files: &[File], params: &Params, job: Job) -> Result<Vec<usize>> {
     Ok(order)
 }
 
-/// Tests each pair of parts with overlapping rows.
+/// Returns an error if two parts share a path of a pixel. Tests each pair of parts that share a row of pixels.
 fn check_overlaps(files: &[File], job: Job) -> Result<()> {
     let mut by_row: Vec<&File> = files.iter().collect();
     by_row.sort_by_key(|f| f.part.y);
@@ -44,7 +45,8 @@ fn overlap(a: &Part, b: &Part) -> bool {
         && meet(paths(a).0, paths(a).1, paths(b).0, paths(b).1)
 }
 
-/// Counts the paths of each pixel: since parts do not overlap, a pixel with too few paths has a hole.
+/// Returns an error if a path belongs to no part. As parts do not overlap, a pixel that is covered by too few paths
+/// has a hole.
 fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
     let (width, height) = (params.width, params.height);
     let mut counts = try_vec(width * height, 0u32)?;
@@ -55,8 +57,8 @@ fn check_holes(files: &[File], params: &Params, job: Job) -> Result<()> {
         }
     }
     let Some(hole) = counts.iter().position(|&count| count < params.samples) else { return Ok(()) };
-    // Find the first missing range of paths at the first such pixel, and the rectangle around it that misses the same
-    // range.
+    // Find the first missing range of paths at the first such pixel, and a rectangle of pixels from there that lack
+    // the same range.
     let (x, y) = (hole % width, hole / width);
     let missing_at = |at: [usize; 2]| {
         let mut ranges: Vec<(u32, u32)> =

@@ -1,5 +1,5 @@
-//! Files of parts, in the format of `image::numbers`. A file holds the sums, their place in the image, and the identity
-//! of the render.
+//! Files that hold the sums of a rendered part, in the format of `image::numbers`, with the part's place in the image
+//! and the identity of the render.
 
 use super::identity::Identity;
 use super::part::Part;
@@ -11,10 +11,10 @@ use crate::render::layers::Layers;
 use crate::render::params::Params;
 use std::path::{Path, PathBuf};
 
-/// Prefix of all attribute names in the header.
+/// Prefix of the names of all header attributes that this module writes.
 const PREFIX: &str = "luxfer.part.";
 
-/// A file that holds a part.
+/// A file that holds a rendered part: its header, without the sums.
 #[derive(Clone, Debug)]
 pub struct File {
     path: PathBuf,
@@ -24,7 +24,7 @@ pub struct File {
 }
 
 impl File {
-    /// Reads the header of a file, without the sums.
+    /// Opens a file and reads its header, without the sums.
     pub fn open(path: &Path) -> Result<Self> {
         let head = numbers::read_head(path)?;
         let note = |name: &str| {
@@ -41,12 +41,13 @@ impl File {
         Ok(Self { path: path.into(), head, part, discarded })
     }
 
-    /// The file's name, for messages.
+    /// Returns the path of the file, for error messages.
     pub fn name(&self) -> impl std::fmt::Display {
         self.path.display()
     }
 
-    /// Checks that the part belongs to a render of this identity and has `numbers` sums per pixel.
+    /// Returns an error unless the part belongs to the render `identity`, has `numbers` sums per pixel, and lies
+    /// within the image.
     pub fn check(&self, identity: &Identity, numbers: usize, params: &Params) -> Result<()> {
         let differs = |what: &str, theirs: &str, ours: &str| {
             Err(Error::argument(format!(
@@ -71,7 +72,7 @@ impl File {
         self.part.check(params).map_err(|e| e.context(self.name()))
     }
 
-    /// Reads the sums of a checked part.
+    /// Reads the sums of a part that has been checked.
     pub fn read(&self, layers: Option<&Layers>) -> Result<Sums> {
         let mut sums = Sums::new(&self.part, layers)?;
         let Part { x, y, .. } = self.part;

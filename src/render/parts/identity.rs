@@ -1,13 +1,13 @@
-//! The identity of a render, which all its parts share, as readable texts for files.
+//! The identity of a render: the settings that all its parts must share, as readable texts for the headers of files.
 
 use crate::render::lpe::EmitterAs;
 use crate::render::params::Params;
 use crate::scene::{Camera, Scene};
 
 pub struct Identity {
-    /// Width and height of the whole image.
+    /// Width and height of the whole image in pixels.
     pub size: [usize; 2],
-    /// Names and values.
+    /// Name and value of each setting.
     pub texts: Vec<(&'static str, String)>,
 }
 
@@ -22,7 +22,7 @@ impl Identity {
             EmitterAs::Light => "light",
             EmitterAs::Object => "object",
         };
-        // Include the version, because a new version may change the paths.
+        // Include the version of the library, because a new version may trace different paths.
         let texts = vec![
             ("version", env!("CARGO_PKG_VERSION").to_string()),
             ("scene", format!("{:016x}", scene.fingerprint())),

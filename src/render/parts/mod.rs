@@ -1,15 +1,14 @@
-//! Renders in parts: rectangles of the image and ranges of its paths, for distribution to many machines.
+//! Renders in parts, for distribution to many machines: a part is a rectangle of the image and a range of its paths.
 //!
-//! [`run`] computes the sums of a part, a [`File`] stores them, and [`merge`] adds the sums of all parts up to the
-//! image. Path number n of a pixel is the same in every partition. The merged image therefore equals a render in a
-//! single part up to the rounding of sums in f64 (`film::sums`), for any partition and order.
+//! [`run`] computes the sums of a part, a [`File`] stores them, and [`merge`] adds up the sums of all parts to an
+//! image. Path number n of a pixel is the same in every partition. The merged image therefore equals a render in one
+//! part, for any partition and order, up to the rounding of f64 sums (`film::sums`).
 //!
-//! If the border of a part cuts a block of pixels that share vertices, the part also traces the pixels of the block
-//! that lie outside the part, because it needs their secondary vertices; borders at multiples of 8 pixels avoid this
-//! cost. A part does not depend on the results of other parts. All parts therefore have a fixed number of paths,
-//! without error targets or a time budget. The roulette weights come from a prepass (`film::prepass`) instead of the
-//! previous passes of [`super::run`]. Both kinds of weights give unbiased images, but these images differ within their
-//! errors.
+//! The pixels of a block share secondary vertices. If the border of a part cuts a block, the part therefore also
+//! traces the block's pixels outside the part. Borders at multiples of 8 pixels avoid this cost. A part does not
+//! depend on the results of other parts. All parts therefore have a fixed number of paths, without error targets or a
+//! time budget, and their roulette weights come from a prepass (`film::prepass`) instead of the previous passes of
+//! [`super::run`]. Both kinds of weights give unbiased images, but these images differ within their errors.
 //!
 //! `cover` checks that the parts are complete; `identity` checks that they belong to one render.
 
@@ -33,7 +32,7 @@ use crate::scene::Camera;
 use identity::Identity;
 use std::path::Path;
 
-/// A rendered part.
+/// The sums and the image of a rendered part.
 pub struct Rendered {
     sums: Sums,
     identity: Identity,
@@ -41,7 +40,7 @@ pub struct Rendered {
     pub film: Film,
 }
 
-/// Renders a part. Call it on the library's own thread pool.
+/// Renders a part of an image. Call it on the library's own thread pool.
 ///
 /// # Errors
 /// Parameters out of range, or error targets and time budgets; a part outside the image; a degenerate camera; no
@@ -57,18 +56,18 @@ pub fn run(world: &World, camera: &Camera, params: &Params, part: &Part, job: Jo
 }
 
 impl Rendered {
-    /// Writes the sums to a file; replaces an existing file only when the new one is complete.
+    /// Writes the sums of the part to a file. An existing file is replaced only when the new one is complete.
     pub fn save(&self, path: &Path) -> Result<()> {
         file::save(path, &self.sums, &self.identity, &self.film.beauty)
     }
 }
 
-/// Merges parts to an image, in any order of the files. The scene, the camera and the parameters must be those of the
-/// parts. Call it on the library's own thread pool.
+/// Merges the files of all parts, in any order, into the image. The scene, the camera and the parameters must be those
+/// with which the parts were rendered. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parts of another render, with the difference; overlapping parts; missing paths, with the first hole; unreadable
-/// files; the errors of [`run`].
+/// Parts of another render (the message names the difference); overlapping parts; missing paths (the message names the
+/// first hole); unreadable files; the errors of [`run`].
 pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], job: Job) -> Result<Film> {
     check(camera, params)?;
     let guided = preview::guided(params);
@@ -78,7 +77,7 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     for file in files {
         file.check(&identity, sums.width(), params)?;
     }
-    // Sum in a fixed order, so that the bits do not depend on the order of the files.
+    // Add up the parts in a fixed order, so that the order of the files does not change the image by a single bit.
     for (done, &index) in cover::order(files, params, job)?.iter().enumerate() {
         let from = done as f64 / files.len() as f64;
         job.report(0.9 * from);
@@ -88,7 +87,7 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     film(world, camera, params, &sums, job.part(0.9, 1.0))
 }
 
-/// The image of the sums of a part.
+/// Computes the film of a part from its sums.
 fn film(world: &World, camera: &Camera, params: &Params, sums: &Sums, job: Job) -> Result<Film> {
     let guided = preview::guided(params);
     let canvas = Canvas::of_sums(world, camera, &guided, sums, job.part(0.0, 0.2))?;

@@ -1,30 +1,32 @@
-//! A part of a render: a rectangle of the image and a range of paths.
+//! A part of a render, and the division of a render into parts.
 
 use crate::error::{Error, Result, check_range};
 use crate::render::film::TILE;
 use crate::render::params::Params;
 use std::fmt;
 
-/// A rectangle of the image, in pixels from the top-left corner, and a range of the paths of each of its pixels.
+/// A part of a render: a rectangle of the image, in pixels from the top-left corner, and a range of the paths of each
+/// of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
     pub x: usize,
     pub y: usize,
     pub width: usize,
     pub height: usize,
-    /// Index of the first path.
+    /// Index of the first path (`first`), and number of paths (`samples`).
     pub first: u32,
     pub samples: u32,
 }
 
 impl Part {
-    /// The whole image in one part.
+    /// Returns the part that is the whole image with all paths.
     pub fn whole(params: &Params) -> Self {
         Self { x: 0, y: 0, width: params.width, height: params.height, first: 0, samples: params.samples }
     }
 
-    /// Part number `index` of `columns` × `rows` rectangles and `ranges` ranges of paths, of about equal size.
-    /// Rectangles are numbered row by row; all rectangles of a range come before the next range.
+    /// Returns part number `index` of a division into `columns` × `rows` rectangles and `ranges` ranges of paths, all
+    /// of about equal size. Rectangles are numbered row by row. All rectangles with the first range come first, then
+    /// all rectangles with the second range, and so on.
     pub fn split(params: &Params, [columns, rows, ranges]: [u32; 3], index: u32) -> Result<Self> {
         params.check()?;
         check_range("columns", columns as usize, 1, params.width)?;
@@ -68,8 +70,8 @@ impl fmt::Display for Part {
     }
 }
 
-/// Start of piece number `piece`, if `size` is divided into `count` about equal pieces. It is rounded down to a
-/// multiple of `unit` if the pieces are large enough.
+/// Returns the start of piece number `piece` when `size` is divided into `count` pieces of about equal size. The start
+/// is rounded down to a multiple of `unit` if the pieces are large enough.
 fn bound(size: usize, count: u32, piece: u32, unit: usize) -> usize {
     let exact = (size as u64 * u64::from(piece) / u64::from(count)) as usize;
     if exact == size || size / (count as usize) < 4 * unit { exact } else { exact / unit * unit }

@@ -1,12 +1,13 @@
-//! Pearson's chi-squared test of observed frequencies against stated probabilities.
+//! Pearson's chi-squared test, which compares observed frequencies with stated probabilities.
 
-/// Bins of a smaller expected count are merged with their neighbours. [convention]
+/// Bins with a smaller expected count are merged with the next bins. [convention]
 const MIN_EXPECTED: f64 = 10.0;
 /// Probability that at least one of all tests of a routine fails by chance. [convention]
 const CHANCE: f64 = 1e-3;
 
-/// Asserts that counts follow their expectation, as one of `tests` tests whose joint probability of a chance failure
-/// is 1/1000 (Šidák 1967). Both must cover the whole sample space: their sums are equal up to quadrature errors.
+/// Asserts that the observed counts of all bins follow the expected counts. The test is one of `tests` tests; the
+/// probability that any of these fails by chance is 1/1000 (Šidák 1967). The bins must cover the whole sample space,
+/// so that the sums of both counts are equal up to quadrature errors.
 pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], tests: usize, what: &str) {
     let bins = pooled(expected, observed);
     let (total, seen) = bins.iter().fold((0.0, 0.0), |(e, o), bin| (e + bin.0, o + bin.1));
@@ -18,7 +19,7 @@ pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], test
     }
 }
 
-/// Pairs of expected and observed counts after merging; a remainder joins the last bin.
+/// Merges bins. Returns pairs of expected and observed counts; a remainder joins the last bin.
 fn pooled(expected: &[f64], observed: &[f64]) -> Vec<(f64, f64)> {
     let (mut bins, mut open) = (Vec::new(), (0.0, 0.0));
     for (&e, &o) in expected.iter().zip(observed) {
@@ -34,7 +35,7 @@ fn pooled(expected: &[f64], observed: &[f64]) -> Vec<(f64, f64)> {
     bins
 }
 
-/// Critical value of chi-squared for one of `tests` tests (Wilson and Hilferty 1931).
+/// Returns the critical value of chi-squared for one of `tests` tests (Wilson and Hilferty 1931).
 fn limit(degrees: f64, tests: usize) -> f64 {
     let chance = 1.0 - (1.0 - CHANCE).powf(1.0 / tests as f64);
     let (mut low, mut high) = (1.0, 10.0);
@@ -45,7 +46,8 @@ fn limit(degrees: f64, tests: usize) -> f64 {
     degrees * (1.0 - 2.0 / (9.0 * degrees) + low * (2.0 / (9.0 * degrees)).sqrt()).powi(3)
 }
 
-/// Upper tail probability of the standard normal distribution for positive `z` (continued fraction of Mills' ratio).
+/// Returns the upper tail probability of the standard normal distribution for positive `z`, by the continued fraction
+/// of Mills' ratio.
 fn tail(z: f64) -> f64 {
     let ratio = (1..=60).rev().fold(z, |f, k| z + f64::from(k) / f);
     (-z * z / 2.0).exp() / (std::f64::consts::TAU.sqrt() * ratio)
@@ -53,8 +55,8 @@ fn tail(z: f64) -> f64 {
 
 #[test]
 fn limits_are_those_of_tables() {
-    // The 0.1 % quantiles: 29.588 for 10 degrees of freedom, 149.449 for 100. The approximation is 0.6 % off at few
-    // degrees.
+    // Compare with 0.1 % quantiles from tables: 29.588 for 10 degrees of freedom, and 149.449 for 100. With few
+    // degrees of freedom, the approximation is off by 0.6 %.
     assert!((limit(10.0, 1) - 29.588).abs() < 0.2 && (limit(100.0, 1) - 149.449).abs() < 0.1);
     assert!((tail(1.959964) - 0.025).abs() < 1e-6);
 }

@@ -1,9 +1,9 @@
-//! Tests of the preview filter.
+//! Tests of the preview filter (`denoise`).
 
 use super::*;
 use crate::render::denoise::{self, Input};
 
-/// Albedo, normal and position of the primary hits.
+/// Renders albedo, normal and position of the primary hits.
 fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Image; 3] {
     let outputs = Outputs { aovs: vec![Aov::Albedo, Aov::Normal, Aov::Position], ..Outputs::default() };
     let film = render(world, camera, &Params { width, height, samples: 16, outputs, ..Params::default() });
@@ -11,14 +11,14 @@ fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Ima
     images.try_into().unwrap()
 }
 
-/// Mean squared error relative to the truth.
+/// Returns the mean of the squared errors, each relative to the squared true value.
 fn rel_mse(image: &Image, truth: &Image) -> f64 {
     let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
     let square = |(&v, &t): (&f32, &f32)| f64::from(v - t).powi(2) / (f64::from(t).powi(2) + (0.01 * mean).powi(2));
     image.data.iter().zip(&truth.data).map(square).sum::<f64>() / truth.data.len() as f64
 }
 
-/// A matt room with a lamp and a table, and a view of it.
+/// A matt room with a lamp and a table, and a camera in it.
 fn room() -> (World, Camera) {
     let corners = [Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 3.0, Vec3::Z * 4.0];
     let [o, x, y, z] = corners;
@@ -38,7 +38,7 @@ fn room() -> (World, Camera) {
     (world(scene), Camera::look_at(Vec3::new(2.0, 1.6, 5.5), Vec3::new(2.0, 1.4, 0.0), 0.8))
 }
 
-/// Two renders of half the paths each, and the variance of their mean.
+/// Two independent renders with half of the paths each, and the variance of their mean.
 struct Halves {
     images: [Image; 2],
     variance: Image,
@@ -59,7 +59,7 @@ fn smoothed(halves: &Halves, guide: &[Image; 3], strength: f32) -> denoise::Outp
     denoise::run(&input, &denoise::Params { strength }, Monitor::default().job()).unwrap()
 }
 
-/// Mean luminance of squares of 8 × 8 pixels.
+/// Returns the mean luminance of each square of 8 × 8 pixels.
 fn squares(image: &Image) -> Vec<f64> {
     let mut means = Vec::new();
     for top in (0..image.height).step_by(8) {
@@ -91,7 +91,7 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     let both = Image { data: one.data.iter().zip(&other.data).map(|(a, b)| (a + b) / 2.0).collect(), ..*one };
     let (before, after) = (rel_mse(&both, &truth), rel_mse(&output.image, &truth));
     assert!(after < before / 5.0, "from {before} to {after}");
-    // Bias of the mean preview in squares, without its remaining noise.
+    // Compute the squared bias of the mean preview in each square; subtract the noise that remains in the mean.
     let truth = squares(&truth);
     let off: Vec<Vec<f64>> = renders
         .iter()
@@ -106,7 +106,7 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     let bias = ((0..truth.len()).map(of_square).sum::<f64>() / truth.len() as f64).sqrt() / light;
     let stated = (renders.iter().map(|(_, output)| output.bias.powi(2)).sum::<f64>() / n).sqrt();
     assert!(stated > 0.7 * bias && stated < 1.6 * bias, "{stated} stated, {bias} measured");
-    // Strength 0 changes the image by rounding only.
+    // At strength 0, only rounding changes the image.
     let same = smoothed(halves, &guide, 0.0);
     assert!(same.image.data.iter().zip(&both.data).all(|(a, b)| (a - b).abs() <= 1e-5 * b.abs()));
     assert!(same.bias < 1e-5);
@@ -121,17 +121,17 @@ fn a_render_adds_a_preview_and_only_the_requested_layers() {
     let names: Vec<&str> = film.layers.iter().map(|l| l.name.as_str()).collect();
     assert_eq!(names, ["Normal", "Depth"]);
     let preview = film.preview.unwrap();
-    // The main image is unchanged, and the preview is better.
+    // The preview leaves the main image unchanged, and has a smaller error.
     let plain = render(&world, &camera, &Params { preview: 0.0, ..params.clone() });
     assert!(plain.preview.is_none() && plain.beauty == film.beauty);
     let truth = render(&world, &camera, &Params { preview: 0.0, samples: 256, seed: 9, ..params.clone() }).beauty;
     let (before, after) = (rel_mse(&film.beauty, &truth), rel_mse(&preview.image, &truth));
-    // With path sharing, errors are small and correlated between neighbours: the filter gains less.
+    // With path sharing, errors are small and correlated between neighbours, so that the filter gains less.
     assert!(after < before / 2.0, "from {before} to {after}");
-    // At strength 0, the filter only averages the two halves.
+    // At the smallest strengths, the filter only averages the two halves.
     let weak = render(&world, &camera, &Params { preview: 1e-12, ..params.clone() }).preview.unwrap().image;
     assert!(weak.data.iter().zip(&film.beauty.data).all(|(a, b)| (a - b).abs() <= 1e-4 * b.abs()));
-    // There is a preview from the first coarse pass on.
+    // Even the first film, which is published after the coarse pass, has a preview.
     let monitor = Monitor::default();
     let mut published = 0;
     let all = run(&world, &camera, &params, monitor.job(), &mut |film| {

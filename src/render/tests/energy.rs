@@ -1,4 +1,4 @@
-//! Tests of energy conservation.
+//! Tests of energy conservation: no scene reflects more light than it receives.
 
 use super::*;
 
@@ -19,7 +19,7 @@ fn a_furnace_shines_as_its_albedo_demands() {
 
 #[test]
 fn energy_is_never_made() {
-    // A sphere of each material around a viewer, in a sky of radiance 1: nothing may look brighter than the sky.
+    // A large ground plane of each material under a sky of radiance 1 must never look brighter than the sky.
     for (metallic, ior) in [(1.0, 1.5), (0.0, 1.5), (0.5, 1.5), (0.0, 2.4)] {
         for roughness in [0.0, 0.05, 0.2, 0.5, 0.8, 1.0] {
             let material = Material { metallic, roughness, ior, ..Material::default() };
@@ -37,11 +37,12 @@ fn energy_is_never_made() {
                 let error = film.variance.data.iter().map(|&v| f64::from(v)).sum::<f64>().sqrt() / 48.0 * 3f64.sqrt();
                 let what = format!("metallic {metallic}, ior {ior}, roughness {roughness}, height {height}: {mean}");
                 assert!(mean < 1.0 + 4.0 * error + 0.003, "{what} ± {error}");
-                // Multiple scattering between microfacets is not modelled: rough and grazing views lose energy.
+                // Multiple scattering between microfacets is not modelled, so rough surfaces and grazing views lose
+                // energy.
                 let min = if roughness <= 0.2 && height >= 1.0 { 0.95 } else { 0.3 };
                 assert!(mean > min, "{what}");
                 if metallic == 1.0 && roughness == 1.0 {
-                    // The integral of the lobe has a closed form for uniformly distributed microfacet normals.
+                    // For uniformly distributed microfacet normals, the integral of the lobe has a closed form.
                     let cosine = f64::from(height) / f64::from(height).hypot(3.0);
                     let expected = 1.0 - cosine * ((1.0 + cosine) / cosine).ln();
                     assert!((mean - expected).abs() < 4.0 * error + 0.01 * expected, "{what}, expected {expected}");

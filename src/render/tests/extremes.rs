@@ -1,4 +1,4 @@
-//! Tests of extreme sizes, positions and intensities.
+//! Tests of extreme sizes, positions and light intensities.
 
 use super::*;
 
@@ -27,7 +27,7 @@ fn scale_changes_nothing() {
 
 const SMALL: fn() -> Params = || Params { width: 24, height: 16, samples: 16, ..Params::default() };
 
-/// A scene with every feature, scaled by `scale`, with its lamps scaled by `light`.
+/// The scene of [`everything`], enlarged by `scale`, with lights that are brighter by the factor `light`.
 fn grown(scale: f32, light: f32) -> Scene {
     let mut scene = everything();
     scene.meshes.iter_mut().flat_map(|m| &mut m.positions).for_each(|p| *p *= scale);
@@ -45,7 +45,8 @@ fn grown_viewer(scale: f32) -> Camera {
     Camera { position: camera.position * scale, ..camera }
 }
 
-/// Share of samples that differ by more than rounding, relative to the mean of the first image.
+/// Returns the share of values at which `a` and `b / scale` differ by more than rounding. The tolerance is 1/1000 of
+/// the value in `a`, or of the mean of `a` if that is larger.
 fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
     let mean = a.data.iter().sum::<f32>() / a.data.len() as f32;
     let differs = |(a, b): (&f32, &f32)| (a - b / scale).abs() > 1e-3 * a.max(mean);
@@ -55,7 +56,7 @@ fn differing(a: &Image, b: &Image, scale: f32) -> f64 {
 #[test]
 fn lamps_of_any_brightness_make_the_same_image() {
     let unit = render(&world(grown(1.0, 1.0)), &viewer(), &SMALL());
-    // About 1e-9 and 1e9 cd/m², as powers of two, so that scaling is exact.
+    // Test lights of about 1e-9 and of about 1e9 cd/m². The factors are powers of two, so that scaling is exact.
     for light in [2f32.powi(-30), 2f32.powi(30)] {
         let film = render(&world(grown(1.0, light)), &viewer(), &SMALL());
         assert_eq!(differing(&unit.beauty, &film.beauty, light), 0.0, "{light}");
@@ -76,7 +77,7 @@ fn scenes_of_any_size_make_the_same_image() {
     }
 }
 
-/// A room with a lamp under its ceiling and a table.
+/// A room with a table and a lamp under its ceiling, and a camera in it.
 fn room() -> (Scene, Camera) {
     let (x, y, z) = (Vec3::X * 4.0, Vec3::Y * 3.0, Vec3::Z * 4.0);
     let meshes = vec![
@@ -103,7 +104,7 @@ fn one_pixel_and_very_wide_and_very_high_images() {
         assert_eq!(film.beauty.count_non_finite() + film.variance.count_non_finite(), 0);
         assert!(film.beauty.data.iter().any(|&v| v > 0.0));
     }
-    // The middle of a wide image equals a narrow image of the same rows.
+    // The middle columns of a wide image equal a narrow image with the same number of rows.
     let params = |width| Params { width, height: 8, samples: 4096, ..Params::default() };
     let (narrow, wide) = (render(&world, &viewer(), &params(2)), render(&world, &viewer(), &params(4)));
     for y in 0..8 {
@@ -142,14 +143,14 @@ fn without_light_every_target_is_reached_at_once() {
 #[test]
 fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
     let scene = everything();
-    // In the plane of the lamp, at one of its corners, on the sphere's wall, and outside the scene.
+    // Test a camera in the plane of the lamp, at a corner of the lamp, on the sphere's wall, and outside the scene.
     for position in [Vec3::new(0.1, 1.2, 0.2), Vec3::new(-1.0, 1.2, -1.0), Vec3::Y * 2.0, Vec3::splat(90.0)] {
         let camera = Camera { position, ..Camera::look_at(Vec3::ZERO, Vec3::new(0.3, -0.4, -1.0), 1.2) };
         let film = render(&world(scene.clone()), &camera, &SMALL());
         assert_eq!(film.beauty.count_non_finite(), 0);
         assert_eq!(film.discarded, 0);
     }
-    // The inside of a solid without lights is dark.
+    // The inside of a closed body is dark if it contains no light.
     let solid = Scene {
         meshes: vec![inward_sphere(1.0, 0), Mesh::parallelogram(Vec3::new(-1.0, 3.0, -1.0), Vec3::X, Vec3::Z, 1)],
         materials: vec![matt(0.9, 0.0), matt(0.0, 1e6)],
@@ -162,19 +163,19 @@ fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
 
 #[test]
 fn closed_white_rooms_end_with_the_right_energy() {
-    // White walls of albedo 1 and a black lamp: everything approaches the radiance of the lamp.
+    // With white walls of albedo 1 and a black lamp, all radiances approach the radiance of the lamp.
     let (mut scene, camera) = room();
     scene.materials[0] = matt(1.0, 0.0);
-    // The lamp covers the ceiling; its back faces the ceiling.
+    // Let the lamp cover nearly the whole ceiling. It emits downwards only.
     scene.meshes[6] = Mesh::parallelogram(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);
     let film = render(&world(scene), &camera, &Params { samples: 512, ..SMALL() });
     assert_mean(&film, 100.0);
-    // Emissive walls of albedo 0.99.
+    // Test emissive walls of albedo 0.99.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.99, 1.0)], ..Scene::default() };
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
     let film = render(&world(scene), &camera, &Params { samples: 512, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
-    // Emissive walls of albedo 0.998: an eighth of their light has scattered more than a thousand times.
+    // Test emissive walls of albedo 0.998: an eighth of their light has scattered more than a thousand times.
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.998, 0.2)], ..Scene::default() };
     let film = render(&world(scene), &camera, &Params { samples: 256, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
@@ -183,7 +184,7 @@ fn closed_white_rooms_end_with_the_right_energy() {
 fn assert_mean(film: &Film, expected: f64) {
     let n = film.beauty.data.len() as f64;
     let mean = film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / n;
-    // The channels are equal: only a third of the values are independent.
+    // The channels are equal, so only a third of the values are independent.
     let error = film.variance.data.iter().step_by(3).map(|&v| f64::from(v)).sum::<f64>().sqrt() / (n / 3.0);
     assert!(error < 0.02 * expected, "{error}");
     assert!((mean - expected).abs() < 4.0 * error + 1e-4 * expected, "{mean} ± {error}, expected {expected}");
@@ -202,13 +203,13 @@ fn surfaces_in_the_same_place_are_one_or_the_other() {
     let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0);
     let film = |materials| render(&world(scene(materials)), &camera, &SMALL());
     let both = film([0, 1]).beauty;
-    // Each path hits one of the coincident surfaces, and neither shadows the other: each pixel lies between its values
-    // for the two surfaces alone, with the same paths.
+    // Each path hits one of the two coincident surfaces, and neither surface shadows the other. Each pixel therefore
+    // lies between its values in the renders of either surface alone, which have the same paths.
     let (dark, bright) = (film([0, 0]).beauty, film([1, 1]).beauty);
     for ((&d, &v), &b) in dark.data.iter().zip(&both.data).zip(&bright.data) {
         assert!(v >= d * 0.99999 && v <= b * 1.00001, "{d} {v} {b}");
     }
-    // Alone, they reflect a fifth and four fifths of the sky, which is all they see.
+    // Alone, the surfaces reflect a fifth and four fifths of the light of the sky, which is all they receive.
     for (image, albedo) in [(&dark, 0.2), (&bright, 0.8)] {
         let mean = image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64;
         assert!((mean / albedo - 1.0).abs() < 0.01, "{mean} of {albedo}");
@@ -229,7 +230,7 @@ fn triangles_without_area_change_nothing_and_needles_little() {
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     };
-    // Add degenerate triangles, and degenerate lamps among them.
+    // Add three degenerate triangles, two of them emissive.
     scene.meshes.push(flat(points, 0));
     scene.meshes.push(flat([points[0]; 3], 1));
     scene.meshes.push(flat([points[0], points[0], points[2]], 1));
@@ -241,7 +242,7 @@ fn triangles_without_area_change_nothing_and_needles_little() {
     assert_eq!(film.discarded, 0);
     let share = differing(&plain.beauty, &film.beauty, 1.0);
     assert!(share < 0.03, "{share}");
-    // A triangle a million times as long as wide.
+    // Test a triangle that is a million times as long as it is wide.
     scene.meshes.push(flat([points[0], points[2], points[2] + Vec3::Y * 2e-6], 4));
     let film = render(&world(scene), &viewer(), &SMALL());
     assert_eq!(film.beauty.count_non_finite(), 0);

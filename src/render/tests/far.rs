@@ -1,9 +1,10 @@
-//! Tests of scenes far from the origin that have something near it, and of lamps at the limits of shape and brightness.
+//! Tests of scenes that lie far from the origin but have an object near it, and of lamps of extreme shape or
+//! brightness.
 
 use super::place::room;
 use super::*;
 
-/// A small tile of the ground at a position.
+/// A small tile of ground with a corner at a position.
 fn tile(at: Vec3) -> Mesh {
     Mesh::parallelogram(at, Vec3::Z * 0.25, Vec3::X * 0.25, 0)
 }
@@ -24,7 +25,7 @@ fn an_object_left_at_the_origin_does_not_blur_the_building() {
         let off = home.data.iter().zip(&away.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(off <= 1e-4 * mean(&home), "{at}: {off} of {}, mean {}", mean(&home), mean(&away));
     }
-    // Both compare with the room alone.
+    // Also compare a far room that has a distant object with the same room at the origin, alone.
     let (scene, camera) = room(Vec3::ZERO);
     let alone = render(&world(scene), &camera, &Params { samples: 256, ..params.clone() });
     let (mut scene, camera) = room(Vec3::X * 131_072.0);
@@ -41,7 +42,7 @@ fn points_in_air_see_the_light_near_them_however_far_the_scene_extends() {
         scene.meshes.extend(outlier.map(tile));
         let world = world(scene);
         let mut sum = Sum(DVec3::ZERO);
-        // A point 1 cm above the table.
+        // Measure at a point 1 cm above the table.
         let point = Vec3::new(2.5, 0.7578125, 1.5) + at;
         (0..1024).for_each(|i| irradiance_in_air(&world, point, Vec3::Y, 1, i, &mut sum));
         sum.0.x / 1024.0
@@ -52,7 +53,7 @@ fn points_in_air_see_the_light_near_them_however_far_the_scene_extends() {
 
 #[test]
 fn lamps_as_thin_as_a_hair_give_their_whole_light() {
-    // 3 m long and about 0.01 mm wide; every corner is exact in f32.
+    // The lamp is 3 m long and about 0.01 mm wide; every coordinate is exact in f32.
     let width = 2f32.powi(-17);
     let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     let receiver = centre_of(0);
@@ -65,7 +66,7 @@ fn lamps_as_thin_as_a_hair_give_their_whole_light() {
         };
         let world = world(scene);
         let at = Vertex::new(&world, world.id(0, 0), receiver.barycentric).position.as_dvec3();
-        // A line of light: integrate cosines over squares of distances along it.
+        // Treat the lamp as a line of light, and integrate both cosines / squared distance along it.
         let steps = 200_000;
         let integral: f64 = (0..steps)
             .map(|i| {
@@ -95,7 +96,7 @@ fn a_picture_of_a_room_lit_by_a_hair_has_its_light() {
         let error = film.variance.data.iter().step_by(3).map(|&v| f64::from(v)).sum::<f64>().sqrt() * 3.0;
         (mean, error)
     };
-    // The same flux along the same line.
+    // Both lamps have the same flux and lie along the same line.
     let (low, x) = (Vec3::new(2.5, 2.5, 0.5), Vec3::X);
     let thin = lit(low, x * 2f32.powi(-16), Vec3::Z * 3.0, 65536.0 * 90.0);
     let wide = lit(low - x / 128.0, x / 64.0, Vec3::Z * 3.0, 64.0 * 90.0);
@@ -140,7 +141,7 @@ fn light_too_bright_to_be_summed_is_refused_by_name() {
         &|s| s.environment = Some(Environment::Image(Image::from_fn(4, 2, |_, _| [1e16; 3]).unwrap())),
         "environment",
     );
-    // The brightest light that is allowed gives a finite picture with a finite error.
+    // The brightest lights that are allowed give a finite image with a finite error.
     let mut scene = base.clone();
     scene.materials[1].emission = Vec3::splat(1e15);
     scene.lights = vec![PunctualLight::Point { position: Vec3::Y, intensity: Vec3::splat(1e15) }];

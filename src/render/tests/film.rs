@@ -1,4 +1,4 @@
-//! Tests of passes: the same bits on any number of threads, stated errors, and stopping conditions.
+//! Tests of passes: results that do not depend on the number of threads, stated errors, and stopping conditions.
 
 use super::*;
 use crate::exec::Pool;
@@ -26,7 +26,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     }
 }
 
-/// Films of different seeds.
+/// Renders films with different seeds.
 fn repeated(world: &World, params: &Params, count: u64) -> Vec<Film> {
     (0..count).map(|seed| render(world, &viewer(), &Params { seed: 100 + seed, ..params.clone() })).collect()
 }
@@ -41,7 +41,7 @@ fn stated_variances_are_those_of_repeated_renders() {
         let (mut stated, mut observed) = (0.0, 0.0);
         for i in 0..films[0].beauty.data.len() {
             let mean = films.iter().map(|f| f64::from(f.beauty.data[i])).sum::<f64>() / n;
-            // Relative to the pixel, so that no bright pixel dominates.
+            // Divide by the squared mean of the pixel, so that no bright pixel dominates the sums.
             let scale = mean.max(1e-3).powi(2);
             observed +=
                 films.iter().map(|f| (f64::from(f.beauty.data[i]) - mean).powi(2)).sum::<f64>() / (n - 1.0) / scale;
@@ -82,7 +82,7 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         }
         let share = inside as f64 / count as f64;
         assert!((0.925..0.975).contains(&share), "{samples} paths: {share}");
-        // Compare the predicted with the measured root mean square error.
+        // Compare the stated with the measured root mean square error.
         let measured = (squared / (films.len() * truth.data.len()) as f64).sqrt() / mean;
         let stated = (stated / films.len() as f64).sqrt();
         assert!((stated / measured - 1.0).abs() < 0.1, "{samples} paths: stated {stated}, measured {measured}");
@@ -90,7 +90,7 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         let stated = (stated_relative / films.len() as f64).sqrt();
         relative_ratios.push(stated / measured);
     }
-    // Estimates converge from above: with few paths, the errors of dark pixels are overestimated.
+    // The stated error converges from above: with few paths, the errors of dark pixels are overestimated.
     for (ratio, max_bounces) in relative_ratios.iter().zip([1.3, 1.2, 1.1]) {
         assert!((0.95..max_bounces).contains(ratio), "stated over measured: {relative_ratios:?}");
     }
@@ -133,7 +133,7 @@ fn pixels_reach_the_requested_error() {
     let film = render(&world, &viewer(), &params);
     let interval = film.interval(Monitor::default().job()).unwrap();
     let mean = film.beauty.data.iter().sum::<f32>() / film.beauty.data.len() as f32;
-    // The target is the root mean square over a tile.
+    // The target applies to the root mean square over a tile.
     for top in (0..32).step_by(8) {
         for left in (0..32).step_by(8) {
             let mut squares = 0.0;
@@ -158,7 +158,7 @@ fn a_cancelled_render_leaves_what_was_published() {
         monitor.cancel();
     });
     assert_eq!(result.unwrap_err(), Error::cancelled());
-    // Only some pixels have a path, and every pixel shows one of them.
+    // Only some pixels have a path; every other pixel shows the value of one of these pixels.
     let film = last.unwrap();
     let paths = film.paths.data.iter().sum::<f32>();
     assert!(paths > 0.0 && paths < 4096.0, "{paths}");
@@ -179,7 +179,7 @@ fn a_render_stops_when_it_is_good_enough_or_out_of_time() {
     assert!(film.error <= 0.3 && film.samples < 1 << 20);
 }
 
-/// CPU time of this thread, which is independent of other programs.
+/// Returns the CPU time of this thread, which does not depend on other programs.
 fn processor_time() -> Duration {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     Duration::from_nanos(text.split(' ').next().and_then(|n| n.parse().ok()).unwrap_or(0))
@@ -188,8 +188,8 @@ fn processor_time() -> Duration {
 #[test]
 fn a_time_budget_is_kept_but_for_the_first_image() {
     let world = world(everything());
-    // Test more pixels than the time allows, and more paths per pixel than it allows. A single thread does all work,
-    // and its CPU time is at most the elapsed time.
+    // In the large image, the time does not suffice for a path in every pixel; in the small one, it does not suffice
+    // for all samples. A single thread does all work, so its CPU time is at most the elapsed time.
     Pool::new(1).unwrap().run(|| {
         for (width, height) in [(2048, 512), (1, 1)] {
             for target_error in [0.0, 1e-6] {
@@ -200,7 +200,8 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
                     let film = render(&world, &viewer(), &params);
                     (film, processor_time() - start)
                 };
-                // The smallest render: a path for one pixel in many, and an image of them.
+                // Time the smallest possible render, which traces one path in only a few of the pixels and assembles
+                // an image from them.
                 let (film, min) = timed(1);
                 let paths: f32 = film.paths.data.iter().sum();
                 assert!(paths > 0.0 && (paths <= 1024.0 || width == 1), "{width} x {height}: {paths}");
@@ -218,7 +219,8 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
 
 #[test]
 fn paths_that_are_not_finite_are_dropped_and_counted() {
-    // The square of the distance to the brightest lamp that is allowed takes the irradiance beyond the range of f32.
+    // The room is so small that the irradiance from the brightest allowed lamp overflows f32: intensity / squared
+    // distance.
     let radius = 1e-13;
     let lamp = PunctualLight::Point { position: Vec3::Y * 0.3 * radius, intensity: Vec3::splat(1e15) };
     let (meshes, materials) = (vec![inward_sphere(radius, 0)], vec![matt(0.9, 0.0)]);

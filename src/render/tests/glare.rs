@@ -1,4 +1,4 @@
-//! Tests of the unified glare rating of observers against hand-computed cases and independent geometry.
+//! Tests of the unified glare rating, against cases computed by hand and against an independent implementation.
 
 use super::*;
 use crate::exec::Pool;
@@ -11,7 +11,8 @@ fn luminaire(position: Vec3, axis: Vec3, c0: Vec3) -> PunctualLight {
     PunctualLight::Luminaire { position, axis, c0, colour: Vec3::ONE, distribution: 0 }
 }
 
-/// A room of 6 × 3 × 8 m, whose corner is the origin, with luminaires of a distribution that hang from positions.
+/// A room of 6 × 3 × 8 m with a corner at the origin. Luminaires with the given distribution hang at the given
+/// positions.
 fn room(distribution: Luminaire, places: &[Vec3]) -> Scene {
     let (x, y, z) = (Vec3::X * 6.0, Vec3::Y * 3.0, Vec3::Z * 8.0);
     let corners = [(Vec3::ZERO, z, x), (y, x, z), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y)];
@@ -36,14 +37,14 @@ fn panel() -> Luminaire {
 
 const EYE: Eye = Eye { position: Vec3::new(3.0, 1.2, 7.5), direction: Vec3::NEG_Z };
 
-/// A Lambertian panel 3 m ahead and 1.5 m above the eye: `L = 3000 / π / 0.36`, `ω = 0.36 cos γ / r²`, and Guth's index
-/// for τ = 0 and σ = 26.565°.
+/// A Lambertian panel hangs 3 m ahead of the eye and 1.5 m above it. By hand: `L = 3000 / π / 0.36`, `ω = 0.36 cos γ /
+/// r²`, and Guth's position index for τ = 0 and σ = 26.565°.
 #[test]
 fn a_panel_rates_as_computed_by_hand() {
     let rating = rated(room(panel(), &[Vec3::new(3.0, 2.7, 4.5)]), EYE, 1024);
     let [source] = rating.sources[..] else { panic!("{rating:?}") };
     assert!((source.luminance / 2652.58 - 1.0).abs() < 2e-3, "{source:?}");
-    // 0.36 × 0.447214 / 11.25 sr; p = exp(33.98e-3 × 26.565 + 21e-5 × 705.70) = exp(0.90268 + 0.14820) = 2.8602.
+    // ω = 0.36 × 0.447214 / 11.25 sr; p = exp(33.98e-3 × 26.565 + 21e-5 × 705.70) = exp(0.90268 + 0.14820) = 2.8602.
     assert!(
         (source.solid_angle - 0.014311).abs() < 1e-6 && (source.position_index - 2.8602).abs() < 2e-4,
         "{source:?}"
@@ -54,8 +55,8 @@ fn a_panel_rates_as_computed_by_hand() {
     assert!(rating.background_error < 0.05 * rating.background);
 }
 
-/// The formula with areas by the shoelace formula on the plane perpendicular to the line to the eye, and angles by
-/// their cosines.
+/// An independent implementation of the rating. Areas come from the shoelace formula on the plane perpendicular to the
+/// line to the eye, and angles from their cosines.
 fn independent(eye: Eye, lights: &[PunctualLight], background: f64) -> f64 {
     let ahead = eye.direction.as_dvec3().normalize();
     let mut sum = 0.0;
@@ -113,8 +114,8 @@ fn twenty_rooms_agree_with_independent_geometry() {
     assert!(worst < 1e-3, "{worst}");
 }
 
-/// The background is the indirect part of the illuminance at the eye, which a calculation grid gives with the direct
-/// part.
+/// A calculation grid at the eye measures the direct plus the indirect illuminance. The background must be the
+/// indirect part.
 #[test]
 fn the_background_is_the_indirect_illuminance() {
     use crate::render::illuminance::{self, Place};
@@ -125,7 +126,7 @@ fn the_background_is_the_indirect_illuminance() {
     let place = Place::Grid { origin: EYE.position, across, down, normal: EYE.direction };
     let params = illuminance::Params { columns: 1, rows: 1, samples: 1 << 15, seed: 9 };
     let total = illuminance::run(&world, &place, &params, Monitor::default().job()).unwrap();
-    // Intensity 3000 / π × cos γ, at cosines of γ = 1.5 / r and of incidence 3 / r.
+    // The intensity is 3000 / π × cos γ. The cosine of γ is 1.5 / r, and the cosine of incidence is 3 / r.
     let direct = 3000.0 / PI * 1.5 * 3.0 / 11.25f64.powi(2);
     let error = (PI * rating.background_error).hypot(total.mean_error);
     let off = total.mean - direct - PI * rating.background;
@@ -136,7 +137,7 @@ fn the_background_is_the_indirect_illuminance() {
 fn hidden_parts_do_not_glare() {
     let at = Vec3::new(3.0, 2.7, 4.5);
     let whole = rated(room(panel(), &[at]), EYE, 16).sources[0];
-    // A screen between the eye and the left half of the panel.
+    // Place a screen between the eye and the left half of the panel.
     let screened = |x: f32, width: f32| {
         let mut scene = room(panel(), &[at]);
         let screen = Mesh::parallelogram(Vec3::new(x, 1.0, 5.5), Vec3::X * width, Vec3::Y * 1.9, 0);
@@ -148,7 +149,7 @@ fn hidden_parts_do_not_glare() {
     assert_eq!(half.luminance, whole.luminance);
     let none = screened(1.0, 4.0);
     assert!(none.sources.is_empty() && none.ugr == f64::NEG_INFINITY, "{none:?}");
-    // A panel in the plane of the ceiling is seen whole.
+    // A panel in the plane of the ceiling is visible as a whole.
     let flush = rated(room(panel(), &[Vec3::new(3.0, 3.0, 4.5)]), EYE, 16).sources[0];
     let distance_squared = 9.0 + 1.8f64 * 1.8;
     assert!((flush.solid_angle - 0.36 * 1.8 / distance_squared.powf(1.5)).abs() < 1e-7, "{flush:?}");
@@ -157,7 +158,7 @@ fn hidden_parts_do_not_glare() {
 #[test]
 fn limits_have_clear_answers() {
     let at = Vec3::new(3.0, 2.7, 4.5);
-    // Nothing in view: the luminaire is behind the eye.
+    // No source is in view if the luminaire is behind the eye.
     let away = rated(room(panel(), &[at]), Eye { direction: Vec3::Z, ..EYE }, 64);
     assert!(away.ugr == f64::NEG_INFINITY && away.sources.is_empty() && away.background > 0.0);
     // A black room has a black background.
@@ -165,7 +166,7 @@ fn limits_have_clear_answers() {
     black.materials[0] = matt(0.0, 0.0);
     let black = rated(black, EYE, 64);
     assert!(black.ugr == f64::INFINITY && black.background == 0.0, "{black:?}");
-    // A luminaire without dimensions, a point and an emissive surface are not rated, but reported.
+    // A luminaire without dimensions and an emissive surface are not rated; their illuminance is reported instead.
     let direct = 3000.0 / PI * 1.5 * 3.0 / 11.25f64.powi(2);
     let point = rated(room(Luminaire { size: [0.0; 3], ..panel() }, &[at]), EYE, 64);
     assert!(point.sources.is_empty() && (point.unrated_lux / direct - 1.0).abs() < 2e-3, "{point:?}");
@@ -173,7 +174,8 @@ fn limits_have_clear_answers() {
     shining.materials.push(matt(0.0, 500.0));
     shining.meshes.push(Mesh::parallelogram(Vec3::new(2.0, 2.5, 3.0), Vec3::X, Vec3::Z, 1));
     assert!(rated(shining, EYE, 1024).unrated_lux > 1.0);
-    // Observers in a face, and those that look straight up, are refused by name.
+    // Observers inside a luminous opening and observers that look straight up are refused, with a message that names
+    // the observer.
     let scene = Arc::new(room(panel(), &[at]));
     let world = World::build(scene, Monitor::default().job()).unwrap();
     let refused =

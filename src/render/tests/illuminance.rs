@@ -1,4 +1,4 @@
-//! Tests of calculation grids and maps of surfaces against closed forms.
+//! Tests of calculation grids and of illuminance maps of surfaces, against closed forms.
 
 use super::*;
 use crate::exec::Pool;
@@ -8,7 +8,7 @@ fn measure(world: &World, place: &Place, params: &Params) -> Output {
     run(world, place, params, Monitor::default().job()).unwrap()
 }
 
-/// A lamp of 1 × 1.5 m overhead at a height of 1.5 m, 100 cd/m².
+/// A floor below a lamp of 1 × 1.5 m and 100 cd/m², which faces down at a height of 1.5 m.
 fn lit_floor() -> Scene {
     Scene {
         meshes: vec![
@@ -20,14 +20,15 @@ fn lit_floor() -> Scene {
     }
 }
 
-/// The error of a point comes from 16 batches: its deviation follows Student's t with 15 degrees of freedom. Any of
-/// the 45 points below exceeds this value with a probability of 1/1000 in total (Šidák: 2.2e-5 for each).
+/// Critical value for the deviation of a point in standard errors. The standard error is estimated from 16 batches, so
+/// the deviation follows Student's t with 15 degrees of freedom. Any of the 45 points below exceeds the value with a
+/// probability of 1/1000 in total (Šidák: 2.2e-5 for each).
 const T15: f64 = 6.02;
 
 #[test]
 fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
     let world = world(lit_floor());
-    // A point `d` below the lamp, at (x, z) from its centre: four rectangles with signs.
+    // Compute the closed form at a point `d` below the lamp and (x, z) off its centre: four rectangles with signs.
     let expected = |x: f64, z: f64, d: f64| {
         let part = |a: f64, b: f64| a.signum() * b.signum() * parallel_form_factor(a.abs(), b.abs(), d);
         let (l, r, n, f) = (0.5 + x, 0.5 - x, 0.75 + z, 0.75 - z);
@@ -54,7 +55,7 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
         assert!((output.mean - sum).abs() < 4.0 * output.mean_error && output.mean_error < 0.005 * sum);
         assert!(output.min < output.mean && output.mean < output.max);
     }
-    // The floor's texture runs along z first, then along x.
+    // On the floor's texture, u runs along z, and v along x.
     let map = measure(&world, &Place::Mesh { mesh: 0, front: true }, &Params { columns: 3, rows: 5, ..params.clone() });
     for y in 0..5 {
         for x in 0..3 {
@@ -63,7 +64,7 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
             assert!((value - truth).abs() < T15 * error + 1e-5 * truth, "{value} ± {error}, expected {truth}");
         }
     }
-    // No light arrives from below, nor on the other side.
+    // No light reaches the underside of the floor.
     assert_eq!(measure(&world, &Place::Mesh { mesh: 0, front: false }, &params).max, 0.0);
 }
 

@@ -1,4 +1,4 @@
-//! Tests of irradiance against closed forms and against BSDF sampling alone.
+//! Tests of irradiance, against closed forms and against an estimate by BSDF sampling alone.
 
 use super::*;
 use glam::Vec4;
@@ -6,7 +6,7 @@ use glam::Vec4;
 #[test]
 fn irradiance_under_a_rectangle_is_its_form_factor() {
     let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
-    // A lamp overhead: four quarters of 0.5 × 0.75 m at a height of 1.5 m, 100 cd/m², facing down.
+    // Test a lamp overhead that faces down: four quarters of 0.5 × 0.75 m at a height of 1.5 m, 100 cd/m².
     let lamp = Mesh::parallelogram(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1);
     let scene = Scene {
         meshes: vec![floor.clone(), lamp],
@@ -15,10 +15,10 @@ fn irradiance_under_a_rectangle_is_its_form_factor() {
     };
     let expected = 100.0 * std::f64::consts::PI * 4.0 * parallel_form_factor(0.5, 0.75, 1.5);
     assert_close(&world(scene.clone()), &centre_of(0), expected);
-    // The lamp's back is dark, up to the rounding of the common plane of its two triangles.
+    // The back of the lamp is dark, except for rounding in the common plane of its two triangles.
     let above = SurfacePoint { front: false, ..centre_of(1) };
     assert!(measure(&world(scene.clone()), &above).0 < 1e-6);
-    // A window: 0.8 m to each side, 1.2 m high, on the floor's plane at a distance of 0.7 m.
+    // Test a vertical window that stands on the plane of the floor: 0.8 m to each side, 1.2 m high, 0.7 m away.
     let window = Mesh::parallelogram(Vec3::new(0.7, 0.0, -0.8), Vec3::Z * 1.6, Vec3::Y * 1.2, 1);
     let scene = Scene { meshes: vec![floor, window], ..scene };
     let expected = 100.0 * std::f64::consts::PI * 2.0 * perpendicular_form_factor(0.8, 1.2, 0.7);
@@ -48,10 +48,10 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         measure(&world(Scene { meshes: vec![floor.clone(), small], ..scene.clone() }), &centre_of(0));
     let (mean, own_error) = measure(&world(scene.clone()), &centre_of(0));
     assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{mean} and {expected}");
-    // As accurate as the lamp alone: dark texels cost nothing.
+    // The standard error is nearly as small as for the separate lamp: no samples are wasted on dark texels.
     assert!(own_error < 2.0 * error, "{own_error} and {error}");
 
-    // The same texel by other texture coordinates.
+    // Map the same texel to the same place by other texture coordinates.
     for (wrap, from, to) in [
         (crate::scene::Wrap::Repeat, Vec2::new(3.0, -2.0), Vec2::new(4.0, -1.0)),
         (crate::scene::Wrap::Mirror, Vec2::new(2.0, 2.0), Vec2::new(1.0, 1.0)),
@@ -61,14 +61,14 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         moved.textures[0].wrap = [wrap; 2];
         moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = from + (to - from) * *uv);
         if wrap == crate::scene::Wrap::Mirror {
-            // Mirrored twice: from u = 2 down to 1, the texture runs from left to right.
+            // Mirror once more, so that the texture runs from left to right while u falls from 2 to 1.
             moved.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = Vec2::splat(2.0) - (*uv - Vec2::splat(2.0)));
         }
         let (mean, own_error) = measure(&world(moved), &centre_of(0));
         assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{wrap:?}: {mean} and {expected}");
     }
 
-    // Texture coordinates without area: the triangle emits uniformly with the texel at its coordinates.
+    // With texture coordinates without area, the triangle emits uniformly, with the texel at its coordinates.
     let mut flat = scene.clone();
     flat.meshes[1].uvs[0].iter_mut().for_each(|uv| *uv = Vec2::new(5.5, 2.5) / 8.0);
     let even = 5000.0 * std::f64::consts::PI * 4.0 * parallel_form_factor(1.0, 1.0, 1.0);
@@ -110,14 +110,15 @@ fn skies_light_a_floor_by_their_integral() {
     let base = Scene { meshes: vec![floor], materials: vec![matt(0.5, 0.0)], ..Scene::default() };
     let constant = Scene { environment: Some(Environment::Constant(Vec3::splat(7.0))), ..base.clone() };
     assert_close(&world(constant), &centre_of(0), 7.0 * std::f64::consts::PI);
-    // A sky proportional to the cosine of the zenith angle: E = 2π/3, up to interpolation between rows.
+    // With a sky proportional to the cosine of the zenith angle, E = 2π/3 times the zenith radiance, except for
+    // interpolation between rows.
     let image =
         Image::from_fn(16, 256, |_, y| [((std::f32::consts::PI * (y as f32 + 0.5) / 256.0).cos()).max(0.0) * 3.0; 3]);
     let sky = Scene { environment: Some(Environment::Image(image.unwrap())), ..base.clone() };
     let (mean, error) = measure(&world(sky), &centre_of(0));
     let expected = 3.0 * std::f64::consts::TAU / 3.0;
     assert!((mean - expected).abs() < 4.0 * error + 2e-4 * expected, "{mean} ± {error}, expected {expected}");
-    // A small sun among dark pixels, 30 degrees above the horizon towards -z.
+    // Test a small sun among dark pixels, 30 degrees above the horizon towards -z.
     let mut image = Image::new(64, 32, 3).unwrap();
     image.pixel_mut(32, 10).fill(1e4);
     let sun = Scene { environment: Some(Environment::Image(image)), ..base };
@@ -155,7 +156,8 @@ fn bsdf_sampling_alone_agrees_with_mis() {
         ..Scene::default()
     };
     let world = world(scene);
-    // All surfaces are black: all light is direct. Sample directions by the cosine and add the emission they hit.
+    // All surfaces are black, so all light is direct. Sample cosine-weighted directions, and add the emission that
+    // they hit.
     let n = 400_000;
     let (mut sum, mut square) = (0.0, 0.0);
     let mut rng = crate::rng::Rng::new(5, &[]);
@@ -183,7 +185,7 @@ fn bsdf_sampling_alone_agrees_with_mis() {
 
 #[test]
 fn light_through_a_clear_pane_is_the_same_by_either_strategy() {
-    // A pane between lamp and floor attenuates by its Fresnel factor and its colour.
+    // A pane between lamp and floor attenuates the light by its Fresnel transmittance (0.96) and its colour.
     let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     let lamp = Mesh::parallelogram(Vec3::new(-0.01, 2.0, -0.01), Vec3::X * 0.02, Vec3::Z * 0.02, 1);
     let pane = Mesh::parallelogram(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 2);

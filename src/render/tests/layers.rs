@@ -1,4 +1,5 @@
-//! Tests of light path expressions and surface attributes: against closed forms, each other, and the main image.
+//! Tests of the layers (light path expressions and surface attributes), against closed forms, each other, and the main
+//! image.
 
 use super::*;
 use crate::exec::Pool;
@@ -22,20 +23,22 @@ fn layer<'a>(film: &'a Film, name: &str) -> &'a Image {
     &film.layers.iter().find(|l| l.name == name).unwrap().image
 }
 
-/// A scene with every kind of light and surface, under an open sky.
+/// A scene under an open sky with every kind of light and of surface.
 fn open() -> Scene {
     let mut scene = everything();
     let names = ["Floor", "Ceiling", "Gloss", "Mirror", "Window", "Leaf"];
     scene.meshes[0] = Mesh::parallelogram(Vec3::new(-3.0, -0.6, -3.0), Vec3::Z * 6.0, Vec3::X * 6.0, 0);
     scene.meshes.iter_mut().zip(names).for_each(|(mesh, name)| mesh.name = name.into());
-    // A material with a diffuse and a glossy layer, and a pane in front of everything.
+    // Give the floor a diffuse and a glossy layer, and put a pane in front of the other objects and one below the
+    // lamp.
     scene.materials[0] = Material { ior: 1.5, roughness: 0.4, ..scene.materials[0].clone() };
     scene.meshes.push(Mesh::parallelogram(Vec3::new(-0.4, -0.5, 0.2), Vec3::X, Vec3::Y * 0.5, 4));
     scene.meshes.push(Mesh::parallelogram(Vec3::new(-1.0, 0.9, -1.0), Vec3::X, Vec3::Z * 2.0, 4));
     scene
 }
 
-/// Largest difference between a sum of layers and the image, relative to the pixel.
+/// Returns the largest difference between the sum of all layers and the main image, relative to the value of the
+/// pixel.
 fn sum_error(film: &Film) -> f32 {
     let n = film.beauty.data.len();
     (0..n)
@@ -77,8 +80,8 @@ fn complete_sets_sum_to_the_image_and_leave_its_bits() {
     }
 }
 
-/// The lamps of an emission texture are separate lights: together with the light of all others they sum to the image,
-/// and each equals the image with the others switched off.
+/// The lamps of an emission texture are separate lights: their images and the image of all other light add up to the
+/// main image. The image of one lamp equals a render with the other lamp off.
 #[test]
 fn lamps_of_a_texture_are_light_groups() {
     let texture = |lit: [f32; 2]| {
@@ -100,18 +103,18 @@ fn lamps_of_a_texture_are_light_groups() {
     assert_eq!(film.beauty, render(&room([1.0, 3.0]), &viewer(), &params).beauty);
     let error = sum_error(&film);
     assert!(error <= 1e-5, "{error}");
-    // A single lamp, with the material name in both expressions.
+    // An expression may name both the material and one of its lamps.
     let both = [("a", "C.*<L.'Lamps'>"), ("b", "C.*<L.[^'Lamps']>"), ("c", "C.*<L.'Lamps''Lamps#1'>")];
     let named = render(&room([1.0, 3.0]), &viewer(), &with(&params, &both, &[]));
     assert_eq!(layer(&named, "c"), layer(&film, "b"));
     assert!((mean(layer(&film, "a")) + mean(layer(&film, "b")) - mean(layer(&named, "a"))).abs() < 1e-4);
-    // With the second lamp off, the image is the light of the first plus the rest. Both are estimates of different
-    // paths.
+    // With the second lamp off, the light of the first lamp is the same. The two renders trace different paths, so
+    // they agree only up to noise.
     let alone = render(&room([1.0, 0.0]), &viewer(), &with(&params, &set[..1], &[]));
     let (mixed, direct) = (mean(layer(&film, "a")), mean(layer(&alone, "a")));
     assert!(mixed > 0.0 && mean(layer(&film, "b")) > 1.5 * mixed);
     assert!((mixed / direct - 1.0).abs() < 0.05, "{mixed} {direct}");
-    // A lamp that does not exist is an error that lists the existing names.
+    // If an expression names a lamp that does not exist, the error names the label.
     let missing = with(&params, &[("x", "C.*<L.'Lamps#2'>")], &[]);
     let error =
         crate::render::run(&room([1.0, 1.0]), &viewer(), &missing, Monitor::default().job(), &mut |_| ()).unwrap_err();
@@ -130,7 +133,7 @@ fn layers_have_the_same_bits_on_any_number_of_threads() {
     }
 }
 
-/// Mean of an image's red channel.
+/// Returns the mean of the first channel.
 fn mean(image: &Image) -> f64 {
     image.data.iter().step_by(image.channels).map(|&v| f64::from(v)).sum::<f64>() / (image.width * image.height) as f64
 }
@@ -163,7 +166,8 @@ fn bounces_in_a_furnace_are_a_geometric_series() {
 
 #[test]
 fn direct_diffuse_light_is_the_form_factor_whatever_the_walls_add() {
-    // A floor below a lamp in a white room, seen from above: LDE of each pixel is albedo × luminance × form factor.
+    // In a white room seen from above, a lamp hangs over a floor. In each pixel, LDE is albedo × luminance × form
+    // factor.
     let room = |albedo: f32| Scene {
         meshes: vec![
             inward_sphere(2.0, 2),
@@ -182,14 +186,14 @@ fn direct_diffuse_light_is_the_form_factor_whatever_the_walls_add() {
         let value = mean(layer(film, "LDE"));
         assert!((value / expected - 1.0).abs() < 0.01, "{value}, expected {expected}");
     }
-    // With black walls all light is direct; with white walls there is much more.
+    // With black walls, all light is direct; with white walls, there is much more light.
     assert!((mean(&black.beauty) / expected - 1.0).abs() < 0.01);
     assert!(mean(&white.beauty) > 1.2 * expected && mean(layer(&white, "LDDE")) > 0.2 * expected);
 }
 
 #[test]
 fn the_layers_of_a_paint_are_separated() {
-    // With one floor and one punctual light, the image is LDE + LSE; each is a layer of the BSDF.
+    // With a single floor and a punctual light, the image is LDE + LSE, the two layers of the BSDF.
     let paint = Material { base_color: Vec3::new(0.6, 0.4, 0.2), metallic: 0.0, roughness: 0.5, ..Material::default() };
     let scene = Scene {
         meshes: vec![Mesh::parallelogram(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, 0)],
@@ -212,7 +216,8 @@ fn the_layers_of_a_paint_are_separated() {
 
 #[test]
 fn mirrors_and_panes_are_specular_however_their_light_is_found() {
-    // A mirror floor that reflects a lamp: LSE is the lamp times the reflectance of the metal at that angle.
+    // Test a mirror floor that reflects a lamp: LSE is the lamp's radiance times the Fresnel reflectance at that
+    // angle.
     let lamp = || Mesh::parallelogram(Vec3::new(-1.5, 1.0, -1.0), Vec3::X, Vec3::Z * 2.0, 1);
     let metal = Material { base_color: Vec3::new(0.9, 0.6, 0.3), roughness: 0.0, ..Material::default() };
     let scene = Scene {
@@ -228,15 +233,15 @@ fn mirrors_and_panes_are_specular_however_their_light_is_found() {
     assert!((value - expected).abs().max_element() < 0.01 * expected.x, "{value}, {expected}");
     assert!(layer(&film, "LDE").data.iter().all(|&v| v == 0.0));
 
-    // A matt floor lit by a lamp through a pane: LDE is zero, LS*DE has all light, and it equals the light without the
-    // pane times the transmittance. Light samples find a small lamp, BSDF samples a large one.
+    // Test a matt floor that is lit by a lamp through a pane. LDE is zero, and LS*DE is all light: the light without
+    // the pane times the transmittance. Light samples find the small lamp, BSDF samples the large one.
     for size in [0.1, 8.0] {
         let lamp = Mesh::parallelogram(Vec3::new(-size / 2.0, 1.0, -size / 2.0), Vec3::X * size, Vec3::Z * size, 1);
         let pane = Mesh::parallelogram(Vec3::new(-9.0, 0.5, -9.0), Vec3::X * 18.0, Vec3::Z * 18.0, 2);
         let mut scene = Scene { meshes: vec![scene.meshes[0].clone(), lamp, pane], ..scene.clone() };
         scene.meshes[2].name = "Pane".into();
         scene.materials[0] = matt(0.5, 0.0);
-        // An index of 1 transmits everything at any angle.
+        // An index of refraction of 1 transmits all light at any angle.
         let glass = Material { base_color: Vec3::new(0.5, 0.7, 0.9), ior: 1.0, transmission: 1.0, ..matt(0.0, 0.0) };
         scene.materials.push(glass.clone());
         let camera = Camera::look_at(Vec3::new(0.4, 0.3, 0.0), Vec3::ZERO, 0.01);
@@ -256,7 +261,7 @@ fn mirrors_and_panes_are_specular_however_their_light_is_found() {
 }
 
 impl Params {
-    /// A copy without one of its expressions.
+    /// Returns the parameters without the expression of this name.
     fn clone_without(mut self, name: &str) -> Self {
         self.outputs.expressions.retain(|(n, _)| n != name);
         self
@@ -287,7 +292,7 @@ fn emissive_objects_match_the_requested_light_letters() {
 
 #[test]
 fn surfaces_seen_have_their_distance_place_and_name() {
-    // A wall at a distance of 2 m that covers the left half of the image, with vertex normals tilted.
+    // A wall at a distance of 2 m with tilted vertex normals covers the left half of the image.
     let mut wall = Mesh::parallelogram(Vec3::new(-4.0, -4.0, -2.0), Vec3::X * 4.0, Vec3::Y * 8.0, 1);
     wall.normals = vec![Vec3::new(0.6, 0.0, 0.8); 4];
     let behind = Mesh::parallelogram(Vec3::new(-1.0, -1.0, -3.0), Vec3::X, Vec3::Y, 0);
@@ -303,7 +308,7 @@ fn surfaces_seen_have_their_distance_place_and_name() {
     let at = |aov: Aov, x: usize, y: usize| layer(&film, aov.name()).pixel(x, y);
     for y in 0..5 {
         for x in 0..9 {
-            // The middle column is half covered; the standard deviation of 64 samples there is at most 1/16.
+            // The middle column is half covered. The standard deviation of its alpha over 64 samples is at most 1/16.
             let alpha = at(Aov::Alpha, x, y)[0];
             let (expected, tolerance) = [(1.0, 0.0), (0.5, 0.25), (0.0, 0.0)][(x > 3) as usize + (x > 4) as usize];
             assert!((alpha - expected).abs() <= tolerance, "{x}, {y}: {alpha}");
@@ -316,7 +321,7 @@ fn surfaces_seen_have_their_distance_place_and_name() {
             assert!((at(Aov::Depth, x, y)[0] - 2.0).abs() < 1e-5);
             let position = Vec3::from_slice(at(Aov::Position, x, y));
             assert!((position.z + 2.0).abs() < 1e-5 && position.x < 0.0);
-            // The mean distance is slightly larger than the distance of the mean position.
+            // The mean of the distances is slightly larger than the distance of the mean position.
             let distance = at(Aov::Distance, x, y)[0] - position.length();
             assert!((-1e-5..0.01).contains(&distance), "{distance}");
             assert!(Vec3::from_slice(at(Aov::Normal, x, y)).abs_diff_eq(Vec3::new(0.6, 0.0, 0.8), 1e-5));
@@ -339,7 +344,7 @@ fn layers_that_cannot_be_are_refused_by_name() {
     }
     assert!(outputs.add("x", "LD").unwrap_err().message.contains("column 3"));
     assert_eq!(outputs.expressions.len(), 1);
-    // A label that does not exist in the scene is refused when it is rendered.
+    // A label that does not exist in the scene is refused only when the layer is rendered.
     outputs.add("y", "C<RD'Nowhere'>L").unwrap();
     let params = Params { width: 4, height: 4, samples: 1, outputs, ..Params::default() };
     let result = run(&world(open()), &viewer(), &params, Monitor::default().job(), &mut |_| ());

@@ -1,4 +1,4 @@
-//! Tests of measured luminaires against closed forms.
+//! Tests of light from measured luminaires, against closed forms.
 
 use super::*;
 use crate::exec::Pool;
@@ -18,7 +18,7 @@ fn hung(luminaire: Luminaire, axis: Vec3, c0: Vec3) -> Scene {
     }
 }
 
-/// Illuminance over a parallelogram, on the side of `normal`.
+/// Returns the illuminance over a parallelogram, on the side of `normal`.
 fn lux(scene: Scene, [origin, across, down, normal]: [Vec3; 4], cells: usize) -> illuminance::Output {
     let place = Place::Grid { origin, across, down, normal };
     let params = illuminance::Params { columns: cells, rows: cells, samples: 16, seed: 1 };
@@ -28,7 +28,8 @@ fn lux(scene: Scene, [origin, across, down, normal]: [Vec3; 4], cells: usize) ->
 
 const FLOOR: [Vec3; 4] = [Vec3::new(-2.0, 0.0, -2.0), Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 4.0), Vec3::Y];
 
-/// A luminaire of uniform intensity equals a point light; one of cosine intensity lights a plane by `I cos⁴ / h²`.
+/// A luminaire of uniform intensity equals a point light. A Lambertian luminaire, whose intensity is I cos γ, lights a
+/// plane by `I cos⁴ γ / h²`.
 #[test]
 fn uniform_and_lambertian_luminaires_agree_with_closed_forms() {
     let even = b"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n250 250\n";
@@ -49,7 +50,7 @@ fn uniform_and_lambertian_luminaires_agree_with_closed_forms() {
     }
 }
 
-/// Each quarter of the circle receives the intensity of its C plane, for any orientation of the luminaire.
+/// Each quadrant of the azimuth C receives the intensity of its C plane, for any orientation of the luminaire.
 #[test]
 fn c_planes_follow_the_axes_of_the_luminaire() {
     let quarters = Luminaire {
@@ -71,7 +72,7 @@ fn c_planes_follow_the_axes_of_the_luminaire() {
     }
 }
 
-/// The flux through all sides of a box equals the flux of the luminaire inside.
+/// The flux through all sides of a box equals the flux of the luminaire inside it.
 #[test]
 fn flux_is_conserved() {
     let batwing = Luminaire {

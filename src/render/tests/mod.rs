@@ -1,4 +1,5 @@
-//! Closed forms, invariants and statistics of the whole renderer; this file has the common helpers.
+//! Tests of the whole renderer: closed forms, invariants and statistics. This file has the helpers that several tests
+//! share.
 
 pub(super) mod chi2;
 mod denoise;
@@ -26,12 +27,12 @@ use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene,
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A matt material without a reflecting top layer.
+/// A diffuse material without a reflecting top layer.
 fn matt(albedo: f32, emission: f32) -> Material {
     Material { ior: 1.0, emission: Vec3::splat(emission), ..Material::diffuse("matt", Vec3::splat(albedo)) }
 }
 
-/// A closed sphere of triangles that face its centre.
+/// A closed sphere whose triangles face its centre.
 fn inward_sphere(radius: f32, material: usize) -> Mesh {
     let (rows, columns) = (12, 24);
     let mut mesh = Mesh { material, ..Mesh::default() };
@@ -69,7 +70,8 @@ impl PathSink for Sum {
     }
 }
 
-/// Mean irradiance of a point (red channel) and its standard error, from independent scramblings.
+/// Returns the mean irradiance at a point (red channel) and its standard error, from independently scrambled
+/// sequences.
 fn measure(world: &World, point: &SurfacePoint) -> (f64, f64) {
     let (batches, per_batch) = (64, 256);
     let means: Vec<f64> = (0..batches)
@@ -86,31 +88,33 @@ fn measure(world: &World, point: &SurfacePoint) -> (f64, f64) {
 
 fn assert_close(world: &World, point: &SurfacePoint, expected: f64) {
     let (mean, error) = measure(world, point);
-    // The second term allows for coordinates in f32.
+    // The second term allows for the rounding of coordinates to f32.
     assert!((mean - expected).abs() < 4.0 * error + 1e-5 * expected, "{mean} ± {error}, expected {expected}");
 }
 
-/// The centroid of the first triangle of a mesh, on its front side.
+/// The midpoint between corners 0 and 2 of a mesh's first triangle, on its front side. This is the centre of a
+/// parallelogram.
 fn centre_of(mesh: u32) -> SurfacePoint {
     SurfacePoint { mesh, triangle: 0, barycentric: Vec2::new(0.0, 0.5), front: true }
 }
 
-/// Form factor from a small facet to a parallel rectangle `a × b` at distance `c`, with one corner on the facet's
-/// normal.
+/// Returns the form factor from a small facet to a parallel rectangle `a × b` at distance `c`, one of whose corners
+/// lies on the facet's normal.
 fn parallel_form_factor(a: f64, b: f64, c: f64) -> f64 {
     let (x, y) = (a / c, b / c);
     let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     (x / p * (y / p).atan() + y / q * (x / q).atan()) / std::f64::consts::TAU
 }
 
-/// Form factor from a small facet to a perpendicular rectangle at distance `c`, `b` high and `a` wide.
+/// Returns the form factor from a small facet to a perpendicular rectangle at distance `c`, which is `a` wide and `b`
+/// high.
 fn perpendicular_form_factor(a: f64, b: f64, c: f64) -> f64 {
     let (x, y) = (a / c, b / c);
     let r = 1.0 / (1.0 + y * y).sqrt();
     (x.atan() - r * (x * r).atan()) / std::f64::consts::TAU
 }
 
-/// A small room with every feature: textures, mirror, glass, gloss, alpha, a lamp and a sky.
+/// A small room with every feature of scenes: textures, mirror, glass, gloss, alpha, lamp, punctual light and sky.
 fn everything() -> Scene {
     let image = Image::from_fn(16, 16, |x, y| {
         let lit = x % 4 == 1 && y % 4 == 2;

@@ -7,7 +7,7 @@ use crate::render::parts::{self, File, Part};
 use crate::rng::Rng;
 use std::path::PathBuf;
 
-/// A temporary folder that is deleted with the test.
+/// A temporary folder, which is deleted at the end of the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -17,7 +17,7 @@ impl Folder {
         Self(path)
     }
 
-    /// Renders a part into a file.
+    /// Renders a part, saves it to a file, and opens the file.
     fn part(&self, world: &World, params: &Params, part: &Part) -> File {
         let path = self.0.join(format!("{}-{}-{}-{}.exr", part.x, part.y, part.first, part.samples));
         parts::run(world, &viewer(), params, part, Monitor::default().job()).unwrap().save(&path).unwrap();
@@ -35,7 +35,7 @@ fn merged(world: &World, params: &Params, files: &[File]) -> Result<Film> {
     parts::merge(world, &viewer(), params, files, Monitor::default().job())
 }
 
-/// With expressions of light, all surface attributes, and a preview.
+/// Parameters with light path expressions, all surface attributes, and a preview.
 fn with_layers() -> Params {
     let mut outputs = Outputs { aovs: Aov::ALL.to_vec(), ..Outputs::default() };
     for (name, expression) in [("direct", "LDE"), ("rest", "L.*DDE"), ("glass", "L.*S.*E")] {
@@ -73,7 +73,7 @@ fn any_parts_in_any_order_give_the_same_bits() {
         }
         assert_same(&whole, &merged(&world, &params, &files).unwrap());
     }
-    // An irregular partition without any multiples of 8.
+    // Test an irregular partition with hardly any borders at multiples of 8.
     let odd = [
         Part { x: 0, y: 0, width: 5, height: 21, first: 0, samples: 24 },
         Part { x: 5, y: 0, width: 32, height: 3, first: 0, samples: 1 },
@@ -96,7 +96,7 @@ fn parts_are_the_same_on_any_number_of_threads_and_show_themselves() {
     let film = run(1);
     assert_same(&film, &run(3));
     assert_eq!((film.beauty.width, film.beauty.height, film.samples), (17, 9, 10));
-    // The picture of a part is a crop of the whole image, up to noise.
+    // The image of a part is a crop of the whole image, up to noise.
     let whole = render(&world, &viewer(), &Params { samples: 256, ..params });
     let (mut difference, mut sum) = (0.0, 0.0);
     for y in 0..9 {
@@ -127,7 +127,7 @@ fn a_merged_image_has_the_mean_and_the_error_of_one_rendered_at_once() {
     let n = count as f64;
     let [a, b] = [0, 1].map(|i| (sums[i] / n, (squares[i] / n - (sums[i] / n).powi(2)) / (n - 1.0)));
     assert!((a.0 - b.0).abs() < 4.0 * (a.1 + b.1).sqrt(), "{a:?} {b:?}");
-    // The variance is also about equal.
+    // The mean squared errors that both films state are about equal as well.
     assert!((errors[0] / errors[1] - 1.0).abs() < 0.1, "{errors:?}");
 }
 
@@ -143,7 +143,7 @@ fn parts_that_do_not_belong_together_are_refused_by_name() {
         let error = merged(world, params, files).unwrap_err();
         assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains(word), "{word}: {}", error.message);
     };
-    // Parts of another render.
+    // Parts of another render are refused.
     let with = |change: &dyn Fn(&mut Params)| {
         let mut params = params.clone();
         change(&mut params);
@@ -160,13 +160,13 @@ fn parts_that_do_not_belong_together_are_refused_by_name() {
     let aside = Camera { fov_y: 1.0, ..viewer() };
     let error = parts::merge(&world, &aside, &params, &files, Monitor::default().job()).unwrap_err();
     assert!(error.message.contains("camera"), "{}", error.message);
-    // Overlaps and holes.
+    // Overlaps and holes are refused.
     refused(&world, &params, &[files[0].clone(), files[1].clone(), files[0].clone()], "overlap");
     refused(&world, &params, &files[1..], "paths 0 to 7 of the 8 x 12 pixels at (0, 0)");
     refused(&world, &params, &[], "16 x 12 pixels at (0, 0)");
     let late = folder.part(&world, &params, &Part { first: 3, samples: 5, ..half(0) });
     refused(&world, &params, &[late, files[1].clone()], "paths 0 to 2 of the 8 x 12 pixels");
-    // Parameters without a fixed number of paths, and invalid parts.
+    // Parameters without a fixed number of paths are refused, and so are invalid parts.
     let run = |params: &Params, part: &Part| {
         parts::run(&world, &viewer(), params, part, Monitor::default().job()).err().unwrap().message
     };
@@ -209,7 +209,7 @@ fn damaged_files_are_errors_and_a_cancel_leaves_none() {
             }
         }
         std::fs::write(&path, &damaged).unwrap();
-        // Changed pixel values go unnoticed; any other corruption is an error and nothing worse.
+        // Changed pixel values go unnoticed. Any other corruption must give an error and nothing worse.
         if let Ok(file) = File::open(&path) {
             let _ = merged(&world, &params, &[file]);
         }

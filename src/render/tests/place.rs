@@ -1,8 +1,8 @@
-//! Tests of scenes far from the origin.
+//! Tests of scenes a million metres from the origin, which must render as at the origin.
 
 use super::*;
 
-/// A room with a table, a lamp and a point light, whose coordinates are exact even a million metres away.
+/// A room with a table, a lamp and a point light. Its coordinates are exact even a million metres from the origin.
 pub(super) fn room(at: Vec3) -> (Scene, Camera) {
     let boxed = |low: Vec3, size: Vec3, material| {
         let (x, y, z) = (Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z);
@@ -51,7 +51,7 @@ fn a_room_a_million_metres_away_looks_the_same_as_at_the_origin() {
         assert!(off <= 1e-5 * mean, "{at}: {off} of {mean}");
         assert!(max(&home.layers[0].image, &away.layers[0].image) <= 1e-5, "depths");
         for (p, q) in home.layers[1].image.data.chunks(3).zip(away.layers[1].image.data.chunks(3)) {
-            // Equal up to the resolution of f32 at that distance.
+            // The positions agree up to the resolution of f32 at that distance.
             let off = (Vec3::from_slice(q) - (Vec3::from_slice(p) + at)).abs().max_element();
             assert!(off <= 0.125, "{at}: positions off by {off}");
         }

@@ -1,4 +1,4 @@
-//! Tests that bad input is refused by name.
+//! Tests that invalid scenes and parameters are refused with a message that names the culprit.
 
 use super::*;
 

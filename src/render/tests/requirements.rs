@@ -1,8 +1,10 @@
-//! Tests of the scene analysis: it finds the right features, its omissions change nothing, and its bounds hold.
+//! Tests of the static scene analysis: it finds the required features, omitting the others changes nothing, and its
+//! bounds hold.
 
 use super::*;
 
-/// Renders with and without the analysis; returns the largest difference of a pixel relative to the mean of the image.
+/// Renders with and without the scene analysis. Returns the largest difference of a value, relative to the mean of the
+/// image.
 fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
     let params = Params { width: 48, height: 32, samples, ..Params::default() };
     let mut world = world(scene);
@@ -41,7 +43,7 @@ fn required_features_are_found_and_unsupported_ones_are_named() {
     assert!(r.diffuse && r.glossy && r.mirror && r.glass && r.alpha && r.normal_maps);
     assert!(r.surfaces && r.textured_surfaces && r.points && r.environment);
     assert!(!r.spots && !r.directional && r.textures == 1);
-    // The poles of the sphere are degenerate; the pane is slightly too rough for a mirror.
+    // The triangles at the poles of the sphere are degenerate. The pane is slightly too rough to be a mirror.
     let frosted = "Material 4 is transparent and rough: light goes straight on through, and is not scattered.";
     assert_eq!(r.left_out(), ["48 triangles have no area: no ray meets them.", frosted]);
 
@@ -61,7 +63,7 @@ fn required_features_are_found_and_unsupported_ones_are_named() {
     };
     assert_eq!(found(&|_| ()), matt_only);
     assert_eq!(matt_only.left_out().len(), 9, "{:?}", matt_only.left_out());
-    // Materials without triangles, and lights that do not emit.
+    // The analysis ignores materials that no mesh uses and lights that do not emit.
     assert_eq!(
         found(&|s| s.materials.extend(everything().materials.into_iter().map(|m| Material {
             base_color_texture: None,
@@ -74,12 +76,12 @@ fn required_features_are_found_and_unsupported_ones_are_named() {
     assert_eq!(found(&|s| s.environment = Some(Environment::Constant(Vec3::ZERO))), matt_only);
     let unlit = PunctualLight::Point { position: Vec3::ZERO, intensity: Vec3::ZERO };
     assert_eq!(found(&|s| s.lights.push(unlit)), matt_only);
-    // Alpha blending requires an opacity below 1.
+    // The alpha mode matters only if the opacity may be below 1.
     assert!(!found(&|s| s.materials[0].alpha_mode = AlphaMode::Blend).alpha);
     assert!(!found(&|s| s.materials[0].alpha_mode = AlphaMode::Mask(0.9)).alpha);
     assert!(!found(&|s| (s.materials[0].transmission, s.materials[0].metallic) = (1.0, 1.0)).glass);
     assert!(found(&|s| (s.materials[0].alpha_mode, s.materials[0].alpha) = (AlphaMode::Blend, 0.9)).alpha);
-    // A texture of one colour is a constant factor; a texture of two colours is not.
+    // A texture of a single colour is a constant factor; a texture of two colours varies the material.
     let textured = |second: f32| {
         found(&|s: &mut Scene| {
             let image = Image::from_fn(2, 1, |x, _| [if x == 0 { 0.5f32 } else { second }; 3]).unwrap();
@@ -91,7 +93,7 @@ fn required_features_are_found_and_unsupported_ones_are_named() {
     assert_eq!((textured(0.75).textures, textured(0.75).albedo), (1, Vec3::splat(0.375)));
 }
 
-/// A solid glass ball refracts and a thin pane does not: the report lists the solids.
+/// Refraction is not modelled: the report names solid glass, which refracts, but not thin panes, which do not.
 #[test]
 fn glass_that_refracts_is_reported() {
     let glass = Material { transmission: 1.0, metallic: 0.0, roughness: 0.0, ..Material::default() };
@@ -114,7 +116,7 @@ fn glass_that_refracts_is_reported() {
     assert!(!named(&Material { transmission: 0.0, ..glass.clone() }, &[&ball]).0);
     let (bent, scattered, text) = named(&Material { roughness: 0.5, ..glass.clone() }, &[&pane]);
     assert!(!bent && scattered && text.contains("Material 1 is"), "{text}");
-    // A material that no mesh uses does not matter.
+    // The report ignores a material that no mesh uses.
     pane.material = 0;
     assert!(!named(&Material { roughness: 0.5, ..glass }, &[&pane]).1);
 }
@@ -132,7 +134,7 @@ fn a_lamp_without_area_is_no_light() {
         let found = with(flat);
         assert!(!found.surfaces && found.left_out().contains(&"No surface emits.".to_string()));
     }
-    // One triangle with an area is enough.
+    // A single triangle with an area is enough.
     assert!(with(Mesh { triangles: vec![[0, 1, 1], [0, 1, 2]], ..lamp(1.0) }).surfaces);
 }
 
@@ -146,17 +148,17 @@ fn bounces_follow_from_the_albedo() {
     assert_eq!((of(1.0).bounces(0.5), of(0.5).bounces(0.0), of(0.5).bounces(f32::NAN)), (None, None, None));
 }
 
-/// The share of light that is left after a number of bounces, in the room where it falls most slowly.
+/// In a closed room of one albedo, the share of light that remains after a number of bounces reaches its bound.
 #[test]
 fn the_bound_on_bounces_is_reached_by_a_room_of_one_albedo() {
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 3.0)], ..Scene::default() };
     let world = world(scene);
     assert_eq!(world.requirements().bounces(0.1), Some(4));
-    // Of the scattered light, 3 / (1 - 0.5) - 3, the bounces up to the fourth carry all but 0.5^4.
+    // The scattered light is 3 / (1 - 0.5) - 3. The first four bounces carry all of it except the share 0.5^4.
     let scattered = |bounces: i32| (1..=bounces).map(|n| 3.0 * 0.5f64.powi(n)).sum::<f64>();
     let left = 1.0 - scattered(4) / scattered(200);
     assert!((left - 0.5f64.powi(4)).abs() < 1e-12 && left < 0.1 && 1.0 - scattered(3) / scattered(200) > 0.1);
-    // A render leaves no bounce out.
+    // A render includes all bounces.
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
     let film = render(&world, &camera, &Params { width: 16, height: 16, samples: 64, ..Params::default() });
     let mean = film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / film.beauty.data.len() as f64;

@@ -1,4 +1,4 @@
-//! Tests of path sharing: the same light as separate paths, with less variance.
+//! Tests of path sharing: shared paths bring the same light as separate paths, with less variance.
 
 use super::*;
 use crate::render::path::{self, PathLength};
@@ -7,8 +7,8 @@ use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
 use crate::render::tape::Sum as Light;
 use crate::scene::accel::Ray;
 
-/// A room with every case that decides about sharing: matt, glossy, metal, mirror and glass, a smooth ball, leaves
-/// with alpha, a pane in front of a corner, and a pane outside the view.
+/// A room with every case that path sharing distinguishes: matt, glossy, metal, mirror and glass surfaces, a smooth
+/// ball, leaves with alpha, a pane in front of a corner, and a pane outside the view.
 fn room() -> Scene {
     let mut scene = everything();
     let materials = scene.materials.len();
@@ -31,7 +31,8 @@ fn room() -> Scene {
     scene
 }
 
-/// Mean of estimates along several rays, and the variance of one. Each mean is over 64 paths of one point sequence.
+/// For each ray, returns the mean of `count` estimates and the variance of one estimate. `make` computes an estimate
+/// for each ray from 64 paths of one point sequence.
 fn estimates(mut make: impl FnMut(u64) -> [Vec3; MAX_SHARED], count: u64) -> [[DVec3; 2]; MAX_SHARED] {
     let mut sums = [[DVec3::ZERO; 2]; MAX_SHARED];
     for trial in 0..count {
@@ -44,7 +45,7 @@ fn estimates(mut make: impl FnMut(u64) -> [Vec3; MAX_SHARED], count: u64) -> [[D
     sums.map(|[sum, squares]| [sum / n, ((squares - sum * sum / n) / (n - 1.0)).max(DVec3::ZERO)])
 }
 
-/// Neighbouring rays from the eye around a direction.
+/// Returns neighbouring rays from the viewer's eye towards a point.
 fn rays(world: &World, towards: Vec3) -> [Ray; MAX_SHARED] {
     let eye = viewer().position;
     std::array::from_fn(|i| {
@@ -83,7 +84,7 @@ fn together(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: 
 #[test]
 fn shared_paths_bring_the_same_light() {
     let world = world(room());
-    // Into corners, along edges, on the ball, through panes and leaves; with limited and with unlimited bounces.
+    // Look into corners, along edges, at the ball, and through panes and leaves, with few and with unlimited bounces.
     let targets = [
         Vec3::new(-1.4, -0.5, -1.4),
         Vec3::new(0.0, -0.6, -0.4),
@@ -110,7 +111,8 @@ fn shared_paths_bring_the_same_light() {
             }
         }
     }
-    // Of 720 deviations of Student's t with at least 62 degrees of freedom, one exceeds 6 in one of ten thousand runs.
+    // Of 720 deviations that follow Student's t with at least 62 degrees of freedom, one exceeds 6 in one of ten
+    // thousand runs.
     assert!(tests == 720 && worst < 6.0, "{worst}");
 }
 
@@ -122,7 +124,7 @@ fn shared_paths_scatter_less() {
         ..Scene::default()
     };
     let world = world(scene);
-    // Surfaces above the lamp are in its shadow.
+    // The surfaces above the lamp are in its shadow, so all their light is indirect.
     let rays = rays(&world, Vec3::new(0.0, 2.5, -1.5));
     let length = PathLength { max_bounces: 2, roulette_weight: None };
     let own = estimates(|trial| apart(&world, &rays, length, trial), 64);

@@ -1,9 +1,9 @@
-//! Tests of vertex colours: interpolation, agreement with a texture, and the bounds of the scene analysis.
+//! Tests of vertex colours: interpolation, opacity, and the bounds of the scene analysis.
 
 use super::*;
 use glam::Vec4;
 
-/// A matt sheet in a sky of radiance 1, with colours at its corners (0, 0), (1, 0), (1, 1) and (0, 1).
+/// A matt sheet under a sky of radiance 1, with vertex colours at its corners (0, 0), (1, 0), (1, 1) and (0, 1).
 fn sheet(colours: &[Vec4], alpha_mode: AlphaMode) -> Scene {
     let sheet = Mesh::parallelogram(Vec3::ZERO, Vec3::X, Vec3::NEG_Z, 0);
     Scene {
@@ -14,7 +14,7 @@ fn sheet(colours: &[Vec4], alpha_mode: AlphaMode) -> Scene {
     }
 }
 
-/// Mean radiance of a small part of the sheet around (x, -z), seen from straight above.
+/// Returns the mean radiance of a small part of the sheet at (`x`, `y`), seen from straight above.
 fn seen(scene: Scene, x: f32, y: f32) -> DVec3 {
     let at = Vec3::new(x, 0.0, -y);
     let camera = Camera { up: Vec3::NEG_Z, forward: Vec3::NEG_Y, ..Camera::look_at(at + Vec3::Y, at, 0.001) };
@@ -26,7 +26,7 @@ fn seen(scene: Scene, x: f32, y: f32) -> DVec3 {
 fn colours_between_vertices_are_interpolated() {
     let corners =
         [Vec4::new(1.0, 0.0, 0.0, 1.0), Vec4::new(0.0, 1.0, 0.0, 1.0), Vec4::ONE, Vec4::new(0.0, 0.0, 1.0, 1.0)];
-    // The barycentric weights in the triangle of corners 0, 1 and 2 are 1 - x, x - y and y.
+    // In the triangle of corners 0, 1 and 2, the barycentric weights are 1 - x, x - y and y.
     for (x, y) in [(0.75, 0.25), (0.5, 0.125), (0.9, 0.8)] {
         let wanted = corners[0] * (1.0 - x) + corners[1] * (x - y) + corners[2] * y;
         let found = seen(sheet(&corners, AlphaMode::Opaque), x, y);
@@ -37,10 +37,10 @@ fn colours_between_vertices_are_interpolated() {
 #[test]
 fn alpha_of_vertices_lets_the_sky_through() {
     let corners = [0.0, 1.0, 1.0, 0.0].map(|alpha| Vec4::new(0.5, 0.5, 0.5, alpha));
-    // The sheet covers 0.75 of the view with a grey of 0.4; the rest shows the sky.
+    // The sheet covers 0.75 of the view and has a radiance of 0.4; the remainder shows the sky.
     let found = seen(sheet(&corners, AlphaMode::Blend), 0.75, 0.25);
     assert!((found - DVec3::splat(0.75 * 0.4 + 0.25)).length() < 0.02, "{found}");
-    // A cutoff of one half: the sheet ends in its middle.
+    // With a cutoff of one half, the sheet ends at its middle.
     for (x, wanted) in [(0.7, 0.4), (0.3, 1.0)] {
         let found = seen(sheet(&corners, AlphaMode::Mask(0.5)), x, 0.25);
         assert!((found - DVec3::splat(wanted)).length() < 0.005, "{x}: {found}");
@@ -52,7 +52,7 @@ fn requirements_include_the_colours_of_vertices() {
     let half = [0.5; 4].map(|v| Vec4::new(v, 0.25, 1.0, 1.0));
     let found = world(sheet(&half, AlphaMode::Opaque)).requirements().clone();
     assert!((found.albedo - Vec3::new(0.4, 0.2, 0.8)).length() < 1e-6, "{}", found.albedo);
-    // Another mesh of the same material without vertex colours keeps the brightness of the material.
+    // Another mesh has the same material but no vertex colours, so that the material keeps its full albedo.
     let mut both = sheet(&half, AlphaMode::Blend);
     both.meshes.push(Mesh::parallelogram(Vec3::Y, Vec3::X, Vec3::NEG_Z, 0));
     let found = world(both).requirements().clone();
