@@ -1,12 +1,13 @@
 # Part of the Makefile: installation and distribution. Run `make` first, then:
 #
 # make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences; the debug symbols
-#                   of the shared library go into .debug/ beside it, where gdb looks for them
+#                   of the shared library go into .debug/ beside it, where gdb looks for them; the command line `luxfer`,
+#                   with the Python package that it runs (it needs python3 and numpy)
 # make uninstall    removes the installed files
 # make dist         packs the last commit into out/luxfer-VERSION.tar.gz
 #
 # PREFIX=/usr/local   folder of the installation; its subfolders LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu),
-#                     INCLUDEDIR and DOCDIR can be set too
+#                     INCLUDEDIR, DOCDIR, BINDIR and PYTHONDIR can be set too
 # DESTDIR=            folder in which the installation is staged, for packages
 # DEBUG=split         with DEBUG=keep, the libraries are installed as built, with their debug symbols: for packagers
 #                     whose tools split them
@@ -15,16 +16,21 @@ PREFIX     ?= /usr/local
 LIBDIR     ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 DOCDIR     ?= $(PREFIX)/share/doc/luxfer
+BINDIR     ?= $(PREFIX)/bin
+PYTHONDIR  ?= $(LIBDIR)/luxfer/python
 INSTALL    ?= install
 OBJCOPY    ?= objcopy
 DEBUG      ?= split
 
 HEADERS     := luxfer.h luxfer.hpp $(patsubst include/%,%,$(wildcard include/luxfer/*.h)) $(patsubst bindings/cpp/%,%,$(wildcard bindings/cpp/luxfer/*.hpp))
 DOCUMENTS   := LICENSE-APACHE LICENSE-MIT README.md $(PROFILE)/THIRD-PARTY.txt
-FOLDERS      = $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR)
+PACKAGE     := $(patsubst bindings/python/%,%,$(shell find bindings/python/luxfer -type f ! -path '*/__pycache__/*' ! -path '*/.*' ! -name '*.so'))
+MODULES     := $(sort $(patsubst %/,%,$(dir $(PACKAGE))))
+FOLDERS      = $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR) $(BINDIR) $(addprefix $(PYTHONDIR)/,$(MODULES))
 INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer.so.$(VERSION) libluxfer.a pkgconfig/luxfer.pc \
                  $(SYMBOLS) cmake/luxfer/luxferConfig.cmake cmake/luxfer/luxferConfigVersion.cmake) \
-               $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS)))
+               $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS))) \
+               $(BINDIR)/luxfer $(addprefix $(PYTHONDIR)/,$(PACKAGE) luxfer/libluxfer.so)
 
 # relative(from, to): the relative path between two folders, which need not exist.
 relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
@@ -65,11 +71,18 @@ endif
 	$(call fill,bindings/pkgconfig/luxfer.pc.in,$(LIBDIR)/pkgconfig)
 	$(call fill,bindings/cmake/luxferConfig.cmake.in,$(LIBDIR)/cmake/luxfer)
 	$(call fill,bindings/cmake/luxferConfigVersion.cmake.in,$(LIBDIR)/cmake/luxfer)
+	for file in $(PACKAGE); do $(INSTALL) -m 644 "bindings/python/$$file" "$(DESTDIR)$(PYTHONDIR)/$$file" || exit 1; done
+	ln -sf '$(call relative,$(PYTHONDIR)/luxfer,$(LIBDIR))/libluxfer.so.$(ABI)' '$(DESTDIR)$(PYTHONDIR)/luxfer/libluxfer.so'
+	sed 's|@PYTHONDIR@|$(call relative,$(BINDIR),$(PYTHONDIR))|' bindings/python/luxfer.in >'$(DESTDIR)$(BINDIR)/luxfer'
+	chmod 755 '$(DESTDIR)$(BINDIR)/luxfer'
 
-# Removes the files that `make install` has installed, and their folders if they are then empty.
+# Removes the files that `make install` has installed, with the bytecode that Python has compiled of them, and their
+# folders, the inner ones first, if they are then empty.
 uninstall:
 	rm -f $(foreach file,$(INSTALLED),'$(DESTDIR)$(file)')
-	rmdir $(foreach folder,$(FOLDERS) $(LIBDIR)/.debug,'$(DESTDIR)$(folder)') 2>/dev/null || true
+	rm -rf $(foreach folder,$(MODULES),'$(DESTDIR)$(PYTHONDIR)/$(folder)/__pycache__')
+	for folder in $(foreach folder,$(FOLDERS) $(PYTHONDIR) $(LIBDIR)/luxfer $(LIBDIR)/.debug,'$(DESTDIR)$(folder)'); do \
+	  echo "$$folder"; done | sort -r | while read -r folder; do rmdir "$$folder" 2>/dev/null || true; done
 
 dist:
 	@mkdir -p out

@@ -5,7 +5,7 @@
 
 A block is either nothing but `--8<--` lines, which name parts of programs, or Python or shell. A page's Python blocks are one
 program, and so are its shell blocks. Python works in FOLDER/PAGE/. Shell works in a tree of links that looks like the source
-tree with a library built in it, so that nothing is left behind.
+tree with a library built in it, so that nothing is left behind; `luxfer` is on its path, as the wheel installs it.
 """
 
 from __future__ import annotations
@@ -96,7 +96,12 @@ def run_sh(page: Path, library: Path, environment: dict[str, str]) -> int:
                 (tree / item.name).symlink_to(item)
         (tree / "target").mkdir()
         (tree / "target" / "release").symlink_to(library.parent)
-        return quiet(["sh", "-eu"], script, tree, {**environment, "HOME": str(home)})
+        program = home / "bin" / "luxfer"
+        program.parent.mkdir()
+        program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m luxfer "$@"\n')
+        program.chmod(0o755)
+        path = f"{program.parent}{os.pathsep}{environment.get('PATH', os.defpath)}"
+        return quiet(["sh", "-eu"], script, tree, {**environment, "HOME": str(home), "PATH": path})
 
 
 def quiet(command: list[str], program: str, folder: Path, environment: dict[str, str]) -> int:

@@ -36,6 +36,17 @@ check_tree() {
   done
 }
 
+# Runs the command line, which finds its package and the library from its own place. Most of it needs numpy.
+run_luxfer() {
+  [ "$("$1/bin/luxfer" --version)" = "luxfer $version" ] || fail "luxfer --version"
+  "$1/bin/luxfer" --help | grep -q transfer || fail "luxfer --help"
+  if python3 -c 'import numpy' 2>/dev/null; then
+    "$1/bin/luxfer" surfaces demo:target-room | grep -q Ceiling || fail "luxfer surfaces"
+  else
+    "$1/bin/luxfer" surfaces demo:target-room 2>&1 | grep -q "numpy is not installed" || fail "luxfer without numpy"
+  fi
+}
+
 # Builds programs in C and C++ against the shared and the static library, with the flags of pkg-config.
 by_pkg_config() {
   export PKG_CONFIG_PATH="$1/pkgconfig"
@@ -87,6 +98,7 @@ lib="lib${triplet:+/$triplet}"
 into="PREFIX=$scratch/prefix LIBDIR=$scratch/prefix/$lib"
 run_make install $into
 check_tree "$scratch/prefix"
+run_luxfer "$scratch/prefix"
 
 step "pkg-config"
 by_pkg_config "$scratch/prefix/$lib"
@@ -97,6 +109,7 @@ by_cmake found -DCMAKE_PREFIX_PATH="$scratch/prefix"
 
 step "moved"
 mv prefix moved
+run_luxfer "$scratch/moved"
 by_pkg_config "$scratch/moved/$lib"
 by_cmake moved_build -DSHARED_ONLY=ON -DCMAKE_PREFIX_PATH="$scratch/moved"
 mv moved prefix
@@ -124,7 +137,7 @@ cd "$scratch"
 
 step "uninstall"
 run_make uninstall $into
-left="$(find prefix ! -type d)"
+left="$(find prefix ! -type d; find prefix -path '*/luxfer*')"
 [ -z "$left" ] || fail "left behind: $left"
 
 step "as built"
@@ -136,7 +149,7 @@ run_make uninstall $into
 step "DESTDIR"
 run_make install DESTDIR="$scratch/stage" PREFIX=/usr
 [ -f stage/usr/lib/libluxfer.a ] || fail "nothing in stage/usr/lib"
-grep -r "$scratch" stage/usr/lib/pkgconfig stage/usr/lib/cmake && fail "installed files name the folder they were staged in"
+grep -r "$scratch" stage/usr/lib/pkgconfig stage/usr/lib/cmake stage/usr/bin && fail "installed files name the folder they were staged in"
 
 if [ -e "$source/.git" ]; then # the tarball contains the files that git tracks
   step "dist"

@@ -13,7 +13,12 @@ from support import PACKAGE, Case, context, demo, lit_room, luxfer, np
 
 
 def modules():
-    return [importlib.import_module(f"luxfer.{m.name}") for m in pkgutil.iter_modules(luxfer.__path__)]
+    """The modules of the package and of its command line."""
+    import luxfer.cli
+
+    names = [f"luxfer.{m.name}" for m in pkgutil.iter_modules(luxfer.__path__)]
+    names += [f"luxfer.cli.{m.name}" for m in pkgutil.iter_modules(luxfer.cli.__path__)]
+    return [importlib.import_module(name) for name in names]
 
 
 class Documentation(Case):

@@ -43,6 +43,12 @@ class Install(Case):
         self.assertTrue(package.startswith(str(target)) and library.startswith(str(target)), run.stdout)
         self.assertEqual(size, "(3, 2, 1)")
 
+        # The command line that pip installs beside it.
+        command = [sys.executable, target / "bin" / "luxfer", "surfaces", "demo:target-room"]
+        run = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("Ceiling", run.stdout)
+
     def test_the_source_tree_itself(self):
         program = "import luxfer; print(luxfer.library._name)"
         environment = {**os.environ, "PYTHONPATH": str(PACKAGE)}

@@ -7,44 +7,48 @@ Settings are keyword arguments, and enumerations may be given by name ("srgb", "
 exceptions of errors.Error with its message. `abi` has the whole C interface, callable through `library`.
 """
 
-from . import _abi as abi
-from . import errors, types
-from ._library import library
-from .candidate import SurfaceCandidate
-from .context import Context
-from .demo import DemoPhoto
-from .emission import Emission
-from .errors import Error
-from .features import Features
-from .guides import Guides
-from .illuminance import Illuminance
-from .image import Image, homography
-from .importance import Importance
-from .job import Job, Task
-from .lamps import Lamps
-from .photometry import (
-    Distribution,
-    colour_of_temperature,
-    colour_temperature,
-    false_colour,
-    fit_temperature,
-    glare,
-    mix_primaries,
-    presets,
-)
-from .plan import Plan
-from .rectify import Rectify
-from .relight import Relight
-from .render import Render
-from .scene import Scene
-from .segment import Segment
-from .sheet import align_sheet, print_sheet
-from .strokes import Strokes
-from .stylize import Stylize
-from .transfer import Transfer
-from .warning import StageWarning
+from __future__ import annotations
 
-__version__ = f"{abi.LUXFER_VERSION_MAJOR}.{abi.LUXFER_VERSION_MINOR}.{abi.LUXFER_VERSION_PATCH}"
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from . import _abi as abi
+    from . import errors, types
+    from ._library import library
+    from .candidate import SurfaceCandidate
+    from .context import Context
+    from .demo import DemoPhoto
+    from .emission import Emission
+    from .errors import Error
+    from .features import Features
+    from .guides import Guides
+    from .illuminance import Illuminance
+    from .image import Image, homography
+    from .importance import Importance
+    from .job import Job, Task
+    from .lamps import Lamps
+    from .photometry import (
+        Distribution,
+        colour_of_temperature,
+        colour_temperature,
+        false_colour,
+        fit_temperature,
+        glare,
+        mix_primaries,
+        presets,
+    )
+    from .plan import Plan
+    from .rectify import Rectify
+    from .relight import Relight
+    from .render import Render
+    from .scene import Scene
+    from .segment import Segment
+    from .sheet import align_sheet, print_sheet
+    from .strokes import Strokes
+    from .stylize import Stylize
+    from .transfer import Transfer
+    from .warning import StageWarning
 
 __all__ = [
     "Context",
@@ -86,3 +90,54 @@ __all__ = [
     "print_sheet",
     "types",
 ]
+
+#: The module of each name that is not a class in a module of its own name.
+_MODULES = {
+    "abi": "_abi",
+    "library": "_library",
+    "Error": "errors",
+    "SurfaceCandidate": "candidate",
+    "DemoPhoto": "demo",
+    "homography": "image",
+    "Task": "job",
+    "StageWarning": "warning",
+    "align_sheet": "sheet",
+    "print_sheet": "sheet",
+    **dict.fromkeys(
+        (
+            "Distribution",
+            "colour_of_temperature",
+            "colour_temperature",
+            "false_colour",
+            "fit_temperature",
+            "glare",
+            "mix_primaries",
+            "presets",
+        ),
+        "photometry",
+    ),
+}
+
+
+def _module_of(name: str) -> str:
+    return _MODULES.get(name, name.lower())
+
+
+def __getattr__(name: str) -> Any:
+    """Imports what is first used, with its module: `luxfer --help` needs neither numpy nor the library."""
+    if name == "__version__":
+        abi = importlib.import_module("._abi", __name__)
+        value: Any = f"{abi.LUXFER_VERSION_MAJOR}.{abi.LUXFER_VERSION_MINOR}.{abi.LUXFER_VERSION_PATCH}"
+    elif name in __all__:
+        module = importlib.import_module("." + _module_of(name), __name__)
+        value = module if name in ("abi", "errors", "types") else getattr(module, name)
+    elif name in map(_module_of, __all__):
+        value = importlib.import_module("." + name, __name__)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,177 @@
+"""Rendering for a goal: noise, or time, by the library's plan; and the filtered picture with its stated error."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .console import Console, clock, doubt, percent
+from .exits import usage
+from .options import CLEAN, QUALITIES
+
+if TYPE_CHECKING:
+    from ..image import Image
+    from ..render import Render
+    from ..scene import Scene
+    from ..types import CameraParams, RenderParams, RenderReport
+    from .values import Camera
+
+#: Strength of the noise filter: the usual one.
+FILTER = 1.0
+#: Noise above which even the filtered picture is in doubt.
+ROUGH = 0.1
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Noise to reach, or time to use; with both, whichever comes first. 0 is none."""
+
+    error: float = 0.0
+    seconds: float = 0.0
+    is_budget: bool = False
+    """Whether the time is for all of the work, as --time has it."""
+
+    @classmethod
+    def of(cls, args: argparse.Namespace) -> Goal:
+        """The goal of --time, --error or --quality."""
+        if args.time is not None:
+            return cls(seconds=args.time, is_budget=True)
+        if args.error is not None:
+            return cls(error=args.error)
+        error, seconds = QUALITIES[args.quality]
+        return cls(error=error, seconds=seconds)
+
+    def for_plan(self, passed: float) -> dict[str, Any]:
+        """The goal as a plan takes it, after some seconds of the time have passed."""
+        if self.is_budget:
+            return {"time_budget_ms": max(100, round(1000 * (self.seconds - passed)))}
+        return {"target_error": self.error}
+
+    def settings(self, planned: RenderParams, args: argparse.Namespace) -> dict[str, Any]:
+        """Settings of the rendering by those of a plan."""
+        out = dict(planned)
+        if not self.is_budget and self.seconds:
+            out["time_budget_ms"] = round(1000 * self.seconds)
+        return {**out, "preview": 0.0 if args.no_filter else FILTER}
+
+
+def camera_of(scene: Scene, wanted: Camera | None) -> CameraParams:
+    """The settings of the camera of --camera, or of the first one."""
+    count = scene.counts.cameras
+    if wanted is not None and wanted.index is None:
+        return {"position": wanted.position, "target": wanted.target, "fov_y": wanted.fov_y or 1.0}
+    index = wanted.index if wanted is not None and wanted.index is not None else 0
+    if index < count:
+        return scene.camera(index)
+    if count == 0:
+        raise usage("--camera: the scene has no camera; give POSITION/TARGET, such as --camera 1,1.6,2/4,1,0")
+    raise usage(f"--camera: there is no camera {index}; the scene has {count}, from 0")
+
+
+def base_settings(args: argparse.Namespace) -> RenderParams:
+    """Settings that a goal does not change."""
+    width, height = args.size
+    return {"width": width, "height": height, "seed": args.seed}
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A rendering, and what is shown of it."""
+
+    exact: Image
+    shown: Image
+    report: RenderReport
+    is_filtered: bool
+    goal: Goal
+    is_black: bool
+
+    def facts(self) -> dict[str, Any]:
+        """The picture as JSON has it."""
+        return {
+            "paths_per_pixel": self.report.samples,
+            "error": self.report.error,
+            "filtered": self.is_filtered,
+            "filter_error": self.report.preview_bias if self.is_filtered else None,
+        }
+
+    def words(self) -> str:
+        """Its quality in a line."""
+        noise = f"{percent(self.report.error)} of noise at {self.report.samples} paths per pixel"
+        if self.is_filtered:
+            return f"{noise}; the PNG is filtered, with a bias of {percent(self.report.preview_bias)}"
+        return noise
+
+    def doubts(self) -> list[dict[str, Any]]:
+        """Reasons to doubt it."""
+        out = []
+        if self.is_black:
+            out.append(
+                doubt(
+                    "render",
+                    "black",
+                    "the picture is black: the scene has no light",
+                    "try another camera or --sky 100",
+                )
+            )
+        elif not self.report.error <= max(ROUGH if self.is_filtered else ROUGH / 2, self.goal.error):
+            message = f"the picture has {percent(self.report.error)} of noise"
+            out.append(doubt("render", "noise", message, "try a longer --time, or --quality best"))
+        elif self.goal.error and self.report.error > 1.2 * self.goal.error:
+            message = f"the picture has {percent(self.report.error)} of noise instead of {percent(self.goal.error)}"
+            out.append(
+                doubt(
+                    "render", "noise", message, f"try --error {100 * self.goal.error:g}%, which has no limit of time"
+                )
+            )
+        return out
+
+    def save(self, path: Path, white: float) -> None:
+        """Saves what is shown as PNG, or the values themselves as EXR."""
+        if path.suffix.lower() == ".png":
+            self.shown.save(path, exposure=1 / white)
+        else:
+            self.exact.save(path)
+
+
+def plan_render(
+    render: Render, args: argparse.Namespace, goal: Goal, passed: float, console: Console
+) -> dict[str, Any]:
+    """The settings of a rendering by a plan."""
+    from ..plan import Plan
+
+    plan = Plan(render.context)
+    plan.run_render(render, console.step("planning"), settings=base_settings(args), **goal.for_plan(passed))
+    return goal.settings(plan.render_params, args)
+
+
+def run(render: Render, settings: dict[str, Any], goal: Goal, console: Console, title: str = "rendering") -> Picture:
+    """Renders and chooses what is shown."""
+    render.run(console.step(title), **settings)
+    report, exact = render.report, render.image("beauty")
+    # Without light each path returns 0, and the relative error is not a number.
+    is_black = not bool(exact.numpy().any())
+    is_filtered = settings.get("preview", 0) > 0 and not report.error <= CLEAN and not is_black
+    shown = render.image("preview") if is_filtered else exact
+    return Picture(exact, shown, report, is_filtered, goal, is_black)
+
+
+def automatic_white(picture: Picture) -> float:
+    """A luminance to show as white: what 99 % of the pixels do not exceed, but at most eight times the middle."""
+    import numpy as np
+
+    from .values import LUMINANCE
+
+    luminance = np.nan_to_num(picture.exact.numpy()[:, :, :3]) @ np.array(LUMINANCE)
+    lit = luminance[luminance > 0]
+    if not lit.size:
+        return 100.0
+    white = min(float(np.quantile(lit, 0.99)), 8 * float(np.median(lit)))
+    return float(f"{white:.2g}") if math.isfinite(white) and white > 0 else 100.0
+
+
+def expected(seconds: float, error: float) -> str:
+    """The prediction of a plan in words."""
+    return f"{clock(seconds)} until {percent(error)} of noise"

@@ -1,0 +1,160 @@
+"""The lit scene of a transfer, and its lamps in another colour or strength: --colour and --lux.
+
+Light is linear in the emission, so both are factors of the emission, and nothing is solved again."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .console import Console
+from .exits import failed
+from .values import LUMINANCE
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+    from ..transfer import Transfer
+    from ..types import Fixture
+
+#: Columns of luminaires.csv, as the library writes them.
+COLUMNS = (
+    "x_m,y_m,z_m,normal_x,normal_y,normal_z,axis_x,axis_y,axis_z,length_m,width_m,area_m2,"
+    "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind"
+)
+
+
+def luminance(colour: Any) -> float:
+    """Luminance of a linear colour."""
+    return float(sum(w * c for w, c in zip(LUMINANCE, colour)))
+
+
+@dataclass
+class Lit:
+    """The lit scene, and what has been done to it."""
+
+    scene: Scene
+    transfer: Transfer
+    white: float
+    """The luminance to show as white."""
+    lamps: list[Fixture]
+    lux: float | None = None
+    lux_words: str = ""
+    is_changed: bool = False
+
+    @classmethod
+    def of(cls, transfer: Transfer, white: float) -> Lit:
+        """The result of the stage RELIGHT."""
+        return cls(transfer.scene("lit"), transfer, white, transfer.fixtures)
+
+    @property
+    def material(self) -> int:
+        """The emitting material, which the transfer adds last."""
+        return self.scene.counts.materials - 1
+
+    @property
+    def flux(self) -> float:
+        """Luminous flux of all lamps in lumens."""
+        return sum(lamp.flux for lamp in self.lamps)
+
+    def multiply(self, factors: Any) -> None:
+        """Multiplies the light of all lamps, per channel."""
+        from ..photometry import colour_temperature
+
+        emission = self.scene.material(self.material)["emission"]
+        self.scene.set_emission(self.material, [e * f for e, f in zip(emission, factors)])
+        lamps = []
+        for lamp in self.lamps:
+            radiance = tuple(r * f for r, f in zip(lamp.radiance, factors))
+            before, after = luminance(lamp.radiance), luminance(radiance)
+            cct, duv = colour_temperature(self.scene.context, radiance) if after > 0 else (0.0, 0.0)
+            flux = lamp.flux * after / before if before > 0 else 0.0
+            lamps.append(dataclasses.replace(lamp, radiance=radiance, flux=flux, cct=cct, duv=duv))
+        self.lamps, self.is_changed = lamps, True
+
+    def mean_colour(self) -> tuple[float, ...]:
+        """The light of all lamps together, per channel."""
+        return tuple(sum(lamp.radiance[i] * lamp.area for lamp in self.lamps) for i in range(3))
+
+    def recolour(self, wanted: float | tuple[float, ...]) -> None:
+        """Gives the lamps together a colour, by kelvin or linear RGB, at equal flux."""
+        from ..photometry import colour_of_temperature
+
+        colour = colour_of_temperature(self.scene.context, wanted) if isinstance(wanted, float) else wanted
+        now = self.mean_colour()
+        if luminance(now) <= 0 or any(n <= 0 < c for n, c in zip(now, colour)):
+            raise failed("--colour: the lamps have no light in a colour channel that the colour needs")
+        scale = luminance(now) / luminance(colour)
+        self.multiply([max(0.0, c) * scale / n if n > 0 else 0.0 for c, n in zip(colour, now)])
+
+    def dim_to(self, lux: float, surface: str, console: Console) -> None:
+        """Gives a plane of desks a mean illuminance; the picture is exposed for it."""
+        from .lux import measure
+        from .plane import above_floor
+
+        plane = above_floor(self.transfer.scene("unsolved"), self._ceiling(surface))
+        emission = self.scene.material(self.material)["emission"]
+        whole = measure(self.scene, plane, 0.25, 0.005, console).report.mean
+        self.scene.set_emission(self.material, (0, 0, 0))
+        other = measure(self.scene, plane, 0.25, 0.005, console).report.mean if self._has_other_light() else 0.0
+        self.scene.set_emission(self.material, emission)
+        if lux < other:
+            raise failed(f"--lux is {lux:g}, but the scene's other lights alone give {other:.0f} lux on {plane.words}")
+        if whole - other <= 1e-6 * whole:
+            raise failed(f"--lux: no light of the lamps reaches {plane.words}")
+        factor = (lux - other) / (whole - other)
+        self.multiply((factor,) * 3)
+        self.white *= lux / whole
+        self.lux, self.lux_words = lux, plane.words
+
+    def _ceiling(self, surface: str) -> str:
+        """The name of what emits, which was split off the surface."""
+        return self.scene.mesh_name(self.scene.counts.meshes - 1) or surface
+
+    def _has_other_light(self) -> bool:
+        """Whether anything else gives light; known once the lamps are off."""
+        return int(self.scene.requirements().lights) != 0
+
+    def save_lamps(self, path: Path) -> None:
+        """luminaires.csv."""
+        if not self.is_changed:
+            self.transfer.save_fixtures(path)
+            return
+        from . import files
+
+        lines = [COLUMNS]
+        for lamp in self.lamps:
+            numbers = (
+                *lamp.position,
+                *lamp.normal,
+                *lamp.axis,
+                *lamp.size,
+                lamp.area,
+                *lamp.radiance,
+                lamp.flux,
+                lamp.cct,
+                lamp.duv,
+            )
+            lines.append(",".join(f"{n:.7g}" for n in numbers) + f",{lamp.kind}")
+        files.write_text(path, "\n".join(lines) + "\n")
+
+    def facts(self) -> dict[str, Any]:
+        """The lamps as JSON has them."""
+        return {"lamps": len(self.lamps), "flux_lm": self.flux, "cct_k": self.cct, "lux": self.lux}
+
+    @property
+    def cct(self) -> float | None:
+        """Correlated colour temperature of the lamps together."""
+        from ..photometry import colour_temperature
+
+        colour = self.mean_colour()
+        return colour_temperature(self.scene.context, colour)[0] if luminance(colour) > 0 else None
+
+    def words(self) -> list[str]:
+        """The lamps in lines."""
+        temperature = f", {self.cct:.0f} K" if self.cct else ""
+        lines = [f"{len(self.lamps)} lamps, {self.flux:.0f} lm together{temperature}"]
+        if self.lux is not None:
+            lines.append(f"{self.lux:g} lux on {self.lux_words}")
+        return lines
