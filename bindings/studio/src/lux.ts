@@ -30,7 +30,9 @@ export function showLux(message: Message): void {
   byId("lux").replaceChildren(
     plan(values, message.size as [number, number], maximum),
     make("dl", { class: "numbers" }, ...numbers.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
-    make("p", { class: "quiet" }, `On a plane ${short(message.height as number)} m above 0, half a metre from the walls. ± is 95 %.`),
+    make("p", { class: "quiet" }, `On a plane at a height of ${short(message.height as number)} m, half a metre from the walls. ± is 95 %.${
+        message.inside ? ` ${message.inside} points lie inside of furniture and do not count.` : ""
+      }`),
   );
   byId("lux").dataset.mean = String(mean);
 }

@@ -142,9 +142,9 @@ class Page {
       const stops = Number(exposure.value);
       byId("exposure-out").textContent = stops === 0 ? "±0" : `${stops > 0 ? "+" : "−"}${Math.abs(stops).toFixed(1)} stops`;
       if (this.autoExposure === null) return;
-      const value = this.autoExposure * 2 ** stops;
+      const value = stops === 0 ? null : this.autoExposure * 2 ** stops;
       store.note({ exposure: value });
-      this.connection.expose(value);
+      this.connection.expose(value ?? this.autoExposure);
     };
     this.keys(opener);
   }
@@ -190,9 +190,8 @@ class Page {
   }
 
   private open(project: Project, isWhole = false): void {
-    const { exposure, camera } = isWhole ? project : { exposure: null, camera: project.camera };
-    this.setExposure(exposure);
-    this.store.replace({ ...project, exposure, camera, plan: isWhole ? project.plan : null });
+    this.resetExposure();
+    this.store.replace({ ...project, exposure: isWhole ? project.exposure : null, plan: isWhole ? project.plan : null });
     hideNotice();
   }
 
@@ -205,8 +204,7 @@ class Page {
     }
   }
 
-  private setExposure(exposure: number | null): void {
-    this.autoExposure = exposure;
+  private resetExposure(): void {
     byId<HTMLInputElement>("exposure").value = "0";
     byId("exposure-out").textContent = "±0";
   }
@@ -276,7 +274,7 @@ class Page {
     this.drawMasks();
     if (message.live) {
       const since = this.sent.get(message.version);
-      if (since !== undefined) document.body.dataset.latency = String(Math.round(performance.now() - since));
+      if (since !== undefined) document.body.dataset.latency = `${Math.round(performance.now() - since)} ${Math.round(1000 * message.seconds)}`;
       return;
     }
     this.photo.lamps = message.lamps;
@@ -320,8 +318,7 @@ class Page {
 
   private takePicture(message: Message, rgb: Uint8Array): void {
     if (message.which === "after") {
-      if (this.autoExposure === null) this.setExposure(message.exposure);
-      if (this.store.project.exposure === null) this.store.note({ exposure: message.exposure });
+      this.autoExposure = message.exposure;
       this.trade.setPicture(message);
       const error = message.noise ?? message.bias;
       const stated = error === null ? "" : `, stated error ${percent(error)}`;

@@ -10,7 +10,7 @@ import luxfer
 
 T = TypeVar("T")
 
-#: How often a running job is asked to end because newer work has arrived.
+#: How often the progress of a running job is looked at.
 POLL_SECONDS = 0.01
 
 
@@ -29,6 +29,7 @@ class Latest(Generic[T]):
         self._work, self._failed = work, failed
         self._item: T | None = None
         self._busy = self._closed = False
+        self._job: luxfer.Job[Any] | None = None
         self._changed = threading.Condition()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
@@ -37,12 +38,16 @@ class Latest(Generic[T]):
         """Replaces what waits or runs."""
         with self._changed:
             self._item = item
+            if self._job is not None:
+                self._job.cancel()
             self._changed.notify_all()
 
     def close(self) -> None:
         """Ends the thread, after what runs has given up."""
         with self._changed:
             self._closed = True
+            if self._job is not None:
+                self._job.cancel()
             self._changed.notify_all()
         self._thread.join()
 
@@ -68,16 +73,24 @@ class Latest(Generic[T]):
     def finish(self, job: luxfer.Job[Any], seen: Callable[[float], None] | None = None) -> Any:
         """Waits for a job of the library and returns its result; cancels it if it gets out of date. `seen` gets the
         finished share."""
-        while True:
-            try:
-                return job.wait(timeout=POLL_SECONDS)
-            except luxfer.errors.NotReady:
-                if not job.finished and self.is_replaced:
-                    job.cancel()
-                elif seen is not None:
-                    seen(job.poll()[0])
-            except luxfer.errors.Cancelled:
-                raise OutOfDate from None
+        with self._changed:
+            self._job = job
+            if self.is_replaced:
+                job.cancel()
+        try:
+            while True:
+                try:
+                    return job.wait(timeout=POLL_SECONDS)
+                except luxfer.errors.NotReady:
+                    if job.finished:
+                        continue  # meanwhile: the next wait tells how
+                    if seen is not None:
+                        seen(job.poll()[0])
+        except luxfer.errors.Cancelled:
+            raise OutOfDate from None
+        finally:
+            with self._changed:
+                self._job = None
 
     def _run(self) -> None:
         while True:

@@ -47,6 +47,9 @@ AFTER = {
     "plan": "first",
     "picture": "first",
 }
+#: Brightness of the picture: what the mean of its surfaces becomes of display white [convention: middle grey], and their
+#: reflectance [convention: between the 0.2 to 0.7 of EN 12464-1 for floors and ceilings].
+KEY, REFLECTANCE = 0.18, 0.45
 #: Distance from a lamp's contour at which a point still means it, as a share of the photo's width.
 REACH = 0.015
 
@@ -62,6 +65,7 @@ class Light:
         self.keys: dict[str, str] = {}
         self.shown: dict[str, tuple[luxfer.Render, bool, float]] = {}
         self.told = 0.0
+        self.exposure = 1.0
         self.planned: dict[str, Any] = {}
         self.is_replaced = False  # whether the mask of the lights is not the library's own
         self.lights: luxfer.Image | None = None
@@ -77,8 +81,8 @@ class Light:
         self.step("unwarp", project["removed"], lambda: self.unwarp(project))
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
         self.step("relight", project["white"], lambda: self.relight(project))
-        self.step("first", shot, lambda: self.first_picture(project, size))
         self.step("lux", [], lambda: self.measure(surface))
+        self.step("first", shot, lambda: self.first_picture(project, size))
         if compare != "off":
             self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
         self.step("second", shot, lambda: self.second_picture(project, size))
@@ -274,15 +278,19 @@ class Light:
         lux = self.thread.finish(job)
         report = lux.report
         values = lux.image("lux").numpy()[..., 0]
+        open_points = values[values > 0]  # no light at all reaches points inside of furniture
+        scale = values.size / max(1, open_points.size)
+        self.exposure = exposure_for(report.mean * scale)
         self.send(
             "lux",
             values=[[round(float(v), 1) for v in row] for row in values],
             size=metres,
             height=grid["origin"][1],
-            minimum=report.minimum,
-            mean=report.mean,
+            inside=values.size - open_points.size,
+            minimum=float(open_points.min()) if open_points.size else 0.0,
+            mean=report.mean * scale,
             maximum=report.maximum,
-            error=1.96 * report.mean_error,
+            error=1.96 * report.mean_error * scale,
         )
 
     def refine(self, project: Project, size: tuple[int, int]) -> None:
@@ -317,13 +325,11 @@ class Light:
     ) -> None:
         image, report = render.image("preview"), render.report
         values = image.numpy()
-        exposure = project["exposure"]
-        if exposure is None and which == "after":
-            exposure = project["exposure"] = pictures.exposure_for(values)
+        exposure = project["exposure"] or self.exposure
         self.shown[which] = (render, is_done, seconds)
         self.send(
             "picture",
-            pictures.rgb(values, exposure or 1.0),
+            pictures.rgb(values, exposure),
             which=which,
             width=image.size[0],
             height=image.size[1],
@@ -333,7 +339,7 @@ class Light:
             bias=report.preview_bias if math.isfinite(report.preview_bias) else None,
             seconds=seconds,
             mean=float(values.mean()),
-            exposure=exposure,
+            exposure=self.exposure,
             camera=self.camera(project),
         )
 
@@ -352,6 +358,11 @@ class Light:
         chosen = {k: v for k, v in plan.render_params.items() if k in ("samples", "target_error", "seed")}
         self.planned = {"render": chosen}
         self.send("plan", noise=project["noise"], seconds=plan.report.seconds, error=plan.report.error, plan=self.planned)
+
+
+def exposure_for(lux: float) -> float:
+    """What to multiply a picture in cd/m² with, so that a room with that mean illuminance has a usual brightness."""
+    return KEY * math.pi / (REFLECTANCE * lux) if lux > 1e-6 else 1.0
 
 
 def pattern_of(project: Project) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from .jobs import Latest
 from .project import Project
 
 #: Size of the small photo: masks of this many pixels appear within 50 ms on two cores.
-PIXELS = 200_000
+PIXELS = 150_000
 #: Side of the window in which doubt is summed, as a share of the photo's width.
 WINDOW = 0.06
 #: Mean doubt in the window below which no stroke is asked for.

@@ -10,10 +10,6 @@ import numpy as np
 
 #: Masks of more pixels are reduced for the display.
 DISPLAY_PIXELS = 600_000
-#: Share of display white that the mean of a picture becomes, before its lamps clip [convention: middle grey is 0.18].
-KEY = 0.2
-#: Brightest pixels, which are lamps and windows, as a share; they do not count in that mean.
-GLARING = 0.05
 
 
 def reduced(image: luxfer.Image, pixels: int) -> luxfer.Image:
@@ -31,13 +27,6 @@ def rgb(values: np.ndarray[Any, Any], exposure: float) -> bytes:
     linear = np.clip(values[..., :3] * np.float32(exposure), 0, 1)
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.power(linear, np.float32(1 / 2.4)) - 0.055)
     return (255 * encoded + 0.5).astype(np.uint8).tobytes()
-
-
-def exposure_for(values: np.ndarray[Any, Any]) -> float:
-    """A factor that gives a picture in cd/m² a usual brightness."""
-    luminance = np.sort((values[..., :3] @ np.array((0.2126, 0.7152, 0.0722), np.float32)).ravel())
-    mean = float(luminance[: max(1, int(len(luminance) * (1 - GLARING)))].mean())
-    return KEY / mean if mean > 1e-9 else 1.0
 
 
 def bits(mask: luxfer.Image) -> tuple[dict[str, Any], bytes]:
@@ -72,7 +61,7 @@ def regions(mask: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], int]:
         return i
 
     # Join each run of a row with the runs of the row above that it touches.
-    first = np.searchsorted(rows, np.arange(mask.shape[0] + 1)).tolist()
+    first: list[int] = np.searchsorted(rows, np.arange(mask.shape[0] + 1)).tolist()
     for row in range(1, mask.shape[0]):
         above, here = first[row - 1], first[row]
         while above < first[row] and here < first[row + 1]:
@@ -85,8 +74,8 @@ def regions(mask: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], int]:
     roots = np.array([root(i) for i in range(len(rows))], int)
     names, numbers = np.unique(roots, return_inverse=True)
     labels = np.zeros(mask.shape, np.int32)
-    for row, start, end, n in zip(rows, starts, ends, numbers + 1):
-        labels[row, start:end] = n
+    for i, n in enumerate(numbers + 1):
+        labels[rows[i], starts[i] : ends[i]] = n
     return labels, len(names)
 
 

@@ -61,8 +61,8 @@ render.image("preview").save("render.png", {exposure})
 '''
 
 
-def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any]) -> str:
-    """The text of the program. Surface and camera are those that the project leaves to the library."""
+def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
+    """The text of the program. Surface, camera and exposure are those that the project leaves to the library."""
     strokes = []
     for stroke in project["strokes"]:
         phase, positive = PHASES[stroke["kind"]]
@@ -86,5 +86,5 @@ def program(project: Project, size: tuple[int, int], surface: str, camera: dict[
         width=size[0],
         height=size[1],
         render=(project["plan"] or {"render": {"target_error": project["noise"]}})["render"],
-        exposure=project["exposure"] or 1.0,
+        exposure=project["exposure"] or exposure,
     )

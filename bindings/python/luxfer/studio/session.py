@@ -201,7 +201,7 @@ class Session:
         if kind == "project":
             return projects.dumps(wanted.project)
         surface = wanted.project["surface"] or light.surface
-        return program.program(wanted.project, wanted.size, surface, light.camera(wanted.project))
+        return program.program(wanted.project, wanted.size, surface, light.camera(wanted.project), light.exposure)
 
     def out(self, kind: str, folder: Path) -> Path:
         """A file of the results, written into a folder; NotReady if they are not there yet."""
@@ -223,7 +223,7 @@ class Session:
             if kind == "exr":
                 self.light.render.write_exr(path)
             else:
-                self.light.render.image("preview").save(path, self.wanted.project["exposure"] or 1.0)
+                self.light.render.image("preview").save(path, self.wanted.project["exposure"] or self.light.exposure)
         else:
             raise LookupError(f"there is no result {kind}")
         return path
