@@ -1,6 +1,6 @@
 // What the browser tests share: a studio server, Chromium, and what a user does on the page.
 
-import { spawn } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdtempSync, mkdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
@@ -30,7 +30,7 @@ export function missing() {
   if (!existsSync(PYTHON)) return `there is no ${PYTHON}: run benches/peers/install.sh studio`;
   if (!existsSync(CHROMIUM)) return `there is no ${CHROMIUM}`;
   if (!existsSync(join(ROOT, "bindings/python/luxfer/studio/static/index.html"))) return "the page has not been built: run make studio";
-  return "";
+  return false;
 }
 
 /** A folder that is deleted when the test ends. */
@@ -40,8 +40,21 @@ export function folder(test) {
   return out;
 }
 
+const photos = mkdtempSync(join(tmpdir(), "luxfer-studio-photo-"));
+process.on("exit", () => rmSync(photos, { recursive: true, force: true }));
+const PHOTO = join(photos, "office.png");
+const MAKE_PHOTO = `import luxfer, sys
+luxfer.DemoPhoto(luxfer.Context()).run(width=300, height=200, samples=6).image("picture").save(sys.argv[1])`;
+
+/** A small generated photo, made once. */
+function photo() {
+  if (!existsSync(PHOTO)) execFileSync(PYTHON, ["-c", MAKE_PHOTO, PHOTO], { cwd: join(ROOT, "bindings/python") });
+  return PHOTO;
+}
+
 /** Starts a server; `address` is what it prints. */
 export async function serve(test, state, args = []) {
+  args = [photo(), ...args];
   const server = spawn(PYTHON, ["-m", "luxfer.studio", "--no-browser", "--port", "0", "--state", state, ...args], {
     cwd: join(ROOT, "bindings/python"),
     stdio: ["ignore", "pipe", "inherit"],
@@ -129,3 +142,10 @@ export async function picture(page, name) {
   mkdirSync(PICTURES, { recursive: true });
   await page.screenshot({ path: join(PICTURES, `${name}.png`) });
 }
+
+/** Strokes on the generated photo: what they mark, and places as shares of its size. */
+export const STROKES = [
+  ["plane", [0.15, 0.25], [0.4, 0.14]],
+  ["not-plane", [0.2, 0.95], [0.7, 0.93]],
+  ["light", [0.5, 0.39], [0.62, 0.41]],
+];

@@ -39,6 +39,7 @@ class Page {
   private draft: Stroke | null = null;
   private compare = "off";
   private lastMasks: { masks: Masks; bits: Uint8Array } | null = null;
+  private rounds = 0; // masks at the full size that have come
   private sent = new Map<number, number>(); // when each version was sent
   private autoExposure: number | null = null;
 
@@ -278,6 +279,8 @@ class Page {
       return;
     }
     this.photo.lamps = message.lamps;
+    this.rounds += 1;
+    document.body.dataset.rounds = String(this.rounds);
     document.body.dataset.masks = message.digest;
     this.notes.fail("");
     const { plane, lights } = message.errors;
