@@ -53,8 +53,8 @@ function photo() {
 }
 
 /** Starts a server; `address` is what it prints. */
-export async function serve(test, state, args = []) {
-  args = [photo(), ...args];
+export async function serve(test, state, args = [], isSmall = true) {
+  if (isSmall) args = [photo(), ...args];
   const server = spawn(PYTHON, ["-m", "luxfer.studio", "--no-browser", "--port", "0", "--state", state, ...args], {
     cwd: join(ROOT, "bindings/python"),
     stdio: ["ignore", "pipe", "inherit"],
