@@ -1,5 +1,5 @@
-"""The server of the studio without a browser: who is let in, which files are read, and that projects give the same result
-again. Runs where benches/peers/install.sh has installed `studio`."""
+"""The server of the studio without a browser: who is let in, which files are read, and that projects give the same
+result again. Runs where benches/peers/install.sh has installed `studio`."""
 
 import asyncio
 import json
@@ -51,7 +51,9 @@ class Server:
 
     def get(self, path="", data=None, **headers):
         """Status, headers and content of an answer."""
-        request = urllib.request.Request(f"{self.origin}/{path}", data, {k.replace("_", "-"): v for k, v in headers.items()})
+        request = urllib.request.Request(
+            f"{self.origin}/{path}", data, {k.replace("_", "-"): v for k, v in headers.items()}
+        )
         try:
             with urllib.request.urlopen(request) as answer:
                 return answer.status, answer.headers, answer.read()
@@ -73,7 +75,9 @@ class Server:
         out = []
         async with websockets.connect(address, origin=origin, max_size=None) as socket:
             for version, edit in enumerate(edits):
-                await socket.send(json.dumps({"type": "edit", "version": version, "size": SIZE, "compare": "off", **edit}))
+                await socket.send(
+                    json.dumps({"type": "edit", "version": version, "size": SIZE, "compare": "off", **edit})
+                )
                 seen = {}
                 while not {"idle", "failed"} & seen.keys():
                     message = await asyncio.wait_for(socket.recv(), 120)
@@ -116,7 +120,14 @@ class Door(Case):
         self.assertEqual(headers["x-content-type-options"], "nosniff")
 
     def test_a_wrong_token_is_refused(self):
-        for path in ("", "start", "wrong/start", self.server.token[:-1] + "/start", self.server.token + "x/start", "/start"):
+        for path in (
+            "",
+            "start",
+            "wrong/start",
+            self.server.token[:-1] + "/start",
+            self.server.token + "x/start",
+            "/start",
+        ):
             self.assertEqual(self.server.get(path)[0], 403, path)
 
     def test_another_host_is_refused(self):
@@ -126,7 +137,12 @@ class Door(Case):
         self.assertEqual(self.server.get(f"{self.server.token}/start", Host=f"localhost:{port}")[0], 200)
 
     def test_another_origin_is_refused(self):
-        for origin in ("http://evil.example", "null", "http://127.0.0.1:1", self.server.origin.replace("127.0.0.1", "localhost")):
+        for origin in (
+            "http://evil.example",
+            "null",
+            "http://127.0.0.1:1",
+            self.server.origin.replace("127.0.0.1", "localhost"),
+        ):
             self.assertEqual(self.server.get(f"{self.server.token}/start", Origin=origin)[0], 403, origin)
         self.assertEqual(self.server.get(f"{self.server.token}/start", Sec_Fetch_Site="cross-site")[0], 403)
         self.assertEqual(self.server.get(f"{self.server.token}/start", Origin=self.server.origin)[0], 200)
@@ -210,13 +226,17 @@ class Work(Case):
     def test_a_project_gives_the_same_again(self):
         server = self.serve(self.photo)
         started = server.json("start")["project"]
-        proposed, first = server.talk("session01", [{"project": {**started, "noise": 1.0}}, {"project": self.painted(server)}])
+        proposed, first = server.talk(
+            "session01", [{"project": {**started, "noise": 1.0}}, {"project": self.painted(server)}]
+        )
         self.assertIn("PROPOSED", {w["code"] for w in proposed["warnings"]["list"]})
         self.assertNotIn("PROPOSED", {w["code"] for w in first["warnings"]["list"]})
         self.assertNotEqual(proposed["masks"]["digest"], first["masks"]["digest"])
         self.assertTrue(first["picture"]["done"])
         self.assertGreater(first["lux"]["mean"], 1)
-        kept = {kind: server.get(f"{server.token}/out/{kind}?session=session01") for kind in ("csv", "png", "glb", "exr")}
+        kept = {
+            kind: server.get(f"{server.token}/out/{kind}?session=session01") for kind in ("csv", "png", "glb", "exr")
+        }
         for kind, (status, _, content) in kept.items():
             self.assertEqual(status, 200, kind)
             self.assertGreater(len(content), 100, kind)
@@ -233,7 +253,10 @@ class Work(Case):
             self.assertEqual(again.get(f"{again.token}/out/{kind}?session=session01")[2], kept[kind][2], kind)
 
         done = subprocess.run(
-            [sys.executable, "program.py"], cwd=self.folder, env={**os.environ, "PYTHONPATH": str(PACKAGE)}, capture_output=True
+            [sys.executable, "program.py"],
+            cwd=self.folder,
+            env={**os.environ, "PYTHONPATH": str(PACKAGE)},
+            capture_output=True,
         )
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual((self.folder / "luminaires.csv").read_bytes(), kept["csv"][2])
@@ -249,7 +272,9 @@ class Work(Case):
         at = np.subtract(lamp["position"], surface["origin"])
         u, v = float(at @ np.array(surface["u_axis"])), float(at @ np.array(surface["v_axis"]))
         zone = {**painted, "zones": [[u - 0.35, v - 0.35, u + 0.35, v + 0.35]]}
-        without, free, back = server.talk("session01", [{"project": removed}, {"project": zone}, {"project": painted}])
+        without, free, back = server.talk(
+            "session01", [{"project": removed}, {"project": zone}, {"project": painted}]
+        )
         self.assertEqual(len(without["masks"]["lamps"]), len(first["masks"]["lamps"]) - 1)
         self.assertLess(len(free["lamps"]["list"]), len(first["lamps"]["list"]))
         self.assertEqual(back["texture"]["digest"], first["texture"]["digest"])

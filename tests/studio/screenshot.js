@@ -20,7 +20,11 @@ try {
   }
   await page.selectOption("#compare", "white");
   // A picture of the full size, after the first small one.
-  await page.waitForFunction(() => !document.getElementById("label-before").hidden && /\d+ s|ms/.test(document.getElementById("planned").textContent));
+  await page.waitForFunction(
+    () =>
+      !document.getElementById("label-before").hidden &&
+      /\d+ s|ms/.test(document.getElementById("planned").textContent),
+  );
   mkdirSync(out, { recursive: true });
   await page.screenshot({ path: join(out, "studio.png") });
 } finally {

@@ -29,7 +29,8 @@ const FLAGS = [
 export function missing() {
   if (!existsSync(PYTHON)) return `there is no ${PYTHON}: run benches/peers/install.sh studio`;
   if (!existsSync(CHROMIUM)) return `there is no ${CHROMIUM}`;
-  if (!existsSync(join(ROOT, "bindings/python/luxfer/studio/static/index.html"))) return "the page has not been built: run make studio";
+  if (!existsSync(join(ROOT, "bindings/python/luxfer/studio/static/index.html")))
+    return "the page has not been built: run make studio";
   return false;
 }
 

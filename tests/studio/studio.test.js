@@ -25,7 +25,9 @@ async function paintAll(page) {
 
 /** The results for the present strokes, once they are all there. */
 async function settled(page) {
-  await page.waitForFunction(() => document.body.dataset.last === "progress" || document.body.dataset.last === "idle");
+  await page.waitForFunction(
+    () => document.body.dataset.last === "progress" || document.body.dataset.last === "idle",
+  );
   return { masks: await state(page, "masks"), texture: await state(page, "texture") };
 }
 
@@ -95,7 +97,8 @@ test("by keys alone", { skip }, async (t) => {
   const page = await open(t, await browse(t), server.address);
   const before = await state(page, "masks");
   // Tab reaches the photo; nothing is clicked in this test.
-  for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "photo"; i++) await page.keyboard.press("Tab");
+  for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "photo"; i++)
+    await page.keyboard.press("Tab");
   assert.equal(await page.evaluate(() => document.activeElement.id), "photo");
   const rounds = await state(page, "rounds");
   await page.keyboard.press("2");
@@ -115,7 +118,8 @@ test("by keys alone", { skip }, async (t) => {
   assert.ok(!(await page.locator("dialog").isVisible()));
 
   // The view of the room turns, and a new picture comes.
-  for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "room"; i++) await page.keyboard.press("Tab");
+  for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "room"; i++)
+    await page.keyboard.press("Tab");
   const mean = await state(page, "mean");
   for (let i = 0; i < 5; i++) await page.keyboard.press("ArrowLeft");
   await changed(page, "mean", mean);
@@ -128,13 +132,21 @@ test("windows of any size, light and dark", { skip }, async (t) => {
   const page = await open(t, browser, server.address);
   const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   assert.equal(await background(), "rgb(23, 25, 28)");
-  for (const [width, height] of [[1920, 1080], [1440, 900], [1024, 768], [390, 800]]) {
+  for (const [width, height] of [
+    [1920, 1080],
+    [1440, 900],
+    [1024, 768],
+    [390, 800],
+  ]) {
     await page.setViewportSize({ width, height });
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= width, `at ${width} pixels the page is ${wide} wide`);
     for (const id of ["photo", "room", "noise", "out-glb"]) {
       const box = await page.locator(`#${id}`).boundingBox();
-      assert.ok(box && box.width > 20 && box.x >= 0 && box.x + box.width <= width + 1, `${id} at ${width}: ${JSON.stringify(box)}`);
+      assert.ok(
+        box && box.width > 20 && box.x >= 0 && box.x + box.width <= width + 1,
+        `${id} at ${width}: ${JSON.stringify(box)}`,
+      );
     }
     await picture(page, `3-dark-${width}`);
   }
@@ -158,8 +170,14 @@ test("by touch", { skip }, async (t) => {
 
 test("two users at once", { skip }, async (t) => {
   const server = await serve(t, folder(t));
-  const [one, two] = await Promise.all([open(t, await browse(t), server.address), open(t, await browse(t), server.address)]);
-  for (const [page, strokes] of [[one, STROKES.slice(0, 2)], [two, STROKES.slice(2)]]) {
+  const [one, two] = await Promise.all([
+    open(t, await browse(t), server.address),
+    open(t, await browse(t), server.address),
+  ]);
+  for (const [page, strokes] of [
+    [one, STROKES.slice(0, 2)],
+    [two, STROKES.slice(2)],
+  ]) {
     for (const [tool, ...places] of strokes) {
       await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
     }
@@ -210,8 +228,14 @@ test("who is not let in, and files that are none", { skip }, async (t) => {
   t.after(() => foreign.close());
   await wrong.goto(`http://127.0.0.1:${foreign.address().port}/`);
   const tried = await wrong.evaluate(async (address) => {
-    const asked = await fetch(`${address}start`, { mode: "no-cors" }).then(() => "opaque", () => "refused");
-    const read = await fetch(`${address}start`).then((a) => a.status, () => "refused");
+    const asked = await fetch(`${address}start`, { mode: "no-cors" }).then(
+      () => "opaque",
+      () => "refused",
+    );
+    const read = await fetch(`${address}start`).then(
+      (a) => a.status,
+      () => "refused",
+    );
     const socket = await new Promise((done) => {
       const s = new WebSocket(`${address.replace("http", "ws")}ws?session=foreign01`);
       s.onopen = () => done("open");
@@ -222,7 +246,9 @@ test("who is not let in, and files that are none", { skip }, async (t) => {
   assert.deepEqual([tried.read, tried.socket], ["refused", "refused"]);
 
   await page.locator("#open").click();
-  await page.locator("#files").setInputFiles({ name: "broken.jpg", mimeType: "image/jpeg", buffer: Buffer.from("no photo") });
+  await page
+    .locator("#files")
+    .setInputFiles({ name: "broken.jpg", mimeType: "image/jpeg", buffer: Buffer.from("no photo") });
   await page.locator("#notice-text", { hasText: "broken.jpg cannot be read" }).waitFor();
   assert.equal(await state(page, "strokes"), "0");
 });

@@ -21,7 +21,13 @@ const AXES = [
 const FAN = 1 / 12;
 const FINITE = 1e-9;
 
-function outlined(context: CanvasRenderingContext2D, path: Path2D, colour: string, dashes: number[], scale: number): void {
+function outlined(
+  context: CanvasRenderingContext2D,
+  path: Path2D,
+  colour: string,
+  dashes: number[],
+  scale: number,
+): void {
   context.setLineDash([]);
   context.strokeStyle = "#0008";
   context.lineWidth = 3 / scale;

@@ -20,8 +20,16 @@ const KEYS: [string, string][] = [
 export function showKeys(): void {
   showDialog(
     "Keys",
-    make("dl", { class: "keys" }, ...KEYS.flatMap(([keys, what]) => [make("dt", {}, make("kbd", {}, keys)), make("dd", {}, what)])),
-    make("p", {}, "Two fingers or the wheel zoom the photo, the right mouse button moves it. A pen paints wider when pressed."),
+    make(
+      "dl",
+      { class: "keys" },
+      ...KEYS.flatMap(([keys, what]) => [make("dt", {}, make("kbd", {}, keys)), make("dd", {}, what)]),
+    ),
+    make(
+      "p",
+      {},
+      "Two fingers or the wheel zoom the photo, the right mouse button moves it. A pen paints wider when pressed.",
+    ),
   );
 }
 

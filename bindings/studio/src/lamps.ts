@@ -80,10 +80,16 @@ export class LampList {
     for (const lamp of this.lamps) kinds.set(lamp.kind, [...(kinds.get(lamp.kind) ?? []), lamp]);
     const order = [...kinds].sort(([a], [b]) => (a || 1e9) - (b || 1e9));
     const total = this.lamps.reduce((sum, l) => sum + l.flux, 0);
-    const open = new Set([...this.box.querySelectorAll("details[open]")].map((d) => (d as HTMLElement).dataset.kind));
+    const open = new Set(
+      [...this.box.querySelectorAll("details[open]")].map((d) => (d as HTMLElement).dataset.kind),
+    );
     this.box.replaceChildren(
       this.plan(),
-      make("p", { class: "quiet" }, `${this.lamps.length} lamps, ${short(total)} lm in all (± ${short(100 * this.error)} %)`),
+      make(
+        "p",
+        { class: "quiet" },
+        `${this.lamps.length} lamps, ${short(total)} lm in all (± ${short(100 * this.error)} %)`,
+      ),
       ...order.map(([kind, lamps]) => this.kindBox(kind, lamps, open.has(String(kind)))),
       ...(this.zones.length ? [this.taken()] : []),
     );
@@ -100,7 +106,7 @@ export class LampList {
         "summary",
         {},
         make("b", {}, title),
-        ` · ${lamps.length} × ${size} · ${short(mean((l) => l.flux))} lm · ${Math.round(mean((l) => l.cct) / 10) * 10} K`,
+        ` · ${lamps.length} × ${size} · ${short(mean((l) => l.flux))} lm · ${10 * Math.round(mean((l) => l.cct) / 10)} K`,
       ),
       make("button", { type: "button", onclick: () => this.takeOut(lamps) }, `Take all ${lamps.length} out`),
       make("ul", {}, ...lamps.map((lamp) => this.row(lamp))),
@@ -114,7 +120,13 @@ export class LampList {
     const text = `x ${x.toFixed(2)}, z ${z.toFixed(2)} m · ${short(lamp.flux)} lm`;
     const button = make(
       "button",
-      { type: "button", onclick: () => this.takeOut([lamp]), onfocus: show, onblur: hide, "aria-label": `Take out the lamp at ${text}` },
+      {
+        type: "button",
+        onclick: () => this.takeOut([lamp]),
+        onfocus: show,
+        onblur: hide,
+        "aria-label": `Take out the lamp at ${text}`,
+      },
       "Take out",
     );
     return make("li", { onpointerenter: show, onpointerleave: hide }, make("span", {}, text), button);
@@ -122,7 +134,12 @@ export class LampList {
 
   private taken(): HTMLElement {
     const text = this.zones.length === 1 ? "1 place is kept free" : `${this.zones.length} places are kept free`;
-    return make("p", { class: "row" }, text, make("button", { type: "button", onclick: () => this.onZones([]) }, "Put all back"));
+    return make(
+      "p",
+      { class: "row" },
+      text,
+      make("button", { type: "button", onclick: () => this.onZones([]) }, "Put all back"),
+    );
   }
 
   /** The ceiling from below, with its texture; a click takes a lamp out or puts it back. */

@@ -4,7 +4,19 @@ import type { Message } from "./api";
 import { byId, make, short } from "./dom";
 
 /** Cividis by Nuñez, Anderton and Renslow, at eleven steps: dark blue to yellow. */
-const CIVIDIS = ["#00224e", "#083370", "#35456c", "#4f576c", "#666970", "#7d7c78", "#948e77", "#aea371", "#c8b866", "#e5cf52", "#fee838"];
+const CIVIDIS = [
+  "#00224e",
+  "#083370",
+  "#35456c",
+  "#4f576c",
+  "#666970",
+  "#7d7c78",
+  "#948e77",
+  "#aea371",
+  "#c8b866",
+  "#e5cf52",
+  "#fee838",
+];
 /** Numbers in the plan stand at least this far apart, in pixels of the screen. */
 const NUMBER_STEP = 46;
 
@@ -29,10 +41,18 @@ export function showLux(message: Message): void {
   ];
   byId("lux").replaceChildren(
     plan(values, message.size as [number, number], maximum),
-    make("dl", { class: "numbers" }, ...numbers.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
-    make("p", { class: "quiet" }, `On a plane at a height of ${short(message.height as number)} m, half a metre from the walls. ± is 95 %.${
+    make(
+      "dl",
+      { class: "numbers" },
+      ...numbers.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]),
+    ),
+    make(
+      "p",
+      { class: "quiet" },
+      `On a plane at a height of ${short(message.height as number)} m, half a metre from the walls. ± is 95 %.${
         message.inside ? ` ${message.inside} points lie inside of furniture and do not count.` : ""
-      }`),
+      }`,
+    ),
   );
   byId("lux").dataset.mean = String(mean);
 }
@@ -41,7 +61,10 @@ function plan(values: number[][], [width, depth]: [number, number], maximum: num
   const [rows, columns] = [values.length, values[0].length];
   const cell = Math.max(4, Math.floor(560 / columns));
   const canvas = make("canvas", { class: "plan", role: "img", width: cell * columns, height: cell * rows });
-  canvas.setAttribute("aria-label", `Plan of the illuminance, ${short(width)} by ${short(depth)} metres, up to ${short(maximum)} lux`);
+  canvas.setAttribute(
+    "aria-label",
+    `Plan of the illuminance, ${short(width)} by ${short(depth)} metres, up to ${short(maximum)} lux`,
+  );
   const context = canvas.getContext("2d")!;
   const top = Math.max(1, maximum);
   const every = Math.max(2, Math.ceil((2 * NUMBER_STEP) / cell));

@@ -15,7 +15,7 @@ const EDGE_ALPHA = 255;
 /** Side of the stripes that mark a proposal, in pixels of the mask. */
 const STRIPE = 6;
 
-/** A picture of the masks in the bytes of a message. A proposed mask is striped: it is there, but nobody has confirmed it. */
+/** A picture of the masks in the bytes of a message. A proposed mask, which nobody has confirmed, is striped. */
 export function maskPicture(masks: Masks, bits: Uint8Array, proposed: Set<string>): HTMLCanvasElement {
   const { width, height } = masks;
   const row = Math.ceil(width / 8);
@@ -31,7 +31,14 @@ export function maskPicture(masks: Masks, bits: Uint8Array, proposed: Set<string
       for (let x = 0; x < width; x++) {
         if (!at(x, y)) continue;
         const isEdge =
-          x === 0 || y === 0 || x === width - 1 || y === height - 1 || !at(x - 1, y) || !at(x + 1, y) || !at(x, y - 1) || !at(x, y + 1);
+          x === 0 ||
+          y === 0 ||
+          x === width - 1 ||
+          y === height - 1 ||
+          !at(x - 1, y) ||
+          !at(x + 1, y) ||
+          !at(x, y - 1) ||
+          !at(x, y + 1);
         const isGap = isStriped && Math.floor((x + y) / STRIPE) % 2 === 0;
         const i = 4 * (y * width + x);
         image.data[i] = red;
@@ -46,7 +53,12 @@ export function maskPicture(masks: Masks, bits: Uint8Array, proposed: Set<string
 }
 
 /** A canvas with the RGB bytes of a message. */
-export function rgbPicture(width: number, height: number, rgb: Uint8Array, out?: HTMLCanvasElement): HTMLCanvasElement {
+export function rgbPicture(
+  width: number,
+  height: number,
+  rgb: Uint8Array,
+  out?: HTMLCanvasElement,
+): HTMLCanvasElement {
   const canvas = out ?? document.createElement("canvas");
   canvas.width = width;
   canvas.height = height;

@@ -2,7 +2,7 @@
 
 import type { Message } from "./api";
 import { byId, make } from "./dom";
-import type { Mark } from "./photo_view";
+import type { Mark } from "./marks";
 
 interface Warning {
   code: string;
@@ -57,7 +57,14 @@ export class Notes {
     if (this.failure) items.push(item("error", "!", make("b", {}, "Failed: "), this.failure));
     if (proposed.size) {
       const which = [...proposed].map((p) => MASKS[p]).join(" and ");
-      items.push(item("proposal", "▨", make("b", {}, "Proposal: "), `nobody has painted the ${which} yet, so the striped mask is a guess. Paint to correct it.`));
+      items.push(
+        item(
+          "proposal",
+          "▨",
+          make("b", {}, "Proposal: "),
+          `nobody has painted the ${which} yet, so the striped mask is a guess. Paint to correct it.`,
+        ),
+      );
     }
     if (this.doubt) {
       const what = this.doubt.phase === "plane" ? "on the plane or off it" : "a light or not";
@@ -68,7 +75,16 @@ export class Notes {
       const sign = String(index + 1);
       if (warning.at) marks.push({ at: warning.at, text: sign, isMain: false });
       const advice = warning.advice ? make("span", { class: "advice" }, sentence(warning.advice)) : "";
-      items.push(item("warning", warning.at ? sign : "!", make("b", {}, `${STAGES[warning.stage] ?? warning.stage}: `), sentence(warning.message), " ", advice));
+      items.push(
+        item(
+          "warning",
+          warning.at ? sign : "!",
+          make("b", {}, `${STAGES[warning.stage] ?? warning.stage}: `),
+          sentence(warning.message),
+          " ",
+          advice,
+        ),
+      );
     });
     if (!items.length) items.push(item("fine", "✓", "Nothing to doubt."));
     byId("notes").replaceChildren(...items);
@@ -78,7 +94,12 @@ export class Notes {
 }
 
 function item(kind: string, sign: string, ...inside: (Node | string)[]): HTMLElement {
-  return make("li", { class: kind }, make("span", { class: "sign", "aria-hidden": "true" }, sign), make("span", {}, ...inside));
+  return make(
+    "li",
+    { class: kind },
+    make("span", { class: "sign", "aria-hidden": "true" }, sign),
+    make("span", {}, ...inside),
+  );
 }
 
 function sentence(text: string): string {

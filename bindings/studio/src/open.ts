@@ -1,4 +1,4 @@
-// Opening photos, rooms and projects: from the machine, by dropping, or from the folders that the studio was started with.
+// Opening photos, rooms and projects: from the machine, by dropping, or from folders that were named at the start.
 
 import { ask, Problem, upload } from "./api";
 import { byId, make, notice, showDialog } from "./dom";
@@ -46,7 +46,12 @@ export class Opener {
   }
 
   async show(): Promise<void> {
-    const input = make("input", { type: "file", multiple: true, id: "files", accept: ".jpg,.jpeg,.png,.webp,.tif,.tiff,.bmp,.gif,.hdr,.exr,.glb,.gltf,.json" });
+    const input = make("input", {
+      type: "file",
+      multiple: true,
+      id: "files",
+      accept: ".jpg,.jpeg,.png,.webp,.tif,.tiff,.bmp,.gif,.hdr,.exr,.glb,.gltf,.json",
+    });
     input.onchange = () => {
       for (const file of input.files ?? []) void this.take(file);
     };
@@ -69,7 +74,12 @@ export class Opener {
               "ul",
               { class: "listed" },
               ...listed.files.map((f) =>
-                make("li", {}, make("button", { type: "button", onclick: () => void this.openListed(f, close) }, f.name), make("span", { class: "quiet" }, f.is_room ? "room" : "photo")),
+                make(
+                  "li",
+                  {},
+                  make("button", { type: "button", onclick: () => void this.openListed(f, close) }, f.name),
+                  make("span", { class: "quiet" }, f.is_room ? "room" : "photo"),
+                ),
               ),
             ),
           ]

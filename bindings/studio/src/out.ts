@@ -18,7 +18,12 @@ export function showOut(session: string, openProject: () => void): void {
       "ul",
       { class: "out" },
       ...KINDS.map(([kind, label, what]) =>
-        make("li", {}, make("button", { type: "button", id: `out-${kind}`, onclick: () => void keep(kind, session) }, label), make("span", {}, what)),
+        make(
+          "li",
+          {},
+          make("button", { type: "button", id: `out-${kind}`, onclick: () => void keep(kind, session) }, label),
+          make("span", {}, what),
+        ),
       ),
     ),
     make("p", {}, make("button", { type: "button", onclick: openProject }, "Open a project…")),

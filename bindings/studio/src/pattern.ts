@@ -16,7 +16,11 @@ export class PatternForm {
   private readonly box = byId("pattern");
   private readonly surface = make("select", { id: "surface" });
   private readonly reason = make("p", { class: "quiet" });
-  private readonly scale = make("select", { id: "scale" }, ...SCALES.map(([value, label]) => make("option", { value }, label)));
+  private readonly scale = make(
+    "select",
+    { id: "scale" },
+    ...SCALES.map(([value, label]) => make("option", { value }, label)),
+  );
   private readonly length = number("length", 0.1, 6, 0.05);
   private readonly turn = slider("turn", -180, 180, 1);
   private readonly across = slider("across", -1.5, 1.5, 0.01);
@@ -70,7 +74,9 @@ export class PatternForm {
   setCandidates(message: Message): void {
     this.candidates = message.candidates;
     this.surface.replaceChildren(
-      ...this.candidates.map((c) => make("option", { value: c.name }, c.kind === "material" ? `${c.name} (material)` : c.name)),
+      ...this.candidates.map((c) =>
+        make("option", { value: c.name }, c.kind === "material" ? `${c.name} (material)` : c.name),
+      ),
     );
     if (this.project) this.show(this.project);
   }
@@ -99,14 +105,21 @@ export class PatternForm {
   setEstimates(message: Message): void {
     const [value, low, high] = message.proposed_white as number[];
     const distance = Number.isFinite(message.distance)
-      ? `The photo's camera is taken to be ${short(message.distance)} m from the ceiling (± ${Math.round(100 * message.distance_error)} %). `
+      ? `The photo's camera is taken to be ${short(message.distance)} m from the ceiling ` +
+        `(± ${Math.round(100 * message.distance_error)} %). `
       : "";
     const isSame = Math.abs((this.project?.white ?? 0) - value) < 0.6;
     this.proposal.replaceChildren(
       `${distance}Likely white: ${Math.round(value)} (${Math.round(low)} to ${Math.round(high)}) cd/m².`,
       ...(isSame
         ? []
-        : [make("button", { type: "button", onclick: () => this.onChange("white", { white: Math.round(value) }) }, `Use ${Math.round(value)}`)]),
+        : [
+            make(
+              "button",
+              { type: "button", onclick: () => this.onChange("white", { white: Math.round(value) }) },
+              `Use ${Math.round(value)}`,
+            ),
+          ]),
     );
   }
 }

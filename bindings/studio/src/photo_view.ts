@@ -1,6 +1,7 @@
 // The photo with its masks, strokes, lines and hints; painting on it.
 
 import { atNextFrame, byId } from "./dom";
+import { drawCross, drawMark, type Mark } from "./marks";
 import type { Kind, Stroke } from "./project";
 import { drawGrid, drawVanishing, type View } from "./geometry";
 import { drawStroke, lookOf, Pen, type Tool } from "./strokes";
@@ -8,12 +9,6 @@ import { drawStroke, lookOf, Pen, type Tool } from "./strokes";
 export interface Lamp {
   box: [number, number, number, number];
   area: number;
-}
-
-export interface Mark {
-  at: [number, number];
-  text: string;
-  isMain: boolean;
 }
 
 const ZOOM_STEP = 1.25;
@@ -160,7 +155,8 @@ export class PhotoView {
       if (this.pointers.size > 1) this.pinch(event, before);
       else if (this.pen.stroke) {
         let isNew = false;
-        for (const e of event.getCoalescedEvents?.() ?? [event]) isNew = this.pen.extend(...this.toPhoto(e)) || isNew;
+        for (const e of event.getCoalescedEvents?.() ?? [event])
+          isNew = this.pen.extend(...this.toPhoto(e)) || isNew;
         if (isNew) this.onDraft(this.pen.stroke);
       } else if (event.buttons & 6) this.pan(event.clientX - before[0], event.clientY - before[1]);
       this.pointers.set(event.pointerId, [event.clientX, event.clientY]);
@@ -215,7 +211,10 @@ export class PhotoView {
     };
     this.cursor ??= [this.size[0] / 2, this.size[1] / 2];
     if (moves[event.key]) {
-      this.cursor = [0, 1].map((i) => clamp(this.cursor![i] + moves[event.key][i], 0, this.size[i])) as [number, number];
+      this.cursor = [0, 1].map((i) => clamp(this.cursor![i] + moves[event.key][i], 0, this.size[i])) as [
+        number,
+        number,
+      ];
       if (this.isPenDown && this.pen.extend(...this.cursor)) this.onDraft(this.pen.stroke);
     } else if (event.key === " ") {
       if (this.tool === "remove") this.onRemove(this.cursor);
@@ -277,10 +276,18 @@ export class PhotoView {
 
   private drawLamps(context: CanvasRenderingContext2D, scale: number): void {
     for (const { box } of this.lamps) {
-      for (const [colour, wide] of [["#000", 4], ["#fff", 2]] as const) {
+      for (const [colour, wide] of [
+        ["#000", 4],
+        ["#fff", 2],
+      ] as const) {
         context.strokeStyle = colour;
         context.lineWidth = wide / scale;
-        context.strokeRect(box[0] - 3 / scale, box[1] - 3 / scale, box[2] - box[0] + 6 / scale, box[3] - box[1] + 6 / scale);
+        context.strokeRect(
+          box[0] - 3 / scale,
+          box[1] - 3 / scale,
+          box[2] - box[0] + 6 / scale,
+          box[3] - box[1] + 6 / scale,
+        );
       }
     }
   }
@@ -288,7 +295,10 @@ export class PhotoView {
   private drawCursor(context: CanvasRenderingContext2D, scale: number): void {
     if (!this.cursor || (this.isKeyboard && document.activeElement !== this.canvas)) return;
     const radius = this.tool === "remove" ? 6 / scale : Math.max(this.radius, 2 / scale);
-    for (const [colour, wide] of [["#000", 3], [lookOf(this.tool).colour, 1.5]] as const) {
+    for (const [colour, wide] of [
+      ["#000", 3],
+      [lookOf(this.tool).colour, 1.5],
+    ] as const) {
       context.strokeStyle = colour;
       context.lineWidth = wide / scale;
       context.beginPath();
@@ -312,36 +322,4 @@ function pressure(event: PointerEvent): number {
 
 function clamp(value: number, low: number, high: number): number {
   return Math.min(high, Math.max(low, value));
-}
-
-function drawCross(context: CanvasRenderingContext2D, [x, y]: [number, number], half: number): void {
-  for (const [colour, wide] of [["#000", 0.5], ["#fff", 0.25]] as const) {
-    context.strokeStyle = colour;
-    context.lineWidth = wide * half;
-    context.beginPath();
-    context.moveTo(x - half, y - half);
-    context.lineTo(x + half, y + half);
-    context.moveTo(x + half, y - half);
-    context.lineTo(x - half, y + half);
-    context.stroke();
-  }
-}
-
-/** A sign at a place of the photo: the main one, where one more stroke helps most, is larger and says so. */
-function drawMark(context: CanvasRenderingContext2D, mark: Mark, scale: number): void {
-  const [x, y] = mark.at;
-  const unit = 1 / scale;
-  const radius = (mark.isMain ? 13 : 10) * unit;
-  context.beginPath();
-  context.arc(x, y, radius, 0, 2 * Math.PI);
-  context.fillStyle = mark.isMain ? "#ffffff" : "#1c1c1ccc";
-  context.fill();
-  context.lineWidth = 2.5 * unit;
-  context.strokeStyle = mark.isMain ? "#1c1c1c" : "#ffffff";
-  context.stroke();
-  context.fillStyle = mark.isMain ? "#1c1c1c" : "#ffffff";
-  context.font = `bold ${(mark.isMain ? 16 : 12) * unit}px system-ui, sans-serif`;
-  context.textAlign = "center";
-  context.textBaseline = "middle";
-  context.fillText(mark.text, x, y + unit);
 }

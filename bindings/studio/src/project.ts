@@ -135,7 +135,8 @@ export function kept(): Kept[] {
     if (!key.startsWith(PREFIX)) continue;
     try {
       const { time, project } = JSON.parse(localStorage.getItem(key) ?? "");
-      if (project?.photo && Array.isArray(project.strokes)) out.push({ session: key.slice(PREFIX.length), time, project });
+      if (project?.photo && Array.isArray(project.strokes))
+        out.push({ session: key.slice(PREFIX.length), time, project });
     } catch {
       localStorage.removeItem(key);
     }

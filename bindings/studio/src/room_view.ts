@@ -169,7 +169,10 @@ export class RoomView {
       const at = new Vector3(...spot.position).project(this.camera);
       if (at.z > 1) continue;
       const [x, y] = [((at.x + 1) / 2) * canvas.width, ((1 - at.y) / 2) * canvas.height];
-      for (const [colour, wide] of [["#000", 5], ["#fff", 2.5]] as const) {
+      for (const [colour, wide] of [
+        ["#000", 5],
+        ["#fff", 2.5],
+      ] as const) {
         context.strokeStyle = colour;
         context.lineWidth = wide;
         context.beginPath();
@@ -191,7 +194,11 @@ export class RoomView {
   private current(): Camera {
     const ahead = this.camera.getWorldDirection(new Vector3()).add(this.camera.position);
     const three = (v: Vector3) => v.toArray().map((x) => Math.round(1e4 * x) / 1e4) as [number, number, number];
-    return { position: three(this.camera.position), target: three(ahead), fov_y: (this.camera.fov * Math.PI) / 180 };
+    return {
+      position: three(this.camera.position),
+      target: three(ahead),
+      fov_y: (this.camera.fov * Math.PI) / 180,
+    };
   }
 
   private key(event: KeyboardEvent): void {
@@ -210,7 +217,8 @@ export class RoomView {
       const steep = Math.asin(Math.min(1, Math.max(-1, ahead.y)));
       ahead.applyAxisAngle(this.camera.up, about);
       if (Math.abs(steep + up) < 1.4) ahead.applyAxisAngle(side, up);
-    } else if (event.key === "+" || event.key === "=") this.camera.position.addScaledVector(ahead, reach * (KEY_DOLLY - 1));
+    } else if (event.key === "+" || event.key === "=")
+      this.camera.position.addScaledVector(ahead, reach * (KEY_DOLLY - 1));
     else if (event.key === "-") this.camera.position.addScaledVector(ahead, -reach * (KEY_DOLLY - 1));
     else if (event.key === "Home") return this.goHome();
     else return;

@@ -17,7 +17,13 @@ export const TOOLS: ToolLook[] = [
   { tool: "plane", label: "Plane", hint: "on the plane that carries the lights", colour: "#56b4e9", dashes: [] },
   { tool: "not-plane", label: "Not plane", hint: "off that plane", colour: "#d55e00", dashes: [7, 5] },
   { tool: "light", label: "Light", hint: "on lights", colour: "#f0e442", dashes: [] },
-  { tool: "not-light", label: "Not light", hint: "on the plane beside the lights", colour: "#cc79a7", dashes: [2, 5] },
+  {
+    tool: "not-light",
+    label: "Not light",
+    hint: "on the plane beside the lights",
+    colour: "#cc79a7",
+    dashes: [2, 5],
+  },
   { tool: "remove", label: "Take out", hint: "a lamp of the photo", colour: "#ffffff", dashes: [] },
 ];
 

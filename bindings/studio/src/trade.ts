@@ -7,7 +7,14 @@ import { byId, make, percent, seconds } from "./dom";
 const STEPS = [0.5, 0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01];
 
 export class Trade {
-  private readonly slider = make("input", { type: "range", id: "noise", min: 0, max: STEPS.length - 1, step: 1, list: "noise-steps" });
+  private readonly slider = make("input", {
+    type: "range",
+    id: "noise",
+    min: 0,
+    max: STEPS.length - 1,
+    step: 1,
+    list: "noise-steps",
+  });
   private readonly goal = make("output", { for: "noise" });
   private readonly planned = make("p", { id: "planned" });
   private readonly left = make("p", { id: "left", class: "quiet" });
@@ -30,7 +37,10 @@ export class Trade {
   }
 
   show(noise: number): void {
-    const nearest = STEPS.reduce((best, step, i) => (Math.abs(Math.log(step / noise)) < Math.abs(Math.log(STEPS[best] / noise)) ? i : best), 0);
+    const nearest = STEPS.reduce(
+      (best, step, i) => (Math.abs(Math.log(step / noise)) < Math.abs(Math.log(STEPS[best] / noise)) ? i : best),
+      0,
+    );
     this.slider.value = String(nearest);
     this.goal.textContent = percent(noise);
     this.slider.setAttribute("aria-valuetext", percent(noise));
@@ -55,6 +65,8 @@ export class Trade {
   setPicture(message: Message): void {
     if (message.noise === null) return;
     const state = message.done ? "Done" : "So far";
-    this.left.textContent = `${state}: ${seconds(message.seconds)}, ${percent(message.noise)} of noise, ${message.samples} paths per pixel.`;
+    this.left.textContent =
+      `${state}: ${seconds(message.seconds)}, ${percent(message.noise)} of noise, ` +
+      `${message.samples} paths per pixel.`;
   }
 }

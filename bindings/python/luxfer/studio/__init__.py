@@ -13,6 +13,7 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 | jobs | threads that do the newest work and give up what is out of date |
 | live | masks while strokes are painted, at a small size |
 | light | the steps from the photo to the lit room, of which only those run whose input has changed |
+| room | its corners, its work plane, the brightness of its pictures |
 | pictures | images as bytes for the page |
 | project | what a project consists of; it is checked here |
 | program | a project as a Python program |

@@ -62,7 +62,9 @@ class Studio:
             if name not in self.sessions:
                 self._make_room()
                 saved = self.files.state / f"session-{name[:16]}.json"
-                if self.project_file is not None and all(s.saved != self.project_file for s in self.sessions.values()):
+                if self.project_file is not None and all(
+                    s.saved != self.project_file for s in self.sessions.values()
+                ):
                     saved = self.project_file
                 self.sessions[name] = Session(name, self.context, self.files, saved)
             return self.sessions[name]
@@ -99,7 +101,9 @@ class Studio:
             return problem(f"{name} is empty")
         suffix = Path(name).suffix.lower()
         if suffix not in PHOTOS | ROOMS:
-            return problem(f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)")
+            return problem(
+                f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)"
+            )
         try:
             await run_in_threadpool(self.try_file, bytes(data), suffix)
         except luxfer.Error as error:
@@ -124,7 +128,9 @@ class Studio:
                 await run_in_threadpool(self.try_file, known.read(), known.path.suffix.lower())
             except (OSError, luxfer.Error) as error:
                 return problem(str(error), 403 if isinstance(error, PermissionError) else 400)
-            return JSONResponse({"name": known.name, "sha256": known.sha256, "is_room": known.path.suffix.lower() in ROOMS})
+            return JSONResponse(
+                {"name": known.name, "sha256": known.sha256, "is_room": known.path.suffix.lower() in ROOMS}
+            )
         found = [*self.files.allowed.files]
         for folder in self.files.allowed.folders:
             found += [p for p in sorted(folder.iterdir()) if p.is_file()]
@@ -194,7 +200,10 @@ class Studio:
                     else:
                         await run_in_threadpool(session.edit, message)
                 except (projects.Invalid, TypeError, ValueError, OSError) as error:
-                    listen({"type": "failed", "message": str(error), "missing": False, "error": type(error).__name__}, b"")
+                    listen(
+                        {"type": "failed", "message": str(error), "missing": False, "error": type(error).__name__},
+                        b"",
+                    )
         except (WebSocketDisconnect, json.JSONDecodeError):
             pass
         finally:
@@ -226,12 +235,20 @@ def parser() -> argparse.ArgumentParser:
         prog="python -m luxfer.studio",
         description="A photo and a room side by side in the browser, on this machine alone.",
     )
-    out.add_argument("photo", nargs="?", type=Path, help="a photo, or a project file (.json); default: a generated office")
+    out.add_argument(
+        "photo", nargs="?", type=Path, help="a photo, or a project file (.json); default: a generated office"
+    )
     out.add_argument("scene", nargs="?", type=Path, help="a room, .glb or .gltf; default: a generated one")
-    out.add_argument("--project", type=Path, help="the file that the project is kept in as you work; opened if it is there")
-    out.add_argument("--folder", type=Path, action="append", default=[], help="a folder whose files the page may open")
+    out.add_argument(
+        "--project", type=Path, help="the file that the project is kept in as you work; opened if it is there"
+    )
+    out.add_argument(
+        "--folder", type=Path, action="append", default=[], help="a folder whose files the page may open"
+    )
     out.add_argument("--port", type=int, default=PORT, help=f"default {PORT}, or the next free one; 0: any")
-    out.add_argument("--state", type=Path, default=None, help=f"folder for what has to survive; default {state_folder()}")
+    out.add_argument(
+        "--state", type=Path, default=None, help=f"folder for what has to survive; default {state_folder()}"
+    )
     out.add_argument("--no-browser", action="store_true", help="only print the address")
     return out
 
@@ -277,7 +294,9 @@ def serve(arguments: list[str]) -> int:
     """Runs the server until it is interrupted."""
     asked = parser().parse_args(arguments)
     if not (STATIC / "index.html").exists():
-        print(f"the page of the studio has not been built ({STATIC} is empty): run `make studio` first", file=sys.stderr)
+        print(
+            f"the page of the studio has not been built ({STATIC} is empty): run `make studio` first", file=sys.stderr
+        )
         return 1
     try:
         files = Files(asked.state or state_folder(), Allowed(asked.folder))
@@ -290,7 +309,9 @@ def serve(arguments: list[str]) -> int:
     address = f"http://127.0.0.1:{port}/{token}/"
     guarded = Guard(studio.app(), token, port)
     # Results are bits and pixels, which compression would only delay.
-    config = uvicorn.Config(guarded, log_level="warning", ws="websockets-sansio", ws_per_message_deflate=False, lifespan="off")
+    config = uvicorn.Config(
+        guarded, log_level="warning", ws="websockets-sansio", ws_per_message_deflate=False, lifespan="off"
+    )
     print(f"luxfer studio: {address}", flush=True)
     if not asked.no_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()

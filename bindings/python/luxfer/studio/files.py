@@ -1,7 +1,7 @@
 """Photos, scenes and project files, by the hash of their content.
 
-A project names its files by hash, so that it means the same files wherever they lie. What a user drops on the page is kept
-in the state folder, so that a server that is started again still has it.
+A project names its files by hash, so that it means the same files wherever they lie. What a user drops on the page is
+kept in the state folder, so that a server that is started again still has it.
 """
 
 from __future__ import annotations
@@ -85,7 +85,10 @@ class Files:
 
     def upload(self, name: str, data: bytes) -> Known:
         """A file that the user gave to the page."""
-        safe = "".join(c if c.isalnum() or c in " ._-" else "_" for c in Path(name.replace("\\", "/")).name)[-80:] or "file"
+        safe = (
+            "".join(c if c.isalnum() or c in " ._-" else "_" for c in Path(name.replace("\\", "/")).name)[-80:]
+            or "file"
+        )
         sha256 = digest(data)
         path = self.state / "files" / f"{sha256}-{safe}"
         if not path.exists():

@@ -21,14 +21,14 @@ class OutOfDate(Exception):
 class Latest(Generic[T]):
     """A thread that calls `work` with the newest item; an item that is replaced before its turn is never seen.
 
-    `work` calls `check` or `finish` now and then, which raise OutOfDate as soon as there is a newer item. What `work` raises
-    otherwise is given to `failed`.
+    `work` calls `check` or `finish` now and then, which raise OutOfDate as soon as there is a newer item. What `work`
+    raises otherwise is given to `failed`.
     """
 
     def __init__(self, name: str, work: Callable[[T], None], failed: Callable[[Exception], None]):
         self._work, self._failed = work, failed
         self._item: T | None = None
-        self._busy = self._closed = False
+        self._busy = self._closed = self._stopped = False
         self._job: luxfer.Job[Any] | None = None
         self._changed = threading.Condition()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
@@ -41,6 +41,13 @@ class Latest(Generic[T]):
             if self._job is not None:
                 self._job.cancel()
             self._changed.notify_all()
+
+    def stop(self) -> None:
+        """Gives up what waits or runs; the next item goes on."""
+        with self._changed:
+            self._item, self._stopped = None, True
+            if self._job is not None:
+                self._job.cancel()
 
     def close(self) -> None:
         """Ends the thread, after what runs has given up."""
@@ -63,7 +70,7 @@ class Latest(Generic[T]):
     @property
     def is_replaced(self) -> bool:
         """Whether what runs is out of date."""
-        return self._item is not None or self._closed
+        return self._item is not None or self._stopped or self._closed
 
     def check(self) -> None:
         """Raises OutOfDate if what runs is out of date."""
@@ -101,6 +108,7 @@ class Latest(Generic[T]):
                 if self._closed:
                     return
                 item, self._item, self._busy = self._item, None, True
+                self._stopped = False
             try:
                 self._work(item)  # type: ignore[arg-type]
             except OutOfDate:

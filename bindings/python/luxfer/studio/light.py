@@ -19,6 +19,7 @@ from . import pictures
 from .jobs import Latest
 from .live import strokes_of
 from .project import Project
+from .room import bounds, exposure_for, pattern_of, work_plane
 
 #: Settings of every relighting: no clock decides, so that a project gives the same light each time.
 RELIGHT = {"target_error": 0.02, "paths": 1 << 18}
@@ -47,9 +48,6 @@ AFTER = {
     "plan": "first",
     "picture": "first",
 }
-#: Brightness of the picture: what the mean of its surfaces becomes of display white [convention: middle grey], and their
-#: reflectance [convention: between the 0.2 to 0.7 of EN 12464-1 for floors and ceilings].
-KEY, REFLECTANCE = 0.18, 0.45
 #: Distance from a lamp's contour at which a point still means it, as a share of the photo's width.
 REACH = 0.015
 
@@ -210,7 +208,10 @@ class Light:
             height=small.size[1],
             texels=[width, height],
             digest=pictures.digest(image),
-            surface={"name": surface, **{k: getattr(placed, k) for k in ("origin", "u_axis", "v_axis", "normal", "size")}},
+            surface={
+                "name": surface,
+                **{k: getattr(placed, k) for k in ("origin", "u_axis", "v_axis", "normal", "size")},
+            },
             distance=report.plane_distance,
             distance_error=report.plane_distance_error,
             proposed_white=[report.proposed_white, report.proposed_white_low, report.proposed_white_high],
@@ -274,7 +275,9 @@ class Light:
         grid, metres = work_plane(self.room, surface)
         cell = max(metres) / LUX_POINTS
         columns, rows = (max(1, round(m / cell)) for m in metres)
-        job = luxfer.Illuminance(self.context, self.lit).start_grid(grid, columns=columns, rows=rows, samples=LUX_SAMPLES)
+        job = luxfer.Illuminance(self.context, self.lit).start_grid(
+            grid, columns=columns, rows=rows, samples=LUX_SAMPLES
+        )
         lux = self.thread.finish(job)
         report = lux.report
         values = lux.image("lux").numpy()[..., 0]
@@ -357,39 +360,6 @@ class Light:
         self.thread.finish(job)
         chosen = {k: v for k, v in plan.render_params.items() if k in ("samples", "target_error", "seed")}
         self.planned = {"render": chosen}
-        self.send("plan", noise=project["noise"], seconds=plan.report.seconds, error=plan.report.error, plan=self.planned)
-
-
-def exposure_for(lux: float) -> float:
-    """What to multiply a picture in cd/m² with, so that a room with that mean illuminance has a usual brightness."""
-    return KEY * math.pi / (REFLECTANCE * lux) if lux > 1e-6 else 1.0
-
-
-def pattern_of(project: Project) -> dict[str, Any]:
-    """The settings of the library for the pattern of a project."""
-    pattern = project["pattern"]
-    return {
-        "scale": pattern["scale"],
-        "length": pattern["length"],
-        "rotation": pattern["rotation"],
-        "offset": pattern["offset"],
-        "margin": 0.0 if pattern["keep_whole"] else -1.0,
-    }
-
-
-def bounds(room: luxfer.Scene) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    """The lowest and the highest corner of a room."""
-    points = [room.mesh_arrays(i)["positions"] for i in range(room.counts.meshes)]
-    return np.min([p.min(0) for p in points if len(p)], 0), np.max([p.max(0) for p in points if len(p)], 0)
-
-
-def work_plane(room: luxfer.Scene, surface: str) -> tuple[dict[str, Any], tuple[float, float]]:
-    """The calculation grid below a surface, and its sides in metres."""
-    placed = room.find_surface(surface)
-    low, high = bounds(room)
-    inset = min(WALL_ZONE, 0.2 * min(placed.size))
-    u, v = np.array(placed.u_axis), np.array(placed.v_axis)
-    metres = (placed.size[0] - 2 * inset, placed.size[1] - 2 * inset)
-    origin = np.array(placed.origin) + inset * (u + v)
-    origin[1] = low[1] + min(WORK_PLANE, 0.4 * (high[1] - low[1]))
-    return {"origin": tuple(origin), "across": tuple(u * metres[0]), "down": tuple(v * metres[1])}, metres
+        self.send(
+            "plan", noise=project["noise"], seconds=plan.report.seconds, error=plan.report.error, plan=self.planned
+        )

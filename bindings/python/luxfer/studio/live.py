@@ -1,7 +1,7 @@
 """Masks while strokes are painted, at a small size, and the pixel where one more stroke would help most.
 
-The features of the small photo are made anew for each stroke, because strokes lay out the room; all of it takes less than
-50 ms. As soon as the user rests, light.py makes the masks again at the full size.
+The features of the small photo are made anew for each stroke, because strokes lay out the room; all of it takes less
+than 50 ms on two idle cores. As soon as the user rests, light.py makes the masks again at the full size.
 """
 
 from __future__ import annotations
@@ -22,10 +22,17 @@ WINDOW = 0.06
 #: Mean doubt in the window below which no stroke is asked for.
 MIN_DOUBT = 0.5
 #: How the library calls the masks that strokes are for.
-PHASES = {"plane": ("plane", True), "not-plane": ("plane", False), "light": ("lights", True), "not-light": ("lights", False)}
+PHASES = {
+    "plane": ("plane", True),
+    "not-plane": ("plane", False),
+    "light": ("lights", True),
+    "not-light": ("lights", False),
+}
 
 
-def strokes_of(context: luxfer.Context, project: Project, size: tuple[int, int], share: float = 1.0) -> luxfer.Strokes:
+def strokes_of(
+    context: luxfer.Context, project: Project, size: tuple[int, int], share: float = 1.0
+) -> luxfer.Strokes:
     """The strokes of a project for a photo of `size` pixels, which is `share` as large as the project's."""
     out = luxfer.Strokes(context, *size)
     for stroke in project["strokes"]:
@@ -39,8 +46,10 @@ class LiveMasks:
     """The small photo of one session."""
 
     def __init__(self, photo: luxfer.Image):
-        self.context = photo.context
-        self.photo = pictures.reduced(photo, PIXELS)
+        self.context = (
+            luxfer.Context()
+        )  # threads of its own: a rendering that has not ended yet does not hold them up
+        self.photo = luxfer.Image(self.context, pictures.reduced(photo, PIXELS).numpy())
         self.size = self.photo.size[:2]
         self.share = self.size[0] / photo.size[0]
         self.transfer = luxfer.Transfer(self.context, self.photo)

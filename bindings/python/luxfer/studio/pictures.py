@@ -46,7 +46,7 @@ def digest(*images: luxfer.Image) -> str:
 
 
 def regions(mask: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], int]:
-    """The connected regions of a mask (by edges): the number of each pixel's region, from 1, and how many there are."""
+    """The regions of a mask, connected by edges: the number of each pixel's region, from 1, and how many there are."""
     padded = np.zeros((mask.shape[0], mask.shape[1] + 2), np.int8)
     padded[:, 1:-1] = mask
     edges = np.diff(padded, axis=1)
@@ -88,9 +88,7 @@ def boxes(labels: np.ndarray[Any, Any], count: int) -> list[dict[str, Any]]:
     for axis, values in enumerate((xs, ys)):
         np.minimum.at(low[:, axis], numbers, values)
         np.maximum.at(high[:, axis], numbers, values + 1)
-    return [
-        {"box": [*map(int, low[i]), *map(int, high[i])], "area": int(area[i])} for i in range(count)
-    ]
+    return [{"box": [*map(int, low[i]), *map(int, high[i])], "area": int(area[i])} for i in range(count)]
 
 
 def without(mask: np.ndarray[Any, Any], points: list[list[float]], reach: float) -> np.ndarray[Any, Any]:

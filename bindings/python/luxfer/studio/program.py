@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from .light import MAX_TEXELS, REACH, RELIGHT, pattern_of
+from .light import MAX_TEXELS, REACH, RELIGHT
 from .live import PHASES
 from .project import Project
+from .room import pattern_of
 
 HEAD = '''"""Lights a room as in a photo: written by luxfer studio. It needs the package luxfer."""
 
@@ -33,15 +34,15 @@ transfer.set_strokes(strokes)
 transfer.run("view", "lights")
 '''
 
-REMOVED = '''
+REMOVED = """
 # Lamps of the photo that were taken out.
 from luxfer.studio.pictures import without
 
 mask = transfer.image("lights-mask").numpy()[..., 0]
 transfer.use_mask("lights", without(mask, {removed}, {reach} * mask.shape[1]))
-'''
+"""
 
-TAIL = '''
+TAIL = """
 # The pattern on the surface, and places without lamps: u0, v0, u1, v1 in metres.
 transfer.set_zones({zones})
 transfer.run("unwarp", "emission", max_texels={texels}, pattern={pattern})
@@ -58,7 +59,7 @@ lit.export("lit.glb")
 transfer.save_fixtures("luminaires.csv")
 render.write_exr("render.exr")
 render.image("preview").save("render.png", {exposure})
-'''
+"""
 
 
 def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:

@@ -1,4 +1,4 @@
-"""What a project consists of: all that decides its result. It is a JSON object, as the page sends it and as files store it."""
+"""What a project consists of: all that decides its result, as a JSON object that the page sends and files store."""
 
 from __future__ import annotations
 
@@ -67,7 +67,9 @@ def truth(value: Any, name: str) -> bool:
     return value
 
 
-def many(check: Callable[[Any, str], Any], count: int | None = None, most: int = 100_000) -> Callable[[Any, str], list[Any]]:
+def many(
+    check: Callable[[Any, str], Any], count: int | None = None, most: int = 100_000
+) -> Callable[[Any, str], list[Any]]:
     def check_all(values: Any, name: str) -> list[Any]:
         if not isinstance(values, list) or (count is not None and len(values) != count) or len(values) > most:
             raise Invalid(f"{name} is a list of {f'up to {most}' if count is None else count} entries")

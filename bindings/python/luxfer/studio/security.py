@@ -1,8 +1,9 @@
 """Who may ask the server, and which files it may read.
 
-The server listens on the loopback address, where every program and every web page of this machine can reach it. So each
-address begins with a random token, and three headers are checked: Host (against names that resolve to this machine),
-Origin and Sec-Fetch-Site (against pages of other servers). A file is read only if the user named it or its folder.
+The server listens on the loopback address, where every program and every web page of this machine can reach it. So
+each address begins with a random token, and three headers are checked: Host (against names that resolve to this
+machine), Origin and Sec-Fetch-Site (against pages of other servers). A file is read only if the user named it or its
+folder.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-#: Scripts, styles and connections of the page come from this server alone; three.js reads textures from blob: addresses.
+#: Scripts, styles and connections of the page come from this server alone; three.js reads textures from blob:
+#: addresses.
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -35,7 +37,7 @@ def new_token() -> str:
 
 
 class Guard:
-    """An ASGI application around another one: refuses what does not come from the page, and takes the token off paths."""
+    """An ASGI application around another: refuses what does not come from the page, and takes the token off paths."""
 
     def __init__(self, app: Any, token: str, port: int):
         self.app, self.token = app, token

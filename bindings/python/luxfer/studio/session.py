@@ -1,7 +1,7 @@
 """One user: the project that is wanted, what has been made of it, and the connections to the page.
 
-The page sends its whole project at every change, so that nothing is lost if either side ends. Two threads work on it: one
-makes the masks while strokes are painted, the other one lights the room.
+The page sends its whole project at every change, so that nothing is lost if either side ends. Two threads work on it:
+one makes the masks while strokes are painted, the other one lights the room.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from . import pictures, program
 from . import project as projects
 from .files import Files
 from .jobs import Latest
-from .light import Light, bounds
+from .light import Light
 from .live import LiveMasks
 from .project import Project
+from .room import bounds
 
 #: The photo as the page shows it has at most this many pixels.
 SHOWN_PIXELS = 2_000_000
@@ -87,15 +88,23 @@ class Session:
         if compare not in ("off", "own", "white"):
             raise projects.Invalid("compare is off, own or white")
         is_draft = bool(message.get("draft"))
-        wanted = Wanted(project, int(message.get("version", 0)), (width, height), compare, is_draft, time.perf_counter())
+        wanted = Wanted(
+            project, int(message.get("version", 0)), (width, height), compare, is_draft, time.perf_counter()
+        )
         before, self.wanted = self.wanted, wanted
         if not is_draft:
             projects.save(self.saved, project)
             self.send("saved", version=wanted.version, file=self.saved.name)
-        is_painted = before is None or before.project["strokes"] != project["strokes"] or before.project["photo"] != project["photo"]
+        is_painted = (
+            before is None
+            or before.project["strokes"] != project["strokes"]
+            or before.project["photo"] != project["photo"]
+        )
         if is_painted or self._opened is None:
             self.live.put(wanted)
-        if not is_draft:
+        if is_draft:
+            self.work.stop()  # the processors are for the masks while a stroke is painted
+        else:
             self.work.put(wanted)
 
     def expose(self, exposure: float) -> None:
