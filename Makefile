@@ -127,7 +127,7 @@ docs: lib $(addprefix out/,$(GUIDE))
 	@target/peers/docs/bin/python docs/blocks.py run target/docs/pictures $(LIB) python
 	@target/peers/docs/bin/python docs/screenshots.py target/docs/pictures/screenshots $(LIB)
 	@if [ -d tests/studio/node_modules ] && [ -f $(PAGE) ]; then \
-	  LUXFER_LIBRARY=$(LIB) node tests/studio/screenshot.js target/docs/pictures/screenshots; fi
+	  LUXFER_LIBRARY=$(CURDIR)/$(LIB) node tests/studio/screenshot.js target/docs/pictures/screenshots; fi
 	@NO_MKDOCS_2_WARNING=1 target/peers/docs/bin/mkdocs build --strict
 	@echo "look at out/docs/index.html (its search needs a server, such as python3 -m http.server --directory out/docs)"
 

@@ -32,8 +32,6 @@ REFRESH_SECONDS = 0.5
 MOST_SAMPLES = 1 << 16
 #: Points of the calculation grid on its longer side, and paths for each.
 LUX_POINTS, LUX_SAMPLES = 24, 64
-#: Height of the work plane over the floor, and its distance from the walls, in metres [convention: EN 12464-1].
-WORK_PLANE, WALL_ZONE = 0.8, 0.5
 #: The step whose result each step needs.
 AFTER = {
     "view": "",

@@ -52,7 +52,7 @@ class Session:
         self.listeners: list[Send] = []
         self.used = time.monotonic()
         self.wanted: Wanted | None = None
-        self._lock = threading.Lock()
+        self._lock, self._saving = threading.Lock(), threading.Lock()
         self._photo: tuple[str, luxfer.Image] | None = None
         self._room: tuple[str, luxfer.Scene] | None = None
         self._opened: tuple[str, str] | None = None
@@ -93,7 +93,7 @@ class Session:
         )
         before, self.wanted = self.wanted, wanted
         if not is_draft:
-            projects.save(self.saved, project)
+            self._save(wanted)
             self.send("saved", version=wanted.version, file=self.saved.name)
         is_painted = (
             before is None
@@ -111,8 +111,14 @@ class Session:
         """Another brightness of the pictures that are shown; disturbs no work."""
         if self.wanted is not None and self.light is not None:
             self.wanted.project["exposure"] = projects.FIELDS["exposure"](exposure, "exposure")
-            projects.save(self.saved, self.wanted.project)
+            self._save(self.wanted)
             self.light.show_again(self.wanted.project)
+
+    def _save(self, wanted: Wanted) -> None:
+        """Writes the project into its file, unless a newer one is there."""
+        with self._saving:
+            if self.wanted is wanted:
+                projects.save(self.saved, wanted.project)
 
     # -- work
 
@@ -195,6 +201,7 @@ class Session:
         self._open(wanted.project)
         assert self.light is not None
         self.light.follow(wanted.project, wanted.size, wanted.compare)
+        self._save(wanted)  # with the settings that the plan has chosen
         self.send("idle", version=wanted.version)
 
     def _failed(self, failure: Exception) -> None:
