@@ -13,7 +13,7 @@ if (reason) {
 const ends = [];
 const job = { after: (work) => ends.push(work) };
 try {
-  const server = await serve(job, folder(job), [], false);
+  const server = await serve(job, folder(), [], false);
   const page = await open(job, await browse(job, { viewport: { width: 1440, height: 900 } }), server.address);
   for (const [tool, ...places] of STROKES) {
     await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));

@@ -12,6 +12,8 @@ const PYTHON = process.env.LUXFER_STUDIO_PYTHON ?? join(ROOT, "target/peers/stud
 const CHROMIUM = process.env.LUXFER_CHROMIUM ?? "/usr/bin/chromium";
 /** Screenshots go here if it is set. */
 const PICTURES = process.env.LUXFER_STUDIO_PICTURES;
+/** Waits end with what they wait for; this is only when to give up, on a machine that does much else. */
+const WAIT_MS = 90_000;
 const FLAGS = [
   "--no-sandbox",
   "--disable-gpu",
@@ -34,10 +36,10 @@ export function missing() {
   return false;
 }
 
-/** A folder that is deleted when the test ends. */
-export function folder(test) {
+/** A folder that is deleted when all tests have ended, and with them the browsers and servers that use it. */
+export function folder() {
   const out = mkdtempSync(join(tmpdir(), "luxfer-studio-test-"));
-  test.after(() => rmSync(out, { recursive: true, force: true }));
+  process.on("exit", () => rmSync(out, { recursive: true, force: true, maxRetries: 5 }));
   return out;
 }
 
@@ -79,7 +81,7 @@ export async function serve(test, state, args = [], isSmall = true) {
 
 /** A browser with a profile of its own. */
 export async function browse(test, options = {}) {
-  const profile = folder(test);
+  const profile = folder();
   const browser = await chromium.launchPersistentContext(profile, {
     executablePath: CHROMIUM,
     args: FLAGS,
@@ -87,6 +89,7 @@ export async function browse(test, options = {}) {
     acceptDownloads: true,
     ...options,
   });
+  browser.setDefaultTimeout(WAIT_MS);
   test.after(() => browser.close());
   return browser;
 }

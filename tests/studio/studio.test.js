@@ -32,7 +32,7 @@ async function settled(page) {
 }
 
 test("from photo and strokes to files, and back from the project", { skip }, async (t) => {
-  const place = folder(t);
+  const place = folder();
   const server = await serve(t, place);
   const browser = await browse(t);
   const page = await open(t, browser, server.address);
@@ -82,6 +82,7 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   // The project opens again, in another browser, with the same result.
   const file = join(place, "again.luxfer.json");
   writeFileSync(file, project);
+  await page.close();
   const other = await open(t, await browse(t), server.address);
   await other.locator("#open").click();
   await other.locator("#files").setInputFiles(file);
@@ -93,7 +94,7 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
 });
 
 test("by keys alone", { skip }, async (t) => {
-  const server = await serve(t, folder(t));
+  const server = await serve(t, folder());
   const page = await open(t, await browse(t), server.address);
   const before = await state(page, "masks");
   // Tab reaches the photo; nothing is clicked in this test.
@@ -127,7 +128,7 @@ test("by keys alone", { skip }, async (t) => {
 });
 
 test("windows of any size, light and dark", { skip }, async (t) => {
-  const server = await serve(t, folder(t));
+  const server = await serve(t, folder());
   const browser = await browse(t, { colorScheme: "dark" });
   const page = await open(t, browser, server.address);
   const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
@@ -158,7 +159,7 @@ test("windows of any size, light and dark", { skip }, async (t) => {
 });
 
 test("by touch", { skip }, async (t) => {
-  const server = await serve(t, folder(t));
+  const server = await serve(t, folder());
   const browser = await browse(t, { hasTouch: true, viewport: { width: 800, height: 900 } });
   const page = await open(t, browser, server.address);
   const before = await state(page, "rounds");
@@ -169,7 +170,7 @@ test("by touch", { skip }, async (t) => {
 });
 
 test("two users at once", { skip }, async (t) => {
-  const server = await serve(t, folder(t));
+  const server = await serve(t, folder());
   const [one, two] = await Promise.all([
     open(t, await browse(t), server.address),
     open(t, await browse(t), server.address),
@@ -188,7 +189,7 @@ test("two users at once", { skip }, async (t) => {
 });
 
 test("a killed server loses no stroke", { skip }, async (t) => {
-  const place = folder(t);
+  const place = folder();
   const first = await serve(t, place);
   const browser = await browse(t);
   const page = await open(t, browser, first.address);
@@ -213,7 +214,7 @@ test("a killed server loses no stroke", { skip }, async (t) => {
 });
 
 test("who is not let in, and files that are none", { skip }, async (t) => {
-  const server = await serve(t, folder(t));
+  const server = await serve(t, folder());
   const browser = await browse(t);
   const page = await open(t, browser, server.address);
   const wrong = await browser.newPage();

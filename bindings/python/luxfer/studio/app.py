@@ -208,6 +208,8 @@ class Studio:
             pass
         finally:
             session.listeners.remove(listen)
+            if not session.listeners:
+                session.work.stop()  # nobody looks at it
             speaker.cancel()
 
     def app(self) -> Starlette:
