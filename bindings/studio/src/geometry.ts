@@ -18,7 +18,7 @@ const AXES = [
   { colour: "#cc79a7", dashes: [2, 4] },
 ];
 /** Lines of each fan meet the photo's border at this distance, as a share of its width. */
-const FAN = 1 / 12;
+const FAN = 1 / 6;
 const FINITE = 1e-9;
 
 function outlined(
