@@ -5,6 +5,7 @@
 # make trade  measures the error and the time of every stage over its settings, and writes the plots and Pareto fronts
 #             into the guide (runs the sections of the benches that draw them; make bench ONLY=stylit:knobs runs one)
 # make blender  builds the Blender extension, with the library inside, into out/blender/
+# make studio   builds the page of the studio (node, npm) into the Python package; python -m luxfer.studio then serves it
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
 # make clean  removes all built files
 #
@@ -26,7 +27,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo format lint test bench trade blender docs peers setup clean
+.PHONY: all lib demo format lint test bench trade blender studio studio-setup docs peers setup clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -60,7 +61,8 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
-	@benches/peers/install.sh mitsuba python dask exr usd onnx docs
+	@benches/peers/install.sh mitsuba python dask exr usd onnx docs studio
+	@$(MAKE) --no-print-directory studio-setup
 
 # Rustup's minimal profile lacks rustfmt and clippy, so a missing tool is reported and skipped.
 format:
@@ -96,6 +98,26 @@ blender: lib
 	@benches/peers/install.sh python
 	@target/peers/python/bin/python bindings/blender/build.py out/blender
 
+# The page of the studio. The lockfile states versions and checksums of the npm packages.
+PAGE := bindings/python/luxfer/studio/static/index.html
+studio: $(PAGE)
+$(PAGE): bindings/studio/package-lock.json bindings/studio/index.html bindings/studio/vite.config.ts $(wildcard bindings/studio/src/*)
+	@command -v npm >/dev/null || { echo "the page of the studio is built by npm, which is not here: install nodejs and npm" >&2; exit 1; }
+	cd bindings/studio && npm ci --silent && npm run --silent build
+
+# The page and what tests it in a browser, as far as node and Chromium can be had.
+studio-setup:
+	@missing=""; command -v npm >/dev/null || missing="nodejs npm"; command -v chromium >/dev/null || missing="$$missing chromium"; \
+	if [ -n "$$missing" ] && command -v apt-get >/dev/null; then \
+	  root=""; [ "$$(id -u)" = 0 ] || root="sudo -n"; \
+	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null >/dev/null 2>&1 || \
+	  { $$root apt-get update -qq && $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing; } \
+	    </dev/null >/dev/null 2>&1 || echo "not installed:$$missing; tests of the studio are left out" >&2; \
+	fi
+	@if command -v npm >/dev/null; then $(MAKE) --no-print-directory studio && \
+	  { [ -d tests/studio/node_modules ] || (cd tests/studio && npm ci --silent); } || \
+	  echo "the page of the studio could not be built" >&2; fi
+
 # The guide's code blocks, the examples and, if it is installed, Blender draw the pictures of the guide.
 docs: lib $(addprefix out/,$(GUIDE))
 	@benches/peers/install.sh docs
@@ -104,6 +126,8 @@ docs: lib $(addprefix out/,$(GUIDE))
 	@target/peers/docs/bin/python docs/blocks.py check
 	@target/peers/docs/bin/python docs/blocks.py run target/docs/pictures $(LIB) python
 	@target/peers/docs/bin/python docs/screenshots.py target/docs/pictures/screenshots $(LIB)
+	@if [ -d tests/studio/node_modules ] && [ -f $(PAGE) ]; then \
+	  LUXFER_LIBRARY=$(CURDIR)/$(LIB) node tests/studio/screenshot.js target/docs/pictures/screenshots; fi
 	@NO_MKDOCS_2_WARNING=1 target/peers/docs/bin/mkdocs build --strict
 	@echo "look at out/docs/index.html (its search needs a server, such as python3 -m http.server --directory out/docs)"
 
@@ -112,4 +136,5 @@ peers:
 
 clean:
 	$(CARGO) clean
-	rm -rf build out bindings/python/build bindings/python/luxfer.egg-info
+	rm -rf build out bindings/python/build bindings/python/luxfer.egg-info bindings/python/luxfer/studio/static \
+	  bindings/studio/node_modules tests/studio/node_modules

@@ -3,7 +3,8 @@
 On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
 `{{ limits stage }}` is what the source of a stage says it leaves out, `{{ constant stage NAME }}` is a limit of its warnings, `{{ figure name }}` is a figure of `make bench`,
 `{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, `{{ table name bench }}` a table, and `{{ front name }}` the settings of a plot of error
-against time that no other beats in both. `{{ test name }}` is the name of a test, which there must be. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py. Names of the C interface
+against time that no other beats in both. `{{ test name }}` is the name of a test, which there must be. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py
+or tests/studio/screenshot.js. Names of the C interface
 in code spans become links; one that does not exist is an error.
 """
 
@@ -105,7 +106,7 @@ def value(kind: str, words: list[str], path: str, files) -> str:
     if kind == "screenshot":
         name, *caption = words
         if files.get_file_from_path(f"screenshots/{name}.png") is None:
-            return "*(`make docs` takes the picture that belongs here, where there are Blender and Xvfb.)*"
+            return "*(`make docs` takes the picture that belongs here, where there are the programs for it: Blender and Xvfb, or Chromium.)*"
         return f"![{' '.join(caption)}]({reference.relative(f'screenshots/{name}.png', path)})"
     if kind == "test":
         if not any(f"fn {words[0]}(" in source for source in SOURCES):

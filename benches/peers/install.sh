@@ -27,6 +27,8 @@ install corpora DracoPy eulumdat eulumdat-py networkx numpy OpenEXR photompy Pil
 install usd usd-core numpy
 # Another runtime for ONNX files.
 install onnx onnxruntime numpy
+# The server of the studio.
+install studio numpy starlette uvicorn websockets
 # For the guide.
 install docs -r docs/requirements.txt
 install mitsuba mitsuba numpy

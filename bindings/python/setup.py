@@ -19,6 +19,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 NAME = {"darwin": "libluxfer.dylib", "win32": "luxfer.dll"}.get(sys.platform, "libluxfer.so")
 LIBRARY = ROOT / "target" / "release" / NAME
+PAGE = HERE / "luxfer" / "studio" / "static" / "index.html"
 
 
 def version() -> str:
@@ -32,6 +33,8 @@ class BuildPy(build_py):
     def run(self) -> None:
         if not LIBRARY.exists():
             subprocess.run(["cargo", "build", "--release", "--lib"], cwd=ROOT, check=True)
+        if not PAGE.exists():
+            print("luxfer.studio will have no page, because it has not been built: run `make studio` first", file=sys.stderr)
         super().run()
         if not self.editable_mode:
             self.copied().parent.mkdir(parents=True, exist_ok=True)

@@ -28,6 +28,9 @@ class Install(Case):
         self.assertIn("luxfer/py.typed", names)
         self.assertTrue(any(n.startswith("luxfer/libluxfer") or n == "luxfer/luxfer.dll" for n in names))
         self.assertTrue(any(n.endswith("LICENSE-MIT") for n in names))
+        page = PACKAGE / "luxfer" / "studio" / "static"
+        built = {f"luxfer/studio/static/{p.relative_to(page)}" for p in page.rglob("*") if p.is_file()}
+        self.assertLessEqual(built | {"luxfer/studio/app.py"}, set(names))
 
         target = self.folder / "site"
         subprocess.run([*pip, "install", "--no-deps", "--target", target, wheel], check=True)

@@ -1,0 +1,37 @@
+"""luxfer studio: a photo and a room side by side in the browser, on this machine alone.
+
+    python -m luxfer.studio [photo] [scene] [--project FILE]
+
+It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio; `make studio` builds it into static/.
+
+| file | job |
+|---|---|
+| app | the web application: its routes, its start |
+| security | who may ask: token, Host and Origin; which files may be read |
+| files | photos, scenes and project files, by the hash of their content |
+| session | one user: the project that is wanted, the connection to the page |
+| jobs | threads that do the newest work and give up what is out of date |
+| live | masks while strokes are painted, at a small size |
+| light | the steps from the photo to the lit room, of which only those run whose input has changed |
+| room | its corners, its work plane, the brightness of its pictures |
+| pictures | images as bytes for the page |
+| project | what a project consists of; it is checked here |
+| program | a project as a Python program |
+"""
+
+from __future__ import annotations
+
+import sys
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Starts the studio and serves it until it is interrupted; returns the exit code."""
+    arguments = sys.argv[1:] if argv is None else argv
+    try:
+        from .app import serve
+    except ImportError as missing:
+        if missing.name not in ("starlette", "uvicorn", "websockets", "anyio"):
+            raise
+        print(f"the studio needs the package {missing.name}: pip install 'luxfer[studio]'", file=sys.stderr)
+        return 1
+    return serve(arguments)

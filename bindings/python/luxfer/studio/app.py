@@ -1,0 +1,325 @@
+"""The web application: its routes and its start. All of them lie behind security.Guard."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import shutil
+import socket
+import struct
+import sys
+import tempfile
+import threading
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+import luxfer
+import uvicorn
+from starlette.applications import Starlette
+from starlette.background import BackgroundTask
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from . import project as projects
+from .files import MAX_UPLOAD, Files, state_folder
+from .security import Allowed, Guard, new_token
+from .session import Session
+
+STATIC = Path(__file__).resolve().parent / "static"
+PORT = 8717
+#: Users whose page has gone are forgotten, the one that was here longest ago first, beyond this number.
+MAX_SESSIONS = 8
+PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
+ROOMS = {".glb", ".gltf"}
+
+
+class Studio:
+    """What all users share."""
+
+    def __init__(self, files: Files, first: projects.Project | None, project_file: Path | None):
+        self.files, self.first, self.project_file = files, first, project_file
+        self.context = luxfer.Context()
+        self.sessions: dict[str, Session] = {}
+        self.lock = threading.Lock()
+
+    def start(self) -> projects.Project:
+        """What a new page begins with; generates the demonstration photo where none was named."""
+        first = self.first or projects.DEFAULTS
+        if first["photo"] is None:
+            known = self.files.demo(self.context)
+            first = {**first, "photo": {"name": known.name, "sha256": known.sha256}}
+        return projects.checked(first)
+
+    def session(self, name: str) -> Session:
+        """The session of that name, which may be a new one."""
+        with self.lock:
+            if name not in self.sessions:
+                self._make_room()
+                saved = self.files.state / f"session-{name[:16]}.json"
+                if self.project_file is not None and all(
+                    s.saved != self.project_file for s in self.sessions.values()
+                ):
+                    saved = self.project_file
+                self.sessions[name] = Session(name, self.context, self.files, saved)
+            return self.sessions[name]
+
+    def _make_room(self) -> None:
+        idle = sorted((s for s in self.sessions.values() if not s.listeners), key=lambda s: s.used)
+        for session in idle[: max(0, len(self.sessions) - MAX_SESSIONS + 1)]:
+            del self.sessions[session.name]
+            session.close()
+
+    def close(self) -> None:
+        for session in self.sessions.values():
+            session.close()
+        self.sessions.clear()
+
+    # -- routes
+
+    async def get_start(self, request: Request) -> Response:
+        """GET start: the first project, and which sessions have a page open."""
+        project = await run_in_threadpool(self.start)
+        live = [name for name, session in self.sessions.items() if session.listeners]
+        named = self.first is not None and self.first["photo"] is not None
+        return JSONResponse({"project": project, "open": live, "named": named, "version": luxfer.__version__})
+
+    async def put_file(self, request: Request) -> Response:
+        """POST files?name=: takes a photo or a room from the page."""
+        data = bytearray()
+        async for part in request.stream():
+            data += part
+            if len(data) > MAX_UPLOAD:
+                return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
+        name = request.query_params.get("name", "file")
+        if not data:
+            return problem(f"{name} is empty")
+        suffix = Path(name).suffix.lower()
+        if suffix not in PHOTOS | ROOMS:
+            return problem(
+                f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)"
+            )
+        try:
+            await run_in_threadpool(self.try_file, bytes(data), suffix)
+        except luxfer.Error as error:
+            return problem(f"{name} cannot be read: {error}")
+        known = await run_in_threadpool(self.files.upload, name, bytes(data))
+        return JSONResponse({"name": known.name, "sha256": known.sha256, "is_room": suffix in ROOMS})
+
+    def try_file(self, data: bytes, suffix: str) -> None:
+        """Raises what the library says about a file that it cannot read."""
+        if suffix in ROOMS:
+            scene = luxfer.Scene.from_bytes(self.context, data)
+            if not scene.candidates:
+                raise luxfer.errors.Degenerate("it has no surface that could receive lights")
+        else:
+            luxfer.Image.from_bytes(self.context, data)
+
+    async def get_files(self, request: Request) -> Response:
+        """GET files: what lies in the folders that the user named; open=PATH opens one of them."""
+        if wanted := request.query_params.get("open"):
+            try:
+                known = await run_in_threadpool(self.files.open, Path(wanted))
+                await run_in_threadpool(self.try_file, known.read(), known.path.suffix.lower())
+            except (OSError, luxfer.Error) as error:
+                return problem(str(error), 403 if isinstance(error, PermissionError) else 400)
+            return JSONResponse(
+                {"name": known.name, "sha256": known.sha256, "is_room": known.path.suffix.lower() in ROOMS}
+            )
+        found = [*self.files.allowed.files]
+        for folder in self.files.allowed.folders:
+            found += [p for p in sorted(folder.iterdir()) if p.is_file()]
+        listed = [
+            {"path": str(p), "name": p.name, "is_room": p.suffix.lower() in ROOMS}
+            for p in found[:500]
+            if p.suffix.lower() in PHOTOS | ROOMS
+        ]
+        return JSONResponse({"files": listed})
+
+    async def put_project(self, request: Request) -> Response:
+        """POST projects: the text of a project file; its project, or what is wrong with it."""
+        try:
+            return JSONResponse({"project": projects.checked(json.loads(await request.body()))})
+        except (projects.Invalid, UnicodeDecodeError, json.JSONDecodeError) as error:
+            return problem(str(error))
+
+    async def get_room(self, request: Request) -> Response:
+        """GET room.glb?session=: the room before it is lit, for the page's own view of it."""
+        session = self.sessions.get(request.query_params.get("session", ""))
+        if session is None or session.wanted is None:
+            return problem("there is no such session", 404)
+        room = await run_in_threadpool(session.room, session.wanted.project)
+        return Response(await run_in_threadpool(room.to_bytes), media_type="model/gltf-binary")
+
+    async def get_out(self, request: Request) -> Response:
+        """GET out/KIND?session=: a result as a file to keep."""
+        session = self.sessions.get(request.query_params.get("session", ""))
+        if session is None:
+            return problem("there is no such session", 404)
+        folder = Path(tempfile.mkdtemp(prefix="luxfer-studio-"))
+        done = BackgroundTask(shutil.rmtree, folder, ignore_errors=True)
+        try:
+            path = await run_in_threadpool(session.out, request.path_params["kind"], folder)
+        except (luxfer.Error, LookupError) as error:
+            shutil.rmtree(folder, ignore_errors=True)
+            return problem(str(error), 409)
+        return FileResponse(path, filename=path.name, background=done)
+
+    async def talk(self, socket: WebSocket) -> None:
+        """WebSocket ws?session=: edits come in, results go out as a JSON header and bytes."""
+        name = socket.query_params.get("session", "")
+        if not (8 <= len(name) <= 64 and name.isalnum()):
+            await socket.close(1008)
+            return
+        await socket.accept()
+        session = await run_in_threadpool(self.session, name)
+        loop, queue = asyncio.get_running_loop(), asyncio.Queue[bytes]()
+
+        def listen(header: dict[str, Any], payload: bytes) -> None:
+            text = json.dumps(header, default=float).encode()
+            loop.call_soon_threadsafe(queue.put_nowait, struct.pack("<I", len(text)) + text + payload)
+
+        async def speak() -> None:
+            while True:
+                await socket.send_bytes(await queue.get())
+
+        session.hello()
+        session.listeners.append(listen)
+        speaker = asyncio.create_task(speak())
+        try:
+            while True:
+                message = await socket.receive_json()
+                try:
+                    if message.get("type") == "expose":
+                        await run_in_threadpool(session.expose, message.get("exposure"))
+                    else:
+                        await run_in_threadpool(session.edit, message)
+                except (projects.Invalid, TypeError, ValueError, OSError) as error:
+                    listen(
+                        {"type": "failed", "message": str(error), "missing": False, "error": type(error).__name__},
+                        b"",
+                    )
+        except (WebSocketDisconnect, json.JSONDecodeError):
+            pass
+        finally:
+            session.listeners.remove(listen)
+            if not session.listeners:
+                session.work.stop()  # nobody looks at it
+            speaker.cancel()
+
+    def app(self) -> Starlette:
+        return Starlette(
+            routes=[
+                Route("/start", self.get_start),
+                Route("/files", self.put_file, methods=["POST"]),
+                Route("/files", self.get_files, methods=["GET"]),
+                Route("/projects", self.put_project, methods=["POST"]),
+                Route("/room.glb", self.get_room),
+                Route("/out/{kind}", self.get_out),
+                WebSocketRoute("/ws", self.talk),
+                Mount("/", StaticFiles(directory=STATIC, html=True)),
+            ]
+        )
+
+
+def problem(message: str, status: int = 400) -> Response:
+    """An answer that says what is wrong."""
+    return JSONResponse({"message": message}, status)
+
+
+def parser() -> argparse.ArgumentParser:
+    out = argparse.ArgumentParser(
+        prog="python -m luxfer.studio",
+        description="A photo and a room side by side in the browser, on this machine alone.",
+    )
+    out.add_argument(
+        "photo", nargs="?", type=Path, help="a photo, or a project file (.json); default: a generated office"
+    )
+    out.add_argument("scene", nargs="?", type=Path, help="a room, .glb or .gltf; default: a generated one")
+    out.add_argument(
+        "--project", type=Path, help="the file that the project is kept in as you work; opened if it is there"
+    )
+    out.add_argument(
+        "--folder", type=Path, action="append", default=[], help="a folder whose files the page may open"
+    )
+    out.add_argument("--port", type=int, default=PORT, help=f"default {PORT}, or the next free one; 0: any")
+    out.add_argument(
+        "--state", type=Path, default=None, help=f"folder for what has to survive; default {state_folder()}"
+    )
+    out.add_argument("--no-browser", action="store_true", help="only print the address")
+    return out
+
+
+def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Project | None, Path | None]:
+    """The project that the command line asks for, and the file that it is kept in."""
+    project: projects.Project | None = None
+    kept, photo = asked.project, asked.photo
+    if photo is not None and photo.suffix.lower() == ".json":
+        kept, photo = kept or photo, None
+        if not kept.exists():
+            raise FileNotFoundError(f"there is no file {kept}")
+    if kept is not None and kept.exists():
+        project = projects.load(kept)
+        files.allowed.add(kept.resolve().parent)  # what a project names lies beside it
+    for path, entry in ((photo, "photo"), (asked.scene, "room")):
+        if path is not None:
+            if not path.exists():
+                raise FileNotFoundError(f"there is no file {path}")
+            files.allowed.add(path)
+            known = files.open(path)
+            project = {**(project or projects.DEFAULTS), entry: {"name": known.name, "sha256": known.sha256}}
+    return project, kept.resolve() if kept is not None else None
+
+
+def bind(port: int) -> socket.socket:
+    """A socket on the loopback address, on a port that stays the same from start to start if it can: the browser keeps
+    strokes by port."""
+    for candidate in [port, *range(port + 1, port + 20), 0] if port else [0]:
+        listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        if sys.platform != "win32":
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind(("127.0.0.1", candidate))
+            listener.listen(64)  # whoever reads the printed address is answered
+            return listener
+        except OSError:
+            listener.close()
+    raise OSError("no port is free")
+
+
+def serve(arguments: list[str]) -> int:
+    """Runs the server until it is interrupted."""
+    asked = parser().parse_args(arguments)
+    if not (STATIC / "index.html").exists():
+        print(
+            f"the page of the studio has not been built ({STATIC} is empty): run `make studio` first", file=sys.stderr
+        )
+        return 1
+    try:
+        files = Files(asked.state or state_folder(), Allowed(asked.folder))
+        first, kept = first_project(asked, files)
+    except (OSError, projects.Invalid) as error:
+        print(f"luxfer studio: {error}", file=sys.stderr)
+        return 1
+    studio, listener, token = Studio(files, first, kept), bind(asked.port), new_token()
+    port = listener.getsockname()[1]
+    address = f"http://127.0.0.1:{port}/{token}/"
+    guarded = Guard(studio.app(), token, port)
+    # Results are bits and pixels, which compression would only delay.
+    config = uvicorn.Config(
+        guarded, log_level="warning", ws="websockets-sansio", ws_per_message_deflate=False, lifespan="off"
+    )
+    print(f"luxfer studio: {address}", flush=True)
+    if not asked.no_browser:
+        threading.Timer(0.5, webbrowser.open, [address]).start()
+    try:
+        uvicorn.Server(config).run(sockets=[listener])
+    except KeyboardInterrupt:
+        pass
+    studio.close()
+    return 0

@@ -1,0 +1,121 @@
+"""Photos, scenes and project files, by the hash of their content.
+
+A project names its files by hash, so that it means the same files wherever they lie. What a user drops on the page is
+kept in the state folder, so that a server that is started again still has it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import luxfer
+
+from .security import Allowed
+
+#: Size of the photo that the library generates if there is none: a few seconds of work.
+DEMO_SIZE = (600, 400)
+DEMO_NAME = "generated office.png"
+#: Uploads beyond this are refused.
+MAX_UPLOAD = 1 << 30
+#: What the state folder keeps for this time.
+KEEP_SECONDS = 30 * 24 * 3600.0
+
+
+@dataclass(frozen=True)
+class Known:
+    """A file that the server may read."""
+
+    name: str
+    sha256: str
+    path: Path
+
+    def read(self) -> bytes:
+        """Its content, which must still be what the hash says."""
+        data = self.path.read_bytes()
+        if digest(data) != self.sha256:
+            raise ValueError(f"{self.name} has been changed since it was opened: open it again")
+        return data
+
+
+def digest(data: bytes) -> str:
+    """The hash that projects name files by."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def state_folder() -> Path:
+    """Where the system wants programs to keep what is not a document."""
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "luxfer-studio"
+    return Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "luxfer-studio"
+
+
+class Files:
+    """The files of one server."""
+
+    def __init__(self, state: Path, allowed: Allowed):
+        self.state, self.allowed = state, allowed
+        self.known: dict[str, Known] = {}
+        self._demo_lock = threading.Lock()
+        for folder in (state, state / "files"):
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        self._forget_old()
+        for path in sorted((state / "files").iterdir()):
+            sha256, _, name = path.name.partition("-")
+            if len(sha256) == 64 and name:
+                self.known[sha256] = Known(name, sha256, path)
+
+    def _forget_old(self) -> None:
+        """Deletes what nobody has touched for a month."""
+        for path in [*self.state.glob("*.json"), *(self.state / "files").iterdir()]:
+            if path.is_file() and time.time() - path.stat().st_mtime > KEEP_SECONDS:
+                path.unlink()
+
+    def open(self, path: Path) -> Known:
+        """A file by its path, if the user has named it or its folder."""
+        real = self.allowed.check(path)
+        known = Known(real.name, digest(real.read_bytes()), real)
+        self.known[known.sha256] = known
+        return known
+
+    def upload(self, name: str, data: bytes) -> Known:
+        """A file that the user gave to the page."""
+        safe = (
+            "".join(c if c.isalnum() or c in " ._-" else "_" for c in Path(name.replace("\\", "/")).name)[-80:]
+            or "file"
+        )
+        sha256 = digest(data)
+        path = self.state / "files" / f"{sha256}-{safe}"
+        if not path.exists():
+            partial = path.with_name(f".{sha256}")
+            partial.write_bytes(data)
+            partial.replace(path)
+        os.utime(path)
+        self.known[sha256] = Known(safe, sha256, path)
+        return self.known[sha256]
+
+    def find(self, sha256: str, name: str) -> Known:
+        """A file that a project names; FileNotFoundError asks the user for it."""
+        if sha256 in self.known:
+            return self.known[sha256]
+        for folder in self.allowed.folders:
+            path = folder / name
+            if path.is_file() and path.resolve().is_relative_to(folder) and digest(path.read_bytes()) == sha256:
+                return self.open(path)
+        raise FileNotFoundError(f"the project needs the file {name}")
+
+    def demo(self, context: luxfer.Context) -> Known:
+        """The generated photo, made once and kept."""
+        with self._demo_lock:
+            width, height = DEMO_SIZE
+            path = self.state / f"demo-{luxfer.__version__}-{width}.png"
+            if not path.exists():
+                partial = path.with_name("demo-partial.png")
+                luxfer.DemoPhoto(context).run(width=width, height=height).image("picture").save(partial)
+                partial.replace(path)
+            return self.upload(DEMO_NAME, path.read_bytes())

@@ -1,0 +1,363 @@
+"""The steps from the photo to the lit room.
+
+Each step has a key: all inputs that decide its result. A step runs only if its key, or that of a step before it, has
+changed, so that a new camera only renders and a new offset does not segment.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import luxfer
+import numpy as np
+
+from . import pictures
+from .jobs import Latest
+from .live import strokes_of
+from .project import Project
+from .room import bounds, exposure_for, pattern_of, work_plane
+
+#: Settings of every relighting: no clock decides, so that a project gives the same light each time.
+RELIGHT = {"target_error": 0.02, "paths": 1 << 18}
+MAX_TEXELS = 1024
+#: The first picture: its pixels, and the time that it may take.
+FIRST_PIXELS, FIRST_MS = 36_000, 350
+#: Seconds between two reports of progress.
+REFRESH_SECONDS = 0.5
+#: More paths per pixel than any picture gets.
+MOST_SAMPLES = 1 << 16
+#: Points of the calculation grid on its longer side, and paths for each.
+LUX_POINTS, LUX_SAMPLES = 24, 64
+#: The step whose result each step needs.
+AFTER = {
+    "view": "",
+    "masks": "view",
+    "unwarp": "masks",
+    "emission": "unwarp",
+    "relight": "emission",
+    "first": "relight",
+    "lux": "relight",
+    "before": "relight",
+    "second": "relight",
+    "plan": "first",
+    "picture": "first",
+}
+#: Distance from a lamp's contour at which a point still means it, as a share of the photo's width.
+REACH = 0.015
+
+
+class Light:
+    """The results for one photo and one room."""
+
+    def __init__(self, photo: luxfer.Image, room: luxfer.Scene, thread: Latest[Any], send: Callable[..., None]):
+        self.context, self.photo, self.room = photo.context, photo, room
+        self.thread, self.send = thread, send
+        self.surface = room.candidates[0].name if room.candidates else ""
+        self.transfer = luxfer.Transfer(self.context, photo)
+        self.keys: dict[str, str] = {}
+        self.shown: dict[str, tuple[luxfer.Render, bool, float]] = {}
+        self.told = 0.0
+        self.exposure = 1.0
+        self.planned: dict[str, Any] = {}
+        self.is_replaced = False  # whether the mask of the lights is not the library's own
+        self.lights: luxfer.Image | None = None
+        self.render: luxfer.Render | None = None
+
+    def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
+        """Runs all steps that are out of date, and tells the page of each result."""
+        surface = project["surface"] or self.surface
+        pattern = [surface, project["pattern"], project["zones"]]
+        shot = [project["camera"], size]
+        self.step("view", [], self.find_view)
+        self.step("masks", project["strokes"], lambda: self.make_masks(project))
+        self.step("unwarp", project["removed"], lambda: self.unwarp(project))
+        self.step("emission", pattern, lambda: self.make_texture(project, surface))
+        self.step("relight", project["white"], lambda: self.relight(project))
+        self.step("lux", [], lambda: self.measure(surface))
+        self.step("first", shot, lambda: self.first_picture(project, size))
+        if compare != "off":
+            self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
+        self.step("second", shot, lambda: self.second_picture(project, size))
+        if not project["plan"]:
+            self.step("plan", project["noise"], lambda: self.plan(project, size))
+            project["plan"] = self.planned
+        self.step("picture", project["plan"], lambda: self.refine(project, size))
+
+    def step(self, name: str, inputs: Any, work: Callable[[], None]) -> None:
+        """Runs a step if it is out of date."""
+        self.thread.check()
+        key = self.keys.get(AFTER[name], "") + json.dumps([name, inputs])
+        if self.keys.get(name) == key:
+            return
+        self.keys[name] = ""
+        start = time.perf_counter()
+        work()
+        self.keys[name] = key
+        self.send("step", name=name, seconds=time.perf_counter() - start)
+
+    def stage(self, first: str, last: str, **settings: Any) -> None:
+        """Runs stages of the transfer."""
+        self.send("working", stage=last)
+        self.thread.finish(self.transfer.start(first, last, **settings))
+
+    # -- the photo
+
+    def find_view(self) -> None:
+        self.stage("view", "view")
+
+    def make_masks(self, project: Project) -> None:
+        self.transfer.set_strokes(strokes_of(self.context, project, self.photo.size[:2]))
+        self.lights = None
+        try:
+            self.stage("features", "lights")
+        finally:
+            self.send_warnings()
+        self.lights = self.transfer.image("lights-mask")
+        self.is_replaced = False
+
+    def unwarp(self, project: Project) -> None:
+        assert self.lights is not None
+        if self.is_replaced and not project["removed"]:
+            self.stage("features", "lights")
+            self.is_replaced = False
+        mask = self.lights.numpy()[..., 0]
+        if project["removed"]:
+            mask = pictures.without(mask, project["removed"], REACH * mask.shape[1])
+            if not (mask > 0.5).any():
+                raise ValueError("all lamps have been taken out of the photo: undo one")
+            self.transfer.use_mask("lights", luxfer.Image(self.context, mask))
+            self.is_replaced = True
+        self.send_masks(mask)
+        try:
+            self.stage("unwarp", "unwarp")
+        finally:
+            self.send_view()
+            self.send_warnings()
+
+    def send_masks(self, lights: np.ndarray[Any, Any]) -> None:
+        """The masks at the full size, and the lamps in the photo."""
+        plane, lamps = self.transfer.image("plane-mask"), luxfer.Image(self.context, lights)
+        report = self.transfer.report
+        size, plane_bits = pictures.bits(plane)
+        header = {
+            **size,
+            "live": False,
+            "digest": pictures.digest(plane, lamps),
+            "lamps": pictures.boxes(*pictures.regions(lights > 0.5)),
+            "errors": {"plane": report.plane_error, "lights": report.lights_error},
+        }
+        self.send("masks", plane_bits + pictures.bits(lamps)[1], **header)
+
+    def send_view(self) -> None:
+        """Vanishing points and, once the plane has been unwarped, its rectangle."""
+        view = self.transfer.view
+        width, height, _ = self.transfer.image("unwarped").size if view.is_unwarped else (0, 0, 0)
+        self.send(
+            "view",
+            vanishing=view.vanishing_points,
+            support=view.vanishing_support,
+            errors=view.vanishing_errors,
+            focal=view.focal,
+            unwarped=[width, height] if view.is_unwarped else None,
+            to_photo=view.to_photo if view.is_unwarped else None,
+            pixel_size=view.pixel_size,
+        )
+
+    def send_warnings(self) -> None:
+        try:
+            warnings = self.transfer.warnings
+        except luxfer.errors.NotReady:
+            return
+        self.send(
+            "warnings",
+            list=[
+                {
+                    "code": w.code.name,
+                    "stage": w.stage.name.lower(),
+                    "message": w.message,
+                    "advice": w.advice,
+                    "at": w.place,
+                }
+                for w in warnings
+            ],
+        )
+
+    # -- the room
+
+    def make_texture(self, project: Project, surface: str) -> None:
+        self.transfer.set_scene(self.room, surface)
+        self.transfer.set_zones(np.array(project["zones"], np.float64).reshape(-1, 4))
+        self.stage("emission", "emission", max_texels=MAX_TEXELS, pattern=pattern_of(project))
+        self.send_warnings()
+        image = self.transfer.image("emission")
+        width, height, _ = image.size
+        small = pictures.reduced(image, 300_000)
+        values = small.numpy()
+        placed = self.room.find_surface(surface)
+        report = self.transfer.report
+        self.send(
+            "texture",
+            pictures.rgb(values, 1 / max(1e-9, float(values.max()))),
+            width=small.size[0],
+            height=small.size[1],
+            texels=[width, height],
+            digest=pictures.digest(image),
+            surface={
+                "name": surface,
+                **{k: getattr(placed, k) for k in ("origin", "u_axis", "v_axis", "normal", "size")},
+            },
+            distance=report.plane_distance,
+            distance_error=report.plane_distance_error,
+            proposed_white=[report.proposed_white, report.proposed_white_low, report.proposed_white_high],
+        )
+
+    def relight(self, project: Project) -> None:
+        self.stage("relight", "relight", white_luminance=project["white"], relight=RELIGHT)
+        self.send_warnings()
+        self.lit = self.transfer.scene("lit")
+        self.send(
+            "lamps",
+            error=self.transfer.solution.error,
+            list=[
+                {k: getattr(f, k) for k in ("kind", "position", "axis", "size", "radiance", "flux", "cct", "duv")}
+                for f in self.transfer.fixtures
+            ],
+        )
+
+    def camera(self, project: Project) -> dict[str, Any]:
+        """The camera of the project, the first one of the room, or one in its corner."""
+        if project["camera"]:
+            return dict(project["camera"])
+        if self.room.counts.cameras:
+            return {k: v for k, v in self.room.camera(0).items() if k != "up"}
+        low, high = bounds(self.room)
+        position = low + (high - low) * (0.9, 0.55, 0.9)
+        return {"position": tuple(position), "target": tuple((low + high) / 2), "fov_y": 1.0}
+
+    def first_picture(self, project: Project, size: tuple[int, int]) -> None:
+        self.render = self.quick(self.lit, project, size, "after")
+
+    def second_picture(self, project: Project, size: tuple[int, int]) -> None:
+        """The full size, with one path for each pixel and the noise filter."""
+        self.render = render = luxfer.Render(self.context, self.lit)
+        render.set_camera(**self.camera(project))
+        start = time.perf_counter()
+        self.send("working", stage="render")
+        self.thread.finish(render.start(width=size[0], height=size[1], samples=1, preview=1.0))
+        self.send_picture(render, project, "after", False, time.perf_counter() - start)
+
+    def first_before(self, project: Project, size: tuple[int, int], compare: str) -> None:
+        self.quick(self.room if compare == "own" else self.transfer.scene("white"), project, size, "before")
+
+    def quick(self, scene: luxfer.Scene, project: Project, size: tuple[int, int], which: str) -> luxfer.Render:
+        """A small picture within a fixed time."""
+        share = min(1.0, math.sqrt(FIRST_PIXELS / (size[0] * size[1])))
+        render = luxfer.Render(self.context, scene)
+        render.set_camera(**self.camera(project))
+        if which == "before":
+            share = min(1.0, 2 * share)
+        width, height = (max(16, round(side * share)) for side in size)
+        budget = FIRST_MS if which == "after" else 4 * FIRST_MS
+        self.thread.finish(
+            render.start(width=width, height=height, preview=1.0, samples=MOST_SAMPLES, time_budget_ms=budget)
+        )
+        self.send_picture(render, project, which, False)
+        return render
+
+    def measure(self, surface: str) -> None:
+        """Lux on the work plane."""
+        grid, metres = work_plane(self.room, surface)
+        cell = max(metres) / LUX_POINTS
+        columns, rows = (max(1, round(m / cell)) for m in metres)
+        job = luxfer.Illuminance(self.context, self.lit).start_grid(
+            grid, columns=columns, rows=rows, samples=LUX_SAMPLES
+        )
+        lux = self.thread.finish(job)
+        report = lux.report
+        values = lux.image("lux").numpy()[..., 0]
+        open_points = values[values > 0]  # no light at all reaches points inside of furniture
+        scale = values.size / max(1, open_points.size)
+        self.exposure = exposure_for(report.mean * scale)
+        self.send(
+            "lux",
+            values=[[round(float(v), 1) for v in row] for row in values],
+            size=metres,
+            height=grid["origin"][1],
+            inside=values.size - open_points.size,
+            minimum=float(open_points.min()) if open_points.size else 0.0,
+            mean=report.mean * scale,
+            maximum=report.maximum,
+            error=1.96 * report.mean_error * scale,
+        )
+
+    def refine(self, project: Project, size: tuple[int, int]) -> None:
+        """The picture at its full size, better and better, until it has the paths of the plan."""
+        settings = {**project["plan"]["render"], "width": size[0], "height": size[1], "preview": 1.0}
+        self.render = render = luxfer.Render(self.context, self.lit)
+        render.set_camera(**self.camera(project))
+        start, shown = time.perf_counter(), 1
+
+        def show(share: float) -> None:
+            nonlocal shown
+            self.send_progress(share, time.perf_counter() - start)
+            try:
+                if render.report.samples > shown:
+                    self.send_picture(render, project, "after", False, time.perf_counter() - start)
+                    shown = render.report.samples
+            except luxfer.errors.NotReady:
+                pass  # its first pass has not ended
+
+        self.send("working", stage="render")
+        self.thread.finish(render.start(**settings), show)
+        self.send_picture(render, project, "after", True, time.perf_counter() - start)
+
+    def send_progress(self, share: float, seconds: float) -> None:
+        """How far the picture is, a few times a second."""
+        if seconds - self.told >= REFRESH_SECONDS or seconds < self.told:
+            self.told = seconds
+            self.send("progress", share=share, seconds=seconds)
+
+    def send_picture(
+        self, render: luxfer.Render, project: Project, which: str, is_done: bool, seconds: float = 0.0
+    ) -> None:
+        image, report = render.image("preview"), render.report
+        values = image.numpy()
+        exposure = project["exposure"] or self.exposure
+        self.shown[which] = (render, is_done, seconds)
+        self.send(
+            "picture",
+            pictures.rgb(values, exposure),
+            which=which,
+            width=image.size[0],
+            height=image.size[1],
+            done=is_done,
+            samples=report.samples,
+            noise=report.error if math.isfinite(report.error) else None,
+            bias=report.preview_bias if math.isfinite(report.preview_bias) else None,
+            seconds=seconds,
+            mean=float(values.mean()),
+            exposure=self.exposure,
+            camera=self.camera(project),
+        )
+
+    def show_again(self, project: Project) -> None:
+        """Sends the pictures that are shown once more, such as with another exposure."""
+        for which, (render, is_done, seconds) in list(self.shown.items()):
+            self.send_picture(render, project, which, is_done, seconds)
+
+    def plan(self, project: Project, size: tuple[int, int]) -> None:
+        """The settings for the noise asked for, and what they cost and leave."""
+        self.send("working", stage="plan")
+        render, plan = luxfer.Render(self.context, self.lit), luxfer.Plan(self.context)
+        render.set_camera(**self.camera(project))
+        job = plan.start_render(render, target_error=project["noise"], settings={"width": size[0], "height": size[1]})
+        self.thread.finish(job)
+        chosen = {k: v for k, v in plan.render_params.items() if k in ("samples", "target_error", "seed")}
+        self.planned = {"render": chosen}
+        self.send(
+            "plan", noise=project["noise"], seconds=plan.report.seconds, error=plan.report.error, plan=self.planned
+        )

@@ -1,0 +1,105 @@
+"""Masks while strokes are painted, at a small size, and the pixel where one more stroke would help most.
+
+The features of the small photo are made anew for each stroke, because strokes lay out the room; all of it takes less
+than 50 ms on two idle cores. As soon as the user rests, light.py makes the masks again at the full size.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import luxfer
+import numpy as np
+
+from . import pictures
+from .jobs import Latest
+from .project import Project
+
+#: Size of the small photo: masks of this many pixels appear within 50 ms on two cores.
+PIXELS = 150_000
+#: Side of the window in which doubt is summed, as a share of the photo's width.
+WINDOW = 0.06
+#: Mean doubt in the window below which no stroke is asked for.
+MIN_DOUBT = 0.5
+#: How the library calls the masks that strokes are for.
+PHASES = {
+    "plane": ("plane", True),
+    "not-plane": ("plane", False),
+    "light": ("lights", True),
+    "not-light": ("lights", False),
+}
+
+
+def strokes_of(
+    context: luxfer.Context, project: Project, size: tuple[int, int], share: float = 1.0
+) -> luxfer.Strokes:
+    """The strokes of a project for a photo of `size` pixels, which is `share` as large as the project's."""
+    out = luxfer.Strokes(context, *size)
+    for stroke in project["strokes"]:
+        phase, positive = PHASES[stroke["kind"]]
+        points = np.array(stroke["points"], np.float32).reshape(-1, 2) * share
+        out.add(phase, points, max(stroke["radius"] * share, 0.5), positive)
+    return out
+
+
+class LiveMasks:
+    """The small photo of one session."""
+
+    def __init__(self, photo: luxfer.Image):
+        self.context = (
+            luxfer.Context()
+        )  # threads of its own: a rendering that has not ended yet does not hold them up
+        self.photo = luxfer.Image(self.context, pictures.reduced(photo, PIXELS).numpy())
+        self.size = self.photo.size[:2]
+        self.share = self.size[0] / photo.size[0]
+        self.transfer = luxfer.Transfer(self.context, self.photo)
+        self.is_viewed = False
+        self.segments: dict[str, luxfer.Segment] = {}
+
+    def follow(self, project: Project, thread: Latest[Any]) -> dict[str, luxfer.Image]:
+        """The masks by the strokes of a project; one that cannot be made is missing."""
+        if not self.is_viewed:
+            thread.finish(self.transfer.start("view", "view"))
+            self.is_viewed = True
+        strokes = strokes_of(self.context, project, self.size, self.share)
+        self.transfer.set_strokes(strokes)
+        thread.finish(self.transfer.start("features", "features"))
+        features = self.transfer.image("features")
+        self.segments = {}
+        masks: dict[str, luxfer.Image] = {}
+        for phase in ("plane", "lights"):
+            segment = luxfer.Segment(self.context, features)
+            segment.set_strokes(strokes, phase)
+            if phase == "lights":
+                segment.set_region(masks["plane"])
+            try:
+                thread.finish(segment.start())
+            except luxfer.errors.Degenerate:
+                break
+            masks[phase] = segment.image("mask")
+            self.segments[phase] = segment
+        return masks
+
+    def doubt(self) -> dict[str, Any] | None:
+        """Where one more stroke helps most, in pixels of the project's photo, and for which mask."""
+        best: dict[str, Any] | None = None
+        for phase, segment in self.segments.items():
+            unseen = segment.image("unseen").numpy()[..., 0]
+            side = max(3, int(WINDOW * unseen.shape[1]) | 1)
+            mean = box_mean(unseen, side)
+            y, x = divmod(int(np.argmax(mean)), mean.shape[1])
+            score = float(mean[y, x])
+            if score >= MIN_DOUBT and (best is None or score > best["score"]):
+                at = [(x + 0.5) / self.share, (y + 0.5) / self.share]
+                best = {"phase": phase, "score": score, "at": at, "radius": side / 2 / self.share}
+        return best
+
+
+def box_mean(values: np.ndarray[Any, Any], side: int) -> np.ndarray[Any, Any]:
+    """Means over windows of side x side pixels; pixels beyond the border count as 0."""
+    half = side // 2
+    sums = np.zeros((values.shape[0] + side, values.shape[1] + side))
+    sums[half + 1 : half + 1 + values.shape[0], half + 1 : half + 1 + values.shape[1]] = values
+    sums = sums.cumsum(0).cumsum(1)
+    total = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+    return np.asarray(total / side**2)

@@ -1,0 +1,109 @@
+"""Images as bytes for the page, and the lamps of a mask."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import luxfer
+import numpy as np
+
+#: Masks of more pixels are reduced for the display.
+DISPLAY_PIXELS = 600_000
+
+
+def reduced(image: luxfer.Image, pixels: int) -> luxfer.Image:
+    """An image of at most that many pixels, filtered."""
+    width, height, _ = image.size
+    share = (pixels / (width * height)) ** 0.5
+    if share >= 1:
+        return image
+    w, h = max(1, round(width * share)), max(1, round(height * share))
+    return image.warp([[width / w, 0, 0], [0, height / h, 0], [0, 0, 1]], w, h)
+
+
+def rgb(values: np.ndarray[Any, Any], exposure: float) -> bytes:
+    """Linear values (height, width, 3) as sRGB bytes."""
+    linear = np.clip(values[..., :3] * np.float32(exposure), 0, 1)
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.power(linear, np.float32(1 / 2.4)) - 0.055)
+    return (255 * encoded + 0.5).astype(np.uint8).tobytes()
+
+
+def bits(mask: luxfer.Image) -> tuple[dict[str, Any], bytes]:
+    """A mask with one bit for each pixel, rows padded to bytes, and its size."""
+    values = mask.numpy()[..., 0]
+    step = max(1, int(np.ceil((values.size / DISPLAY_PIXELS) ** 0.5)))
+    shown = values[step // 2 :: step, step // 2 :: step] > 0.5
+    return {"width": shown.shape[1], "height": shown.shape[0]}, np.packbits(shown, axis=1).tobytes()
+
+
+def digest(*images: luxfer.Image) -> str:
+    """A hash of images, to see whether two results are equal to the bit."""
+    out = hashlib.sha256()
+    for image in images:
+        out.update(image.numpy().tobytes())
+    return out.hexdigest()[:16]
+
+
+def regions(mask: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], int]:
+    """The regions of a mask, connected by edges: the number of each pixel's region, from 1, and how many there are."""
+    padded = np.zeros((mask.shape[0], mask.shape[1] + 2), np.int8)
+    padded[:, 1:-1] = mask
+    edges = np.diff(padded, axis=1)
+    rows, starts = np.nonzero(edges == 1)
+    ends = np.nonzero(edges == -1)[1]
+    parent = list(range(len(rows)))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    # Join each run of a row with the runs of the row above that it touches.
+    first: list[int] = np.searchsorted(rows, np.arange(mask.shape[0] + 1)).tolist()
+    for row in range(1, mask.shape[0]):
+        above, here = first[row - 1], first[row]
+        while above < first[row] and here < first[row + 1]:
+            if starts[above] < ends[here] and starts[here] < ends[above]:
+                parent[root(here)] = root(above)
+            if ends[above] < ends[here]:
+                above += 1
+            else:
+                here += 1
+    roots = np.array([root(i) for i in range(len(rows))], int)
+    names, numbers = np.unique(roots, return_inverse=True)
+    labels = np.zeros(mask.shape, np.int32)
+    for i, n in enumerate(numbers + 1):
+        labels[rows[i], starts[i] : ends[i]] = n
+    return labels, len(names)
+
+
+def boxes(labels: np.ndarray[Any, Any], count: int) -> list[dict[str, Any]]:
+    """Box, centre and area of each region, in pixels."""
+    ys, xs = np.nonzero(labels)
+    numbers = labels[ys, xs] - 1
+    area = np.bincount(numbers, minlength=count)
+    low, high = np.full((count, 2), 1 << 30), np.zeros((count, 2), int)
+    for axis, values in enumerate((xs, ys)):
+        np.minimum.at(low[:, axis], numbers, values)
+        np.maximum.at(high[:, axis], numbers, values + 1)
+    return [{"box": [*map(int, low[i]), *map(int, high[i])], "area": int(area[i])} for i in range(count)]
+
+
+def without(mask: np.ndarray[Any, Any], points: list[list[float]], reach: float) -> np.ndarray[Any, Any]:
+    """A mask without the regions at points, or nearest to them within `reach` pixels."""
+    labels, count = regions(mask > 0.5)
+    if not count or not points:
+        return mask
+    out = mask.copy()
+    height, width = mask.shape
+    for x, y in points:
+        x0, x1 = int(max(0, x - reach)), int(min(width, x + reach + 1))
+        y0, y1 = int(max(0, y - reach)), int(min(height, y + reach + 1))
+        window = labels[y0:y1, x0:x1]
+        ys, xs = np.nonzero(window)
+        if len(xs):
+            nearest = np.argmin((xs + x0 + 0.5 - x) ** 2 + (ys + y0 + 0.5 - y) ** 2)
+            out[labels == window[ys[nearest], xs[nearest]]] = 0
+    return out

@@ -1,0 +1,91 @@
+"""A project as a Python program that does the same without the studio, with the same result to the bit."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from .light import MAX_TEXELS, REACH, RELIGHT
+from .live import PHASES
+from .project import Project
+from .room import pattern_of
+
+HEAD = '''"""Lights a room as in a photo: written by luxfer studio. It needs the package luxfer."""
+
+import sys
+
+import luxfer
+
+photo_file = sys.argv[1] if len(sys.argv) > 1 else {photo}
+room_file = sys.argv[2] if len(sys.argv) > 2 else {room}
+
+context = luxfer.Context()
+photo = luxfer.Image.load(context, photo_file)
+room = luxfer.Scene.load(context, room_file) if room_file else luxfer.Scene.demo(context, "target-room")
+surface = {surface}
+
+# Strokes on the photo: mask, points in pixels, radius, and whether they are on it or off it.
+strokes = luxfer.Strokes(context, *photo.size[:2])
+for phase, points, radius, positive in {strokes}:
+    strokes.add(phase, points, radius, positive)
+
+transfer = luxfer.Transfer(context, photo, room, surface)
+transfer.set_strokes(strokes)
+transfer.run("view", "lights")
+'''
+
+REMOVED = """
+# Lamps of the photo that were taken out.
+from luxfer.studio.pictures import without
+
+mask = transfer.image("lights-mask").numpy()[..., 0]
+transfer.use_mask("lights", without(mask, {removed}, {reach} * mask.shape[1]))
+"""
+
+TAIL = """
+# The pattern on the surface, and places without lamps: u0, v0, u1, v1 in metres.
+transfer.set_zones({zones})
+transfer.run("unwarp", "emission", max_texels={texels}, pattern={pattern})
+transfer.run("relight", "relight", white_luminance={white}, relight={relight})
+lit = transfer.scene("lit")
+
+render = luxfer.Render(context, lit)
+render.set_camera(**{camera})
+render.run(width={width}, height={height}, preview=1.0, **{render})
+
+for lamp in transfer.fixtures:
+    print(f"kind {{lamp.kind}}: {{lamp.flux:.0f}} lm, {{lamp.cct:.0f}} K at", [round(x, 2) for x in lamp.position])
+lit.export("lit.glb")
+transfer.save_fixtures("luminaires.csv")
+render.write_exr("render.exr")
+render.image("preview").save("render.png", {exposure})
+"""
+
+
+def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
+    """The text of the program. Surface, camera and exposure are those that the project leaves to the library."""
+    strokes = []
+    for stroke in project["strokes"]:
+        phase, positive = PHASES[stroke["kind"]]
+        points = list(zip(stroke["points"][::2], stroke["points"][1::2]))
+        strokes.append(f"    ({phase!r}, {points!r}, {max(stroke['radius'], 0.5)!r}, {positive!r}),\n")
+    out = HEAD.format(
+        photo=json.dumps(project["photo"]["name"]),
+        room=json.dumps(project["room"]["name"]) if project["room"] else "None",
+        surface=json.dumps(surface),
+        strokes="[\n" + "".join(strokes) + "]" if strokes else "[]",
+    )
+    if project["removed"]:
+        out += REMOVED.format(removed=project["removed"], reach=REACH)
+    return out + TAIL.format(
+        zones=project["zones"],
+        texels=MAX_TEXELS,
+        pattern=pattern_of(project),
+        white=project["white"],
+        relight=RELIGHT,
+        camera=camera,
+        width=size[0],
+        height=size[1],
+        render=(project["plan"] or {"render": {"target_error": project["noise"]}})["render"],
+        exposure=project["exposure"] or exposure,
+    )

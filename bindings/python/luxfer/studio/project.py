@@ -1,0 +1,162 @@
+"""What a project consists of: all that decides its result, as a JSON object that the page sends and files store."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+FORMAT = 1
+KINDS = ("plane", "not-plane", "light", "not-light")
+SCALES = ("distance", "lamp", "spacing", "across")
+
+Project = dict[str, Any]
+
+#: What a new project has, without photo and room.
+DEFAULTS: Project = {
+    "luxfer_studio": FORMAT,
+    "photo": None,  # {"name", "sha256"}
+    "room": None,  # {"name", "sha256"}; None: the generated room
+    "strokes": [],  # {"kind", "radius", "points": [x, y, x, y, ...]} in pixels of the photo
+    "removed": [],  # [x, y] in the photo, on each lamp that was taken out of the mask
+    "zones": [],  # [u0, v0, u1, v1] in metres on the surface, on each lamp that was taken out of the room
+    "surface": None,  # name of the surface that receives the lights; None: the likeliest ceiling
+    "pattern": {"scale": "distance", "length": 1.2, "rotation": 0.0, "offset": [0.0, 0.0], "keep_whole": False},
+    "white": 100.0,  # luminance of the photo's white, cd/m²
+    "camera": None,  # {"position", "target", "fov_y"}; None: the first camera of the room
+    "exposure": None,  # what 1 cd/m² becomes in the picture; None: chosen by its brightness
+    "noise": 0.1,  # error of the picture to plan for
+    "plan": None,  # {"render"}: the settings that a plan has chosen for that noise
+}
+
+
+class Invalid(ValueError):
+    """A project that is none; the message says where."""
+
+
+def number(low: float, high: float) -> Callable[[Any, str], float]:
+    def check(value: Any, name: str) -> float:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
+            raise Invalid(f"{name} is a number in [{low:g}, {high:g}], not {value!r}")
+        return float(value)
+
+    return check
+
+
+def text(value: Any, name: str) -> str:
+    if not isinstance(value, str) or not value or len(value) > 500 or "\0" in value:
+        raise Invalid(f"{name} is a text of up to 500 characters, not {value!r}")
+    return value
+
+
+def one_of(names: tuple[str, ...]) -> Callable[[Any, str], str]:
+    def check(value: Any, name: str) -> str:
+        if value not in names:
+            raise Invalid(f"{name} is one of {', '.join(names)}, not {value!r}")
+        return str(value)
+
+    return check
+
+
+def truth(value: Any, name: str) -> bool:
+    if not isinstance(value, bool):
+        raise Invalid(f"{name} is true or false, not {value!r}")
+    return value
+
+
+def many(
+    check: Callable[[Any, str], Any], count: int | None = None, most: int = 100_000
+) -> Callable[[Any, str], list[Any]]:
+    def check_all(values: Any, name: str) -> list[Any]:
+        if not isinstance(values, list) or (count is not None and len(values) != count) or len(values) > most:
+            raise Invalid(f"{name} is a list of {f'up to {most}' if count is None else count} entries")
+        return [check(value, f"{name}[{i}]") for i, value in enumerate(values)]
+
+    return check_all
+
+
+def record(**fields: Callable[[Any, str], Any]) -> Callable[[Any, str], dict[str, Any]]:
+    def check(value: Any, name: str) -> dict[str, Any]:
+        if not isinstance(value, dict) or set(value) != set(fields):
+            raise Invalid(f"{name} is an object with {', '.join(fields)}")
+        return {key: inner(value[key], f"{name}.{key}") for key, inner in fields.items()}
+
+    return check
+
+
+def optional(check: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
+    return lambda value, name: None if value is None else check(value, name)
+
+
+def settings(value: Any, name: str) -> dict[str, Any]:
+    """Settings of the library, which checks them itself."""
+    if not isinstance(value, dict) or not all(isinstance(v, (int, float)) for v in value.values()):
+        raise Invalid(f"{name} is an object of numbers")
+    return dict(value)
+
+
+PIXEL, METRE = number(-1e5, 1e5), number(-1e6, 1e6)
+FILE = record(name=text, sha256=text)
+FIELDS = {
+    "photo": FILE,
+    "room": optional(FILE),
+    "strokes": many(record(kind=one_of(KINDS), radius=number(1e-3, 4096), points=many(PIXEL)), most=5000),
+    "removed": many(many(PIXEL, 2), most=5000),
+    "zones": many(many(METRE, 4), most=5000),
+    "surface": optional(text),
+    "pattern": record(
+        scale=one_of(SCALES),
+        length=number(1e-3, 1e3),
+        rotation=number(-math.tau, math.tau),
+        offset=many(METRE, 2),
+        keep_whole=truth,
+    ),
+    "white": number(1e-3, 1e6),
+    "camera": optional(record(position=many(METRE, 3), target=many(METRE, 3), fov_y=number(0.01, 3))),
+    "exposure": optional(number(1e-9, 1e9)),
+    "noise": number(1e-3, 1),
+    "plan": optional(record(render=settings)),
+}
+
+
+def checked(value: Any) -> Project:
+    """A project with everything in its place; Invalid if that cannot be."""
+    if not isinstance(value, dict) or value.get("luxfer_studio") != FORMAT:
+        raise Invalid("this is not a project of luxfer studio")
+    if unknown := set(value) - set(DEFAULTS):
+        raise Invalid(f"the project has an unknown entry: {min(unknown)}")
+    merged = {**DEFAULTS, **value}
+    out = {"luxfer_studio": FORMAT, **{name: check(merged[name], name) for name, check in FIELDS.items()}}
+    for i, stroke in enumerate(out["strokes"]):
+        if len(stroke["points"]) % 2 or not stroke["points"]:
+            raise Invalid(f"strokes[{i}].points has an x and a y for each point")
+    return out
+
+
+def load(path: Path) -> Project:
+    """The project in a file."""
+    try:
+        return checked(json.loads(path.read_text(encoding="utf-8")))
+    except (UnicodeDecodeError, json.JSONDecodeError) as broken:
+        raise Invalid(f"{path.name} is not a project of luxfer studio: {broken}") from None
+
+
+def dumps(project: Project) -> str:
+    """The text of a project file: one line for each entry and each stroke, so that versions can be compared."""
+    lines = []
+    for name, value in project.items():
+        body = json.dumps(value)
+        if name == "strokes" and value:
+            body = "[\n    " + ",\n    ".join(json.dumps(stroke) for stroke in value) + "\n  ]"
+        lines.append(f"  {json.dumps(name)}: {body}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def save(path: Path, project: Project) -> None:
+    """Writes a project file in one step, so that a crash leaves the old one or the new one."""
+    partial = path.with_name(f".{path.name}.partial")
+    partial.write_text(dumps(project), encoding="utf-8")
+    os.replace(partial, path)

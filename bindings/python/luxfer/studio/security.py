@@ -1,0 +1,116 @@
+"""Who may ask the server, and which files it may read.
+
+The server listens on the loopback address, where every program and every web page of this machine can reach it. So
+each address begins with a random token, and three headers are checked: Host (against names that resolve to this
+machine), Origin and Sec-Fetch-Site (against pages of other servers). A file is read only if the user named it or its
+folder.
+"""
+
+from __future__ import annotations
+
+import hmac
+import secrets
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+#: Scripts, styles and connections of the page come from this server alone; three.js reads textures from blob:
+#: addresses.
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+HEADERS = [
+    (b"content-security-policy", POLICY.encode()),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"x-content-type-options", b"nosniff"),
+    (b"cache-control", b"no-store"),
+]
+
+
+def new_token() -> str:
+    """192 random bits."""
+    return secrets.token_urlsafe(24)
+
+
+class Guard:
+    """An ASGI application around another: refuses what does not come from the page, and takes the token off paths."""
+
+    def __init__(self, app: Any, token: str, port: int):
+        self.app, self.token = app, token
+        self.hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] == "lifespan":
+            await self.app(scope, receive, send)
+            return
+        if reason := self.refusal(scope):
+            await refuse(scope, receive, send, reason)
+            return
+        inner = {**scope, "path": scope["path"][len(self.token) + 1 :], "root_path": ""}
+        inner["raw_path"] = inner["path"].encode()
+        await self.app(inner, receive, sender(send) if scope["type"] == "http" else send)
+
+    def refusal(self, scope: Any) -> str:
+        """Why a request is refused; empty if it is not."""
+        headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
+        host, origin = headers.get("host", ""), headers.get("origin")
+        if host not in self.hosts:
+            return "the Host header names another server"
+        if origin is not None and origin != f"http://{host}":
+            return "the request comes from a page of another origin"
+        if origin is None and scope["type"] == "websocket":
+            return "a WebSocket states its origin"
+        if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
+            return "the request comes from another site"
+        given = scope["path"].split("/", 2)[1]
+        if not hmac.compare_digest(given.encode(), self.token.encode()):
+            return "the token of the address is wrong: open the address that the studio printed when it started"
+        return ""
+
+
+def sender(send: Any) -> Any:
+    """A send function that adds the headers above to each answer."""
+
+    async def with_headers(message: Any) -> None:
+        if message["type"] == "http.response.start":
+            message = {**message, "headers": [*message.get("headers", []), *HEADERS]}
+        await send(message)
+
+    return with_headers
+
+
+async def refuse(scope: Any, receive: Any, send: Any, reason: str) -> None:
+    """Status 403, for a WebSocket before it is accepted."""
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": 1008})
+        return
+    headers = [(b"content-type", b"text/plain; charset=utf-8"), *HEADERS]
+    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.body", "body": f"Refused: {reason}.\n".encode()})
+
+
+class Allowed:
+    """The files that may be read: those that the user named, and what lies in folders that the user named."""
+
+    def __init__(self, paths: Iterable[Path] = ()):
+        self.files: set[Path] = set()
+        self.folders: set[Path] = set()
+        for path in paths:
+            self.add(path)
+
+    def add(self, path: Path) -> None:
+        """Allows a file, or a folder with all that lies in it."""
+        real = path.resolve(strict=True)
+        (self.folders if real.is_dir() else self.files).add(real)
+
+    def check(self, path: Path) -> Path:
+        """The real path, with symbolic links resolved, if it may be read; PermissionError if not."""
+        real = path.resolve()
+        if real in self.files or any(real.is_relative_to(folder) for folder in self.folders):
+            return real
+        raise PermissionError(f"{path.name}: the studio reads only files and folders named when it was started")

@@ -1,0 +1,245 @@
+"""One user: the project that is wanted, what has been made of it, and the connections to the page.
+
+The page sends its whole project at every change, so that nothing is lost if either side ends. Two threads work on it:
+one makes the masks while strokes are painted, the other one lights the room.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import luxfer
+
+from . import pictures, program
+from . import project as projects
+from .files import Files
+from .jobs import Latest
+from .light import Light
+from .live import LiveMasks
+from .project import Project
+from .room import bounds
+
+#: The photo as the page shows it has at most this many pixels.
+SHOWN_PIXELS = 2_000_000
+#: Largest side of a picture.
+MAX_SIDE = 1600
+
+Send = Callable[[dict[str, Any], bytes], None]
+
+
+@dataclass
+class Wanted:
+    """One state of the page."""
+
+    project: Project
+    version: int
+    size: tuple[int, int]
+    compare: str
+    is_draft: bool
+    arrived: float
+
+
+class Session:
+    """One user of the server."""
+
+    def __init__(self, name: str, context: luxfer.Context, files: Files, saved: Path):
+        self.name, self.context, self.files, self.saved = name, context, files, saved
+        self.listeners: list[Send] = []
+        self.used = time.monotonic()
+        self.wanted: Wanted | None = None
+        self._lock, self._saving = threading.Lock(), threading.Lock()
+        self._photo: tuple[str, luxfer.Image] | None = None
+        self._room: tuple[str, luxfer.Scene] | None = None
+        self._opened: tuple[str, str] | None = None
+        self.small: tuple[str, LiveMasks] | None = None
+        self.light: Light | None = None
+        self.live: Latest[Wanted] = Latest("studio-live", self._paint, self._failed)
+        self.work: Latest[Wanted] = Latest("studio-work", self._work, self._failed)
+
+    def close(self) -> None:
+        """Ends the threads and lets go of the library's objects."""
+        self.live.close()
+        self.work.close()
+        self.light = self.small = self._photo = self._room = None
+
+    # -- the page
+
+    def send(self, kind: str, payload: bytes = b"", **header: Any) -> None:
+        """Tells every page of this user."""
+        for listener in list(self.listeners):
+            listener({"type": kind, **header}, payload)
+
+    def hello(self) -> None:
+        """A page has connected: it gets everything again with its next edit."""
+        self._opened = None
+        self.light = None
+
+    def edit(self, message: dict[str, Any]) -> None:
+        """A new state of the page."""
+        self.used = time.monotonic()
+        project = projects.checked(message.get("project"))
+        width, height = (max(64, min(MAX_SIDE, int(side))) for side in message.get("size", (640, 400)))
+        compare = message.get("compare", "off")
+        if compare not in ("off", "own", "white"):
+            raise projects.Invalid("compare is off, own or white")
+        is_draft = bool(message.get("draft"))
+        wanted = Wanted(
+            project, int(message.get("version", 0)), (width, height), compare, is_draft, time.perf_counter()
+        )
+        before, self.wanted = self.wanted, wanted
+        if not is_draft:
+            self._save(wanted)
+            self.send("saved", version=wanted.version, file=self.saved.name)
+        is_painted = (
+            before is None
+            or before.project["strokes"] != project["strokes"]
+            or before.project["photo"] != project["photo"]
+        )
+        if is_painted or self._opened is None:
+            self.live.put(wanted)
+        if is_draft:
+            self.work.stop()  # the processors are for the masks while a stroke is painted
+        else:
+            self.work.put(wanted)
+
+    def expose(self, exposure: float) -> None:
+        """Another brightness of the pictures that are shown; disturbs no work."""
+        if self.wanted is not None and self.light is not None:
+            self.wanted.project["exposure"] = projects.FIELDS["exposure"](exposure, "exposure")
+            self._save(self.wanted)
+            self.light.show_again(self.wanted.project)
+
+    def _save(self, wanted: Wanted) -> None:
+        """Writes the project into its file, unless a newer one is there."""
+        with self._saving:
+            if self.wanted is wanted:
+                projects.save(self.saved, wanted.project)
+
+    # -- work
+
+    def photo(self, project: Project) -> luxfer.Image:
+        """The photo of a project."""
+        with self._lock:
+            sha256 = project["photo"]["sha256"]
+            if self._photo is None or self._photo[0] != sha256:
+                data = self.files.find(sha256, project["photo"]["name"]).read()
+                self._photo = sha256, luxfer.Image.from_bytes(self.context, data)
+            return self._photo[1]
+
+    def room(self, project: Project) -> luxfer.Scene:
+        """The room of a project."""
+        with self._lock:
+            sha256 = project["room"]["sha256"] if project["room"] else "demo"
+            if self._room is None or self._room[0] != sha256:
+                self._room = sha256, self._load_room(project)
+            return self._room[1]
+
+    def _load_room(self, project: Project) -> luxfer.Scene:
+        if not project["room"]:
+            return luxfer.Scene.demo(self.context, "target-room")
+        known = self.files.find(project["room"]["sha256"], project["room"]["name"])
+        return luxfer.Scene.from_bytes(self.context, known.read(), known.path.parent)
+
+    def _open(self, project: Project) -> None:
+        """Loads photo and room, and shows them, if they are not those that the page has."""
+        photo, room = self.photo(project), self.room(project)
+        key = project["photo"]["sha256"], project["room"]["sha256"] if project["room"] else "demo"
+        with self._lock:
+            if self._opened == key:
+                return
+            self._opened = key
+            self.light = Light(photo, room, self.work, self.send)
+        shown = pictures.reduced(photo, SHOWN_PIXELS)
+        width, height, _ = photo.size
+        colours = {"width": shown.size[0], "height": shown.size[1]}
+        self.send("photo", shown.numpy("u1", "srgb")[..., :3].tobytes(), **colours, full=[width, height])
+        low, high = ([float(x) for x in corner] for corner in bounds(room))
+        candidates = [
+            {"name": c.name, "kind": c.kind.name.lower(), "score": c.score, "reason": c.reason, "height": c.height}
+            for c in room.candidates[:12]
+        ]
+        self.send(
+            "room",
+            candidates=candidates,
+            camera=self.light.camera({**project, "camera": None}),
+            bounds=[low, high],
+            warnings=[{"message": w.message, "advice": w.advice} for w in room.warnings],
+        )
+
+    def _paint(self, wanted: Wanted) -> None:
+        """The masks at a small size."""
+        self._open(wanted.project)
+        sha256 = wanted.project["photo"]["sha256"]
+        if self.small is None or self.small[0] != sha256:
+            self.small = sha256, LiveMasks(self.photo(wanted.project))
+        live = self.small[1]
+        masks = live.follow(wanted.project, self.live)
+        self.send_live(live, masks, wanted)
+        if not wanted.is_draft:
+            self.send("doubt", version=wanted.version, place=live.doubt())
+
+    def send_live(self, live: LiveMasks, masks: dict[str, luxfer.Image], wanted: Wanted) -> None:
+        parts = {phase: pictures.bits(mask) for phase, mask in masks.items()}
+        self.send(
+            "masks",
+            b"".join(data for _, data in parts.values()),
+            width=live.size[0],
+            height=live.size[1],
+            live=True,
+            version=wanted.version,
+            phases=list(parts),
+            seconds=time.perf_counter() - wanted.arrived,
+        )
+
+    def _work(self, wanted: Wanted) -> None:
+        self.live.wait_idle(self.work.check)
+        self._open(wanted.project)
+        assert self.light is not None
+        self.light.follow(wanted.project, wanted.size, wanted.compare)
+        self._save(wanted)  # with the settings that the plan has chosen
+        self.send("idle", version=wanted.version)
+
+    def _failed(self, failure: Exception) -> None:
+        """Tells the user; a file that is missing can be given."""
+        missing = isinstance(failure, FileNotFoundError)
+        self.send("failed", message=str(failure), missing=missing, error=type(failure).__name__)
+
+    # -- results
+
+    @staticmethod
+    def text(kind: str, wanted: Wanted, light: Light) -> str:
+        """The project file, or the program that does the same."""
+        if kind == "project":
+            return projects.dumps(wanted.project)
+        surface = wanted.project["surface"] or light.surface
+        return program.program(wanted.project, wanted.size, surface, light.camera(wanted.project), light.exposure)
+
+    def out(self, kind: str, folder: Path) -> Path:
+        """A file of the results, written into a folder; NotReady if they are not there yet."""
+        if self.wanted is None or self.light is None:
+            raise luxfer.errors.NotReady("there is no result yet")
+        stem = Path(self.wanted.project["photo"]["name"]).stem or "studio"
+        if kind in ("project", "program"):
+            path = folder / (f"{stem}.luxfer.json" if kind == "project" else f"{stem}.py")
+            path.write_text(self.text(kind, self.wanted, self.light), encoding="utf-8")
+            return path
+        path = folder / f"{stem}.{kind}"
+        if kind == "csv":
+            self.light.transfer.save_fixtures(path)
+        elif kind == "glb":
+            self.light.transfer.scene("lit").export(path)
+        elif kind in ("png", "exr"):
+            if self.light.render is None:
+                raise luxfer.errors.NotReady("there is no picture yet")
+            if kind == "exr":
+                self.light.render.write_exr(path)
+            else:
+                self.light.render.image("preview").save(path, self.wanted.project["exposure"] or self.light.exposure)
+        else:
+            raise LookupError(f"there is no result {kind}")
+        return path

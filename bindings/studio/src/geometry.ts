@@ -1,0 +1,92 @@
+// Vanishing lines and the grid of the plane, drawn over the photo.
+
+export interface View {
+  vanishing: [number, number, number][]; // homogeneous pixels
+  support: number[];
+  errors: number[];
+  focal: number;
+  unwarped: [number, number] | null;
+  to_photo: number[] | null; // from unwarped pixels to the photo's, row by row
+  pixel_size: number; // of an unwarped pixel, as a share of the camera's distance from the plane
+  distance: number | null; // of the camera from the plane, in metres
+}
+
+/** The three axes differ by colour (Okabe and Ito) and by dashes. */
+const AXES = [
+  { colour: "#e69f00", dashes: [] },
+  { colour: "#009e73", dashes: [8, 4] },
+  { colour: "#cc79a7", dashes: [2, 4] },
+];
+/** Lines of each fan meet the photo's border at this distance, as a share of its width. */
+const FAN = 1 / 6;
+const FINITE = 1e-9;
+
+function outlined(
+  context: CanvasRenderingContext2D,
+  path: Path2D,
+  colour: string,
+  dashes: number[],
+  scale: number,
+): void {
+  context.setLineDash([]);
+  context.strokeStyle = "#0008";
+  context.lineWidth = 3 / scale;
+  context.stroke(path);
+  context.setLineDash(dashes.map((d) => d / scale));
+  context.strokeStyle = colour;
+  context.lineWidth = 1.3 / scale;
+  context.stroke(path);
+  context.setLineDash([]);
+}
+
+/** For each axis of the room, lines that run to its vanishing point. */
+export function drawVanishing(
+  context: CanvasRenderingContext2D,
+  view: View,
+  [width, height]: [number, number],
+  scale: number,
+): void {
+  const reach = 2 * Math.hypot(width, height);
+  const step = FAN * width;
+  view.vanishing.forEach(([x, y, w], axis) => {
+    const path = new Path2D();
+    const through: [number, number][] = [];
+    for (let at = step / 2; at < width; at += step) through.push([at, 0], [at, height]);
+    for (let at = step / 2; at < height; at += step) through.push([0, at], [width, at]);
+    for (const [px, py] of through) {
+      let [dx, dy] = Math.abs(w) > FINITE ? [x / w - px, y / w - py] : [x, y];
+      const length = Math.hypot(dx, dy) || 1;
+      dx /= length;
+      dy /= length;
+      const ahead = Math.abs(w) > FINITE ? Math.min(reach, length) : reach;
+      path.moveTo(px, py);
+      path.lineTo(px + dx * ahead, py + dy * ahead);
+    }
+    context.globalAlpha = 0.8;
+    outlined(context, path, AXES[axis].colour, AXES[axis].dashes, scale);
+    context.globalAlpha = 1;
+  });
+}
+
+/** The plane's rectangle with a grid, one square a metre where the distance is known. */
+export function drawGrid(context: CanvasRenderingContext2D, view: View, scale: number): void {
+  if (!view.unwarped || !view.to_photo) return;
+  const [width, height] = view.unwarped;
+  const metre = view.distance ? 1 / (view.pixel_size * view.distance) : Math.max(width, height) / 8;
+  const step = metre * Math.max(1, Math.ceil(Math.max(width, height) / metre / 40));
+  const path = new Path2D();
+  for (let x = 0; x <= width; x += step) line(path, view.to_photo, [x, 0], [x, height]);
+  for (let y = 0; y <= height; y += step) line(path, view.to_photo, [0, y], [width, y]);
+  line(path, view.to_photo, [width, 0], [width, height]);
+  line(path, view.to_photo, [0, height], [width, height]);
+  outlined(context, path, "#ffffff", [], scale);
+}
+
+function line(path: Path2D, h: number[], from: [number, number], to: [number, number]): void {
+  const project = ([x, y]: [number, number]): [number, number] => {
+    const w = h[6] * x + h[7] * y + h[8];
+    return [(h[0] * x + h[1] * y + h[2]) / w, (h[3] * x + h[4] * y + h[5]) / w];
+  };
+  path.moveTo(...project(from));
+  path.lineTo(...project(to));
+}

@@ -1,0 +1,49 @@
+// Keys of the whole page, and the list of all keys.
+
+import { make, showDialog } from "./dom";
+
+const KEYS: [string, string][] = [
+  ["1 2 3 4 5", "plane, not plane, light, not light, take out"],
+  ["[ and ]", "smaller and larger brush"],
+  ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
+  ["Ctrl+O", "open"],
+  ["M, G, V", "masks, grid, vanishing lines"],
+  ["?", "these keys"],
+  ["Photo: arrow keys", "move the brush, with Shift in small steps"],
+  ["Photo: Space", "start and end a stroke (Escape: no stroke)"],
+  ["Photo: Enter", "a dot"],
+  ["Photo: + and −", "zoom"],
+  ["Room: arrow keys, + and −", "turn and move the view"],
+  ["Room: Home", "the room's own view"],
+];
+
+export function showKeys(): void {
+  showDialog(
+    "Keys",
+    make(
+      "dl",
+      { class: "keys" },
+      ...KEYS.flatMap(([keys, what]) => [make("dt", {}, make("kbd", {}, keys)), make("dd", {}, what)]),
+    ),
+    make(
+      "p",
+      {},
+      "Two fingers or the wheel zoom the photo, the right mouse button moves it. A pen paints wider when pressed.",
+    ),
+  );
+}
+
+/** Calls the action of a key, unless somebody types. */
+export function onKeys(actions: Record<string, () => void>): void {
+  document.addEventListener("keydown", (event) => {
+    const target = event.target as HTMLElement;
+    const isText = target instanceof HTMLInputElement && ["number", "text"].includes(target.type);
+    if (isText || target instanceof HTMLSelectElement || document.querySelector("dialog[open]")) return;
+    const control = event.ctrlKey || event.metaKey;
+    const name = `${control ? "Ctrl+" : ""}${control && event.shiftKey ? "Shift+" : ""}${event.key.toLowerCase()}`;
+    const action = actions[name];
+    if (!action || event.altKey) return;
+    event.preventDefault();
+    action();
+  });
+}

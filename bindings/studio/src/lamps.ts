@@ -1,0 +1,202 @@
+// The lamps of the room: a plan of the ceiling, and a list kind by kind; any can be taken out and put back.
+
+import type { Message } from "./api";
+import { byId, make, short } from "./dom";
+import { rgbPicture } from "./masks";
+import type { Spot } from "./room_view";
+
+export interface Lamp {
+  kind: number;
+  position: [number, number, number];
+  axis: [number, number, number];
+  size: [number, number];
+  flux: number;
+  cct: number;
+}
+
+export type Zone = [number, number, number, number];
+
+interface Surface {
+  origin: number[];
+  u_axis: number[];
+  v_axis: number[];
+  size: [number, number];
+}
+
+/** A zone goes this far beyond its lamp, in metres. */
+const BEYOND = 0.02;
+
+export class LampList {
+  private readonly box = byId("lamps");
+  private lamps: Lamp[] = [];
+  private surface: Surface | null = null;
+  private texture: HTMLCanvasElement | null = null;
+  private zones: Zone[] = [];
+  private error = 0;
+  onZones: (zones: Zone[]) => void = () => {};
+  onShow: (spots: Spot[]) => void = () => {};
+
+  setTexture(message: Message, rgb: Uint8Array): void {
+    this.surface = message.surface as unknown as Surface;
+    this.texture = rgbPicture(message.width, message.height, rgb);
+    this.draw();
+  }
+
+  setLamps(message: Message): void {
+    this.lamps = message.list;
+    this.error = message.error;
+    this.draw();
+  }
+
+  setZones(zones: Zone[]): void {
+    this.zones = zones;
+    this.draw();
+  }
+
+  /** The lamp's box on the surface, in metres from its corner. */
+  private zoneOf(lamp: Lamp): Zone {
+    const s = this.surface!;
+    const dot = (a: number[], b: number[]) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const from = lamp.position.map((x, i) => x - s.origin[i]);
+    const [u, v] = [dot(from, s.u_axis), dot(from, s.v_axis)];
+    const [cos, sin] = [Math.abs(dot(lamp.axis, s.u_axis)), Math.abs(dot(lamp.axis, s.v_axis))];
+    const [a, b] = [lamp.size[0] / 2, lamp.size[1] / 2];
+    const [du, dv] = [a * cos + b * sin + BEYOND, a * sin + b * cos + BEYOND];
+    return [u - du, v - dv, u + du, v + dv].map((x) => Math.round(1000 * x) / 1000) as Zone;
+  }
+
+  private takeOut(lamps: Lamp[]): void {
+    this.onShow([]);
+    this.onZones([...this.zones, ...lamps.map((l) => this.zoneOf(l))]);
+  }
+
+  private draw(): void {
+    byId("lamps-count").textContent = this.lamps.length ? String(this.lamps.length) : "";
+    if (!this.surface || !this.texture) {
+      this.box.replaceChildren(make("p", { class: "quiet" }, "No lamps yet."));
+      return;
+    }
+    const kinds = new Map<number, Lamp[]>();
+    for (const lamp of this.lamps) kinds.set(lamp.kind, [...(kinds.get(lamp.kind) ?? []), lamp]);
+    const order = [...kinds].sort(([a], [b]) => (a || 1e9) - (b || 1e9));
+    const total = this.lamps.reduce((sum, l) => sum + l.flux, 0);
+    const open = new Set(
+      [...this.box.querySelectorAll("details[open]")].map((d) => (d as HTMLElement).dataset.kind),
+    );
+    this.box.replaceChildren(
+      this.plan(),
+      make(
+        "p",
+        { class: "quiet" },
+        `${this.lamps.length} lamps, ${short(total)} lm in all (± ${short(100 * this.error)} %)`,
+      ),
+      ...order.map(([kind, lamps]) => this.kindBox(kind, lamps, open.has(String(kind)))),
+      ...(this.zones.length ? [this.taken()] : []),
+    );
+  }
+
+  private kindBox(kind: number, lamps: Lamp[], isOpen: boolean): HTMLElement {
+    const mean = (f: (l: Lamp) => number) => lamps.reduce((sum, l) => sum + f(l), 0) / lamps.length;
+    const size = `${short(mean((l) => l.size[0]))} × ${short(mean((l) => l.size[1]))} m`;
+    const title = kind ? `Kind ${letter(kind)}` : "Cut by the edge";
+    return make(
+      "details",
+      { class: "kind", "data-kind": kind, open: isOpen },
+      make(
+        "summary",
+        {},
+        make("b", {}, title),
+        ` · ${lamps.length} × ${size} · ${short(mean((l) => l.flux))} lm · ${10 * Math.round(mean((l) => l.cct) / 10)} K`,
+      ),
+      make("button", { type: "button", onclick: () => this.takeOut(lamps) }, `Take all ${lamps.length} out`),
+      make("ul", {}, ...lamps.map((lamp) => this.row(lamp))),
+    );
+  }
+
+  private row(lamp: Lamp): HTMLElement {
+    const [x, , z] = lamp.position;
+    const show = () => this.onShow([{ position: lamp.position, label: "" }]);
+    const hide = () => this.onShow([]);
+    const text = `x ${x.toFixed(2)}, z ${z.toFixed(2)} m · ${short(lamp.flux)} lm`;
+    const button = make(
+      "button",
+      {
+        type: "button",
+        onclick: () => this.takeOut([lamp]),
+        onfocus: show,
+        onblur: hide,
+        "aria-label": `Take out the lamp at ${text}`,
+      },
+      "Take out",
+    );
+    return make("li", { onpointerenter: show, onpointerleave: hide }, make("span", {}, text), button);
+  }
+
+  private taken(): HTMLElement {
+    const text = this.zones.length === 1 ? "1 place is kept free" : `${this.zones.length} places are kept free`;
+    return make(
+      "p",
+      { class: "row" },
+      text,
+      make("button", { type: "button", onclick: () => this.onZones([]) }, "Put all back"),
+    );
+  }
+
+  /** The ceiling from below, with its texture; a click takes a lamp out or puts it back. */
+  private plan(): HTMLElement {
+    const { size } = this.surface!;
+    const [width, height] = size;
+    const canvas = make("canvas", { class: "plan", role: "img" });
+    canvas.setAttribute("aria-label", `Plan of the ceiling, ${short(width)} by ${short(height)} metres`);
+    const scale = 2 * Math.min(300 / width, 220 / height);
+    canvas.width = Math.max(1, Math.round(width * scale));
+    canvas.height = Math.max(1, Math.round(height * scale));
+    const context = canvas.getContext("2d")!;
+    context.fillStyle = "#111";
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(this.texture!, 0, 0, canvas.width, canvas.height);
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.font = "bold 20px system-ui, sans-serif";
+    for (const lamp of this.lamps) {
+      const [u0, v0, u1, v1] = this.zoneOf(lamp).map((x) => x * scale);
+      context.strokeStyle = "#56b4e9";
+      context.lineWidth = 2;
+      context.strokeRect(u0, v0, u1 - u0, v1 - v0);
+      if (lamp.kind) {
+        context.lineWidth = 5;
+        context.strokeStyle = "#000";
+        context.strokeText(letter(lamp.kind), (u0 + u1) / 2, (v0 + v1) / 2);
+        context.fillStyle = "#fff";
+        context.fillText(letter(lamp.kind), (u0 + u1) / 2, (v0 + v1) / 2);
+      }
+    }
+    for (const zone of this.zones) drawZone(context, zone.map((x) => x * scale) as Zone);
+    canvas.title = "Click a lamp to take it out, or a free place to put it back";
+    canvas.addEventListener("click", (event) => {
+      const at = [(event.offsetX / canvas.clientWidth) * width, (event.offsetY / canvas.clientHeight) * height];
+      const inside = ([u0, v0, u1, v1]: Zone) => at[0] >= u0 && at[0] <= u1 && at[1] >= v0 && at[1] <= v1;
+      if (this.zones.some(inside)) this.onZones(this.zones.filter((z) => !inside(z)));
+      else this.takeOut(this.lamps.filter((l) => inside(this.zoneOf(l))).slice(0, 1));
+    });
+    return canvas;
+  }
+}
+
+function drawZone(context: CanvasRenderingContext2D, [u0, v0, u1, v1]: Zone): void {
+  context.strokeStyle = "#fff";
+  context.setLineDash([6, 5]);
+  context.lineWidth = 2;
+  context.strokeRect(u0, v0, u1 - u0, v1 - v0);
+  context.beginPath();
+  context.moveTo(u0, v0);
+  context.lineTo(u1, v1);
+  context.moveTo(u1, v0);
+  context.lineTo(u0, v1);
+  context.stroke();
+  context.setLineDash([]);
+}
+
+function letter(kind: number): string {
+  return kind <= 26 ? String.fromCharCode(64 + kind) : String(kind);
+}

@@ -1,0 +1,39 @@
+// The results as files.
+
+import { download, Problem } from "./api";
+import { byId, make, notice } from "./dom";
+
+const KINDS: [string, string, string][] = [
+  ["glb", "Room (GLB)", "the room with its lamps, in cd/m², for Blender and other programs"],
+  ["exr", "Picture (EXR)", "linear, in cd/m²"],
+  ["png", "Picture (PNG)", "at the exposure shown"],
+  ["csv", "Luminaires (CSV)", "every lamp: place in metres, size, cd/m², lumens, kelvin"],
+  ["project", "Project (JSON)", "opens here again with the same result"],
+  ["program", "Program (Python)", "does the same without the studio"],
+];
+
+export function showOut(session: string, openProject: () => void): void {
+  byId("out").append(
+    make(
+      "ul",
+      { class: "out" },
+      ...KINDS.map(([kind, label, what]) =>
+        make(
+          "li",
+          {},
+          make("button", { type: "button", id: `out-${kind}`, onclick: () => void keep(kind, session) }, label),
+          make("span", {}, what),
+        ),
+      ),
+    ),
+    make("p", {}, make("button", { type: "button", onclick: openProject }, "Open a project…")),
+  );
+}
+
+async function keep(kind: string, session: string): Promise<void> {
+  try {
+    notice(`Saved ${await download(kind, session)}.`);
+  } catch (problem) {
+    notice(problem instanceof Problem ? problem.message : String(problem));
+  }
+}

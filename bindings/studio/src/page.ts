@@ -1,0 +1,380 @@
+// Puts the parts of the page together: a change goes into the store, from there to the server, and
+// results go to the parts.
+
+import { ask, Connection, Problem, type Message, type Start } from "./api";
+import { byId, hideNotice, make, notice, percent, seconds, short } from "./dom";
+import { onKeys, showKeys } from "./keys";
+import { LampList } from "./lamps";
+import { showLux } from "./lux";
+import { maskPicture, rgbPicture, type Masks } from "./masks";
+import { Notes } from "./notes";
+import { Opener } from "./open";
+import { showOut } from "./out";
+import { PatternForm } from "./pattern";
+import { PhotoView } from "./photo_view";
+import type { Project, Store, Stroke } from "./project";
+import { RoomView } from "./room_view";
+import { TOOLS, type Tool } from "./strokes";
+import { Trade } from "./trade";
+
+const STAGES: Record<string, string> = {
+  view: "finding lines",
+  lights: "finding plane and lights",
+  unwarp: "straightening the plane",
+  emission: "making the pattern",
+  relight: "solving for the strength",
+  render: "rendering",
+  plan: "planning",
+};
+
+export class Page {
+  readonly photo = new PhotoView();
+  readonly room = new RoomView();
+  readonly notes = new Notes();
+  readonly lamps = new LampList();
+  readonly pattern = new PatternForm();
+  readonly trade = new Trade();
+  readonly connection: Connection;
+  private draft: Stroke | null = null;
+  private compare = "off";
+  private lastMasks: { masks: Masks; bits: Uint8Array } | null = null;
+  private rounds = 0; // masks at the full size that have come
+  private sent = new Map<number, number>(); // when each version was sent
+  private autoExposure: number | null = null;
+
+  constructor(
+    readonly store: Store,
+    readonly start: Start,
+  ) {
+    this.connection = new Connection(store.session);
+    this.connection.current = () => ({ project: this.withDraft(), compare: this.compare, draft: false });
+    this.connection.onMessage = (message, payload) => this.take(message, payload);
+    this.connection.onState = (isUp) => this.connected(isUp);
+    store.onChange = (what) => this.changed(what);
+    this.tools();
+    this.listen();
+    this.show();
+    this.connection.open();
+  }
+
+  // -- changes go out
+
+  private withDraft(): Project {
+    const { project } = this.store;
+    return this.draft ? { ...project, strokes: [...project.strokes, this.draft] } : project;
+  }
+
+  private send(isDraft: boolean): void {
+    const version = this.connection.send({ project: this.withDraft(), compare: this.compare, draft: isDraft });
+    this.sent.set(version, performance.now());
+    if (this.sent.size > 50) this.sent.delete(this.sent.keys().next().value!);
+  }
+
+  private changed(what: string): void {
+    this.show();
+    if (what !== "exposure") this.send(false);
+  }
+
+  private show(): void {
+    const { project } = this.store;
+    this.photo.strokes = project.strokes;
+    this.photo.removed = project.removed;
+    this.photo.redraw();
+    this.lamps.setZones(project.zones);
+    this.pattern.show(project);
+    this.trade.show(project.noise);
+    if (project.camera) this.room.setCamera(project.camera, false);
+    byId<HTMLButtonElement>("undo").disabled = !this.store.canUndo;
+    byId<HTMLButtonElement>("redo").disabled = !this.store.canRedo;
+    byId("names").textContent = `${project.photo.name} → ${project.room?.name ?? "generated room"}`;
+    document.body.dataset.strokes = String(project.strokes.length);
+  }
+
+  private listen(): void {
+    const { store, photo, room } = this;
+    photo.onDraft = (stroke) => {
+      this.draft = stroke ? { ...stroke, points: [...stroke.points] } : null;
+      this.send(stroke !== null); // a stroke that is given up lets the work go on
+    };
+    photo.onStroke = (stroke) => {
+      this.draft = null;
+      store.change(`stroke ${store.project.strokes.length}`, { strokes: [...store.project.strokes, stroke] });
+    };
+    photo.onRemove = (at) => {
+      const place = at.map((x) => Math.round(10 * x) / 10) as [number, number];
+      store.change(`remove ${store.project.removed.length}`, { removed: [...store.project.removed, place] });
+    };
+    room.onCamera = (camera) => store.change("camera", { camera });
+    this.lamps.onZones = (zones) => store.change(`zones ${zones.length}`, { zones });
+    this.lamps.onShow = (spots) => room.highlight(spots);
+    this.pattern.onChange = (what, patch) => store.change(what, patch);
+    this.trade.onNoise = (noise) => store.change("noise", { noise });
+    this.notes.onMarks = (marks) => {
+      photo.marks = marks;
+      photo.redraw();
+    };
+    const opener = new Opener({
+      photo: (file) => this.open({ ...store.project, photo: file, strokes: [], removed: [] }),
+      room: (file) => this.open({ ...store.project, room: file, surface: null, zones: [], camera: null }),
+      project: (project) => this.open(project, true),
+      demo: () => void this.openDemo(),
+    });
+    byId("open").onclick = () => void opener.show();
+    showOut(store.session, () => void opener.show());
+    byId("undo").onclick = () => store.undo();
+    byId("redo").onclick = () => store.redo();
+    byId("help").onclick = showKeys;
+    byId<HTMLInputElement>("brush").oninput = (e) => photo.setBrush(Number((e.target as HTMLInputElement).value));
+    for (const name of ["masks", "grid", "lines"] as const) {
+      const box = byId<HTMLInputElement>(`show-${name}`);
+      box.onchange = () => {
+        photo.show[name] = box.checked;
+        photo.redraw();
+      };
+    }
+    byId<HTMLSelectElement>("compare").onchange = (e) => {
+      this.compare = (e.target as HTMLSelectElement).value;
+      room.compare(this.compare !== "off");
+      this.send(false);
+    };
+    const exposure = byId<HTMLInputElement>("exposure");
+    exposure.oninput = () => {
+      const stops = Number(exposure.value);
+      byId("exposure-out").textContent =
+        stops === 0 ? "±0" : `${stops > 0 ? "+" : "−"}${Math.abs(stops).toFixed(1)} stops`;
+      if (this.autoExposure === null) return;
+      const value = stops === 0 ? null : this.autoExposure * 2 ** stops;
+      store.note({ exposure: value });
+      this.connection.expose(value ?? this.autoExposure);
+    };
+    this.keys(opener);
+  }
+
+  private keys(opener: Opener): void {
+    const tick = (id: string) => () => byId<HTMLInputElement>(id).click();
+    const brush = (by: number) => () => {
+      const input = byId<HTMLInputElement>("brush");
+      input.value = String(Number(input.value) + by);
+      this.photo.setBrush(Number(input.value));
+    };
+    onKeys({
+      ...Object.fromEntries(TOOLS.map(({ tool }, i) => [String(i + 1), () => this.choose(tool)])),
+      "ctrl+z": () => this.store.undo(),
+      "Ctrl+z": () => this.store.undo(),
+      "Ctrl+Shift+z": () => this.store.redo(),
+      "Ctrl+y": () => this.store.redo(),
+      "Ctrl+o": () => void opener.show(),
+      "[": brush(-3),
+      "]": brush(3),
+      m: tick("show-masks"),
+      g: tick("show-grid"),
+      v: tick("show-lines"),
+      "?": showKeys,
+    });
+  }
+
+  private tools(): void {
+    byId("tools").append(
+      ...TOOLS.map(({ tool, label, hint, dashes }, index) => {
+        const input = make("input", {
+          type: "radio",
+          name: "tool",
+          value: tool,
+          checked: index === 0,
+          id: `tool-${tool}`,
+        });
+        input.onchange = () => this.choose(tool);
+        const swatch = make("span", {
+          class: `swatch ${tool}${dashes.length ? " off" : ""}`,
+          "aria-hidden": "true",
+        });
+        return make("label", { title: `${hint} (${index + 1})` }, input, swatch, label);
+      }),
+    );
+  }
+
+  private choose(tool: Tool): void {
+    byId<HTMLInputElement>(`tool-${tool}`).checked = true;
+    this.photo.tool = tool;
+    this.photo.redraw();
+  }
+
+  private open(project: Project, isWhole = false): void {
+    this.resetExposure();
+    this.store.replace({
+      ...project,
+      exposure: isWhole ? project.exposure : null,
+      plan: isWhole ? project.plan : null,
+    });
+    hideNotice();
+  }
+
+  private async openDemo(): Promise<void> {
+    try {
+      const start = await ask<Start>("start");
+      this.open({ ...this.store.project, photo: start.project.photo, strokes: [], removed: [] });
+    } catch (problem) {
+      notice(String(problem instanceof Problem ? problem.message : problem));
+    }
+  }
+
+  private resetExposure(): void {
+    byId<HTMLInputElement>("exposure").value = "0";
+    byId("exposure-out").textContent = "±0";
+  }
+
+  // -- results come in
+
+  private connected(isUp: boolean): void {
+    document.body.classList.toggle("down", !isUp);
+    if (isUp) return hideNotice();
+    notice(
+      "The studio has ended. Your strokes are kept in this browser: " +
+        "start it again and open the address that it prints.",
+    );
+    this.busy("");
+  }
+
+  private busy(text: string): void {
+    byId("busy").textContent = text;
+    byId("busy").hidden = !text;
+  }
+
+  private take(message: Message, payload: Uint8Array): void {
+    const on: Record<string, () => void> = {
+      saved: () =>
+        (byId("saved").textContent =
+          `Saved ${new Date().toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}`),
+      photo: () => this.photo.setPhoto(rgbPicture(message.width, message.height, payload), message.full),
+      room: () => this.takeRoom(message),
+      masks: () => this.takeMasks(message, payload),
+      doubt: () => this.notes.setDoubt(message),
+      view: () => this.takeView(message),
+      warnings: () => this.takeWarnings(message),
+      texture: () => this.takeTexture(message, payload),
+      lamps: () => this.lamps.setLamps(message),
+      lux: () => showLux(message),
+      picture: () => this.takePicture(message, payload),
+      progress: () => this.roomStatus(`rendering, ${percent(message.share)}`),
+      plan: () => {
+        this.trade.setPlan(message);
+        this.store.note({ plan: message.plan });
+      },
+      working: () =>
+        this.busy(
+          message.stage === "render" || message.stage === "plan"
+            ? ""
+            : `${STAGES[message.stage] ?? message.stage}…`,
+        ),
+      idle: () => {
+        this.busy("");
+        document.body.dataset.idle = String(message.version);
+      },
+      failed: () => this.fail(message),
+    };
+    document.body.dataset.last = message.type;
+    on[message.type]?.();
+  }
+
+  private fail(message: Message): void {
+    this.busy("");
+    document.body.dataset.idle = "failed";
+    if (message.missing) {
+      notice(`${message.message}: drop it on the page, or choose it.`, {
+        label: "Choose it",
+        work: () => byId("open").click(),
+      });
+    } else this.notes.fail(String(message.message));
+  }
+
+  private takeRoom(message: Message): void {
+    this.pattern.setCandidates(message);
+    this.room.setCamera(message.camera, true);
+    if (this.store.project.camera) this.room.setCamera(this.store.project.camera, false);
+    void this.room
+      .load(`room.glb?session=${this.store.session}&t=${Date.now()}`)
+      .catch((problem) => notice(`The quick view of the room cannot be shown: ${problem.message}`));
+    for (const warning of message.warnings) notice(`Room: ${warning.message}: ${warning.advice}`);
+  }
+
+  private takeMasks(message: Message, bits: Uint8Array): void {
+    const masks: Masks = {
+      width: message.width,
+      height: message.height,
+      phases: message.phases ?? ["plane", "lights"],
+      isLive: message.live,
+    };
+    this.lastMasks = { masks, bits: bits.slice() };
+    this.drawMasks();
+    if (message.live) {
+      const since = this.sent.get(message.version);
+      if (since !== undefined) document.body.dataset.latency = `${Math.round(performance.now() - since)}`;
+      return;
+    }
+    this.photo.lamps = message.lamps;
+    this.rounds += 1;
+    document.body.dataset.rounds = String(this.rounds);
+    document.body.dataset.masks = message.digest;
+    this.notes.fail("");
+    const { plane, lights } = message.errors;
+    const stated = [plane, lights].every((x) => typeof x === "number")
+      ? `; stated error ${percent(plane)} of the plane, ${percent(lights)} of the lights`
+      : "";
+    byId("photo-status").textContent = `${message.lamps.length} lamps in the photo${stated}.`;
+  }
+
+  private drawMasks(): void {
+    if (!this.lastMasks) return;
+    const { masks, bits } = this.lastMasks;
+    const painted = new Set(this.withDraft().strokes.map((s) => s.kind));
+    const proposed = this.notes.proposed;
+    if (masks.isLive && painted.has("plane") && painted.has("not-plane")) proposed.delete("plane");
+    if (masks.isLive && painted.has("light")) proposed.delete("lights");
+    this.photo.masks = maskPicture(masks, bits, proposed);
+    this.photo.redraw();
+  }
+
+  private takeWarnings(message: Message): void {
+    const before = [...this.notes.proposed].join();
+    this.notes.setWarnings(message);
+    document.body.dataset.proposed = [...this.notes.proposed].join(" ");
+    if ([...this.notes.proposed].join() !== before) this.drawMasks();
+  }
+
+  private takeView(message: Message): void {
+    this.photo.view = { ...(message as any), distance: null };
+    this.photo.redraw();
+  }
+
+  private takeTexture(message: Message, payload: Uint8Array): void {
+    this.lamps.setTexture(message, payload);
+    this.pattern.setEstimates(message);
+    document.body.dataset.texture = message.digest;
+    if (this.photo.view && Number.isFinite(message.distance)) this.photo.view.distance = message.distance;
+    this.photo.redraw();
+  }
+
+  private takePicture(message: Message, rgb: Uint8Array): void {
+    if (message.which === "after") {
+      this.autoExposure = message.exposure;
+      this.trade.setPicture(message);
+      const error = message.noise ?? message.bias;
+      const stated = error === null ? "" : `, stated error ${percent(error)}`;
+      this.roomStatus(
+        message.done
+          ? `Done${stated}, ${message.samples} paths per pixel, ${seconds(message.seconds)}`
+          : `Preview${stated}`,
+      );
+      document.body.dataset.noise = String(error);
+      document.body.dataset.mean = short(message.mean);
+    }
+    this.room.picture(message, rgb);
+  }
+
+  private shownStatus = "";
+  private roomStatus(text: string): void {
+    if (text.startsWith("rendering")) text = `${this.shownStatus} · ${text}`;
+    else this.shownStatus = text;
+    byId("room-status").textContent = text;
+  }
+}

@@ -1,0 +1,89 @@
+// Strokes: what they look like, and painting them with mouse, pen, touch and keys.
+
+import type { Kind, Stroke } from "./project";
+
+export type Tool = Kind | "remove";
+
+export interface ToolLook {
+  tool: Tool;
+  label: string;
+  hint: string;
+  colour: string;
+  dashes: number[]; // of the line in the middle of the stroke: the kinds differ without their colours too
+}
+
+/** Colours by Okabe and Ito, which people with any colour vision tell apart. */
+export const TOOLS: ToolLook[] = [
+  { tool: "plane", label: "Plane", hint: "on the plane that carries the lights", colour: "#56b4e9", dashes: [] },
+  { tool: "not-plane", label: "Not plane", hint: "off that plane", colour: "#d55e00", dashes: [7, 5] },
+  { tool: "light", label: "Light", hint: "on lights", colour: "#f0e442", dashes: [] },
+  {
+    tool: "not-light",
+    label: "Not light",
+    hint: "on the plane beside the lights",
+    colour: "#cc79a7",
+    dashes: [2, 5],
+  },
+  { tool: "remove", label: "Take out", hint: "a lamp of the photo", colour: "#ffffff", dashes: [] },
+];
+
+export function lookOf(kind: Tool): ToolLook {
+  return TOOLS.find((t) => t.tool === kind)!;
+}
+
+/** Points nearer than this, as a share of the brush, are left out: they say nothing. */
+const STEP = 0.3;
+
+/** A stroke in the making. */
+export class Pen {
+  stroke: Stroke | null = null;
+
+  begin(kind: Kind, radius: number, x: number, y: number): void {
+    this.stroke = { kind, radius: round(radius), points: [round(x), round(y)] };
+  }
+
+  /** Goes on to a point; false if it is too near to matter. */
+  extend(x: number, y: number): boolean {
+    const stroke = this.stroke;
+    if (!stroke) return false;
+    const [px, py] = stroke.points.slice(-2);
+    if (Math.hypot(x - px, y - py) < STEP * stroke.radius) return false;
+    stroke.points.push(round(x), round(y));
+    return true;
+  }
+
+  end(): Stroke | null {
+    const out = this.stroke;
+    this.stroke = null;
+    return out;
+  }
+}
+
+function round(value: number): number {
+  return Math.round(10 * value) / 10;
+}
+
+/** Draws a stroke; `scale` is screen pixels for one pixel of the photo. */
+export function drawStroke(context: CanvasRenderingContext2D, stroke: Stroke, scale: number): void {
+  const look = lookOf(stroke.kind);
+  const path = new Path2D();
+  const p = stroke.points;
+  path.moveTo(p[0], p[1]);
+  if (p.length === 2) path.lineTo(p[0] + 1e-3, p[1]);
+  for (let i = 2; i < p.length; i += 2) path.lineTo(p[i], p[i + 1]);
+  context.lineCap = context.lineJoin = "round";
+  context.setLineDash([]);
+  context.globalAlpha = 0.45;
+  context.strokeStyle = look.colour;
+  context.lineWidth = 2 * stroke.radius;
+  context.stroke(path);
+  context.globalAlpha = 1;
+  context.strokeStyle = "#000000";
+  context.lineWidth = 4 / scale;
+  context.stroke(path);
+  context.setLineDash(look.dashes.map((d) => d / scale));
+  context.strokeStyle = look.colour;
+  context.lineWidth = 2 / scale;
+  context.stroke(path);
+  context.setLineDash([]);
+}

@@ -1,0 +1,255 @@
+// The studio in a real browser: what a user does, from the photo to the files, and back from a project.
+
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { browse, changed, folder, missing, open, paint, picture, place, serve, state, STROKES } from "./studio.js";
+
+const skip = missing();
+if (skip && process.env.CI) throw new Error(skip);
+
+/** Clicks a button that downloads, and returns the file's text or bytes. */
+async function download(page, id, encoding) {
+  const [file] = await Promise.all([page.waitForEvent("download"), page.locator(`#out-${id}`).click()]);
+  return readFileSync(await file.path(), encoding);
+}
+
+/** Paints the three strokes, each of which changes the masks. */
+async function paintAll(page) {
+  for (const [tool, ...places] of STROKES) {
+    await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
+  }
+  await page.waitForFunction(() => document.body.dataset.strokes === "3" && document.body.dataset.proposed === "");
+}
+
+/** The results for the present strokes, once they are all there. */
+async function settled(page) {
+  await page.waitForFunction(
+    () => document.body.dataset.last === "progress" || document.body.dataset.last === "idle",
+  );
+  return { masks: await state(page, "masks"), texture: await state(page, "texture") };
+}
+
+test("from photo and strokes to files, and back from the project", { skip }, async (t) => {
+  const place = folder();
+  const server = await serve(t, place);
+  const browser = await browse(t);
+  const page = await open(t, browser, server.address);
+
+  // Without a stroke there are proposed masks, a lit room, and words that say so.
+  assert.equal(await state(page, "proposed"), "plane lights");
+  assert.match(await page.locator("#notes").innerText(), /Proposal/);
+  assert.match(await page.locator("#room-status").innerText(), /stated error \d/);
+  await page.locator("#lux dd").first().waitFor();
+  await picture(page, "1-proposal");
+
+  await paintAll(page);
+  const made = await settled(page);
+  const lamps = Number(await page.locator("#lamps-count").innerText());
+  assert.ok(lamps >= 4, `${lamps} lamps`);
+  await page.waitForFunction(() => /Planned: /.test(document.getElementById("planned").textContent));
+  await page.locator("#show-grid").check();
+  await page.locator("#show-lines").check();
+  await picture(page, "2-painted");
+  await page.locator("#show-grid").uncheck();
+  await page.locator("#show-lines").uncheck();
+
+  // Files.
+  const csv = await download(page, "csv", "utf8");
+  assert.equal(csv.trim().split("\n").length, lamps + 1);
+  assert.equal((await download(page, "glb")).subarray(0, 4).toString(), "glTF");
+  assert.equal((await download(page, "exr")).readUInt32LE(0), 20000630);
+  assert.equal((await download(page, "png")).subarray(1, 4).toString(), "PNG");
+  assert.match(await download(page, "program", "utf8"), /strokes\.add\(phase/);
+  const project = await download(page, "project", "utf8");
+  assert.equal(JSON.parse(project).strokes.length, 3);
+
+  // Undo and redo.
+  await changed(page, "strokes", "3", () => page.keyboard.press("Control+z"));
+  assert.equal(await state(page, "strokes"), "2");
+  await page.locator("#redo").click();
+  assert.equal(await state(page, "strokes"), "3");
+  await page.waitForFunction((masks) => document.body.dataset.masks === masks, made.masks);
+
+  // A lamp is taken out of the room, by the list, and put back.
+  await page.locator(".kind summary").first().click();
+  await page.locator(".kind li button").first().click();
+  await page.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps - 1);
+  await page.getByRole("button", { name: "Put all back" }).click();
+  await page.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
+
+  // The project opens again, in another browser, with the same result.
+  const file = join(place, "again.luxfer.json");
+  writeFileSync(file, project);
+  await page.close();
+  const other = await open(t, await browse(t), server.address);
+  await other.locator("#open").click();
+  await other.locator("#files").setInputFiles(file);
+  await other.waitForFunction((masks) => document.body.dataset.masks === masks, made.masks);
+  await other.waitForFunction((texture) => document.body.dataset.texture === texture, made.texture);
+  await other.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
+  assert.equal(await download(other, "csv", "utf8"), csv);
+  assert.deepEqual([...page.problems, ...other.problems], []);
+});
+
+test("by keys alone", { skip }, async (t) => {
+  const server = await serve(t, folder());
+  const page = await open(t, await browse(t), server.address);
+  const before = await state(page, "masks");
+  // Tab reaches the photo; nothing is clicked in this test.
+  for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "photo"; i++)
+    await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "photo");
+  const rounds = await state(page, "rounds");
+  await page.keyboard.press("2");
+  assert.ok(await page.locator("#tool-not-plane").isChecked());
+  for (let i = 0; i < 22; i++) await page.keyboard.press("ArrowDown");
+  await page.keyboard.press("Space");
+  for (let i = 0; i < 8; i++) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Space");
+  assert.equal(await state(page, "strokes"), "1");
+  await changed(page, "rounds", rounds);
+  await page.keyboard.press("Control+z");
+  assert.equal(await state(page, "strokes"), "0");
+  await page.waitForFunction((masks) => document.body.dataset.masks === masks, before);
+  await page.keyboard.press("Shift+?");
+  assert.ok(await page.locator("dialog[open]").isVisible());
+  await page.keyboard.press("Escape");
+  assert.ok(!(await page.locator("dialog").isVisible()));
+
+  // The view of the room turns, and a new picture comes.
+  for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "room"; i++)
+    await page.keyboard.press("Tab");
+  const mean = await state(page, "mean");
+  for (let i = 0; i < 5; i++) await page.keyboard.press("ArrowLeft");
+  await changed(page, "mean", mean);
+  assert.deepEqual(page.problems, []);
+});
+
+test("windows of any size, light and dark", { skip }, async (t) => {
+  const server = await serve(t, folder());
+  const browser = await browse(t, { colorScheme: "dark" });
+  const page = await open(t, browser, server.address);
+  const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  assert.equal(await background(), "rgb(23, 25, 28)");
+  for (const [width, height] of [
+    [1920, 1080],
+    [1440, 900],
+    [1024, 768],
+    [390, 800],
+  ]) {
+    await page.setViewportSize({ width, height });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `at ${width} pixels the page is ${wide} wide`);
+    for (const id of ["photo", "room", "noise", "out-glb"]) {
+      const box = await page.locator(`#${id}`).boundingBox();
+      assert.ok(
+        box && box.width > 20 && box.x >= 0 && box.x + box.width <= width + 1,
+        `${id} at ${width}: ${JSON.stringify(box)}`,
+      );
+    }
+    await picture(page, `3-dark-${width}`);
+  }
+  await page.selectOption("#theme", "light");
+  assert.equal(await background(), "rgb(244, 244, 242)");
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.texture);
+  assert.equal(await background(), "rgb(244, 244, 242)");
+});
+
+test("by touch", { skip }, async (t) => {
+  const server = await serve(t, folder());
+  const browser = await browse(t, { hasTouch: true, viewport: { width: 800, height: 900 } });
+  const page = await open(t, browser, server.address);
+  const before = await state(page, "rounds");
+  await page.locator("label:has(#tool-not-plane)").tap();
+  const [x, y] = await place(page, 0.5, 0.95);
+  await changed(page, "rounds", before, () => page.touchscreen.tap(x, y));
+  assert.equal(await state(page, "strokes"), "1");
+});
+
+test("two users at once", { skip }, async (t) => {
+  const server = await serve(t, folder());
+  const [one, two] = await Promise.all([
+    open(t, await browse(t), server.address),
+    open(t, await browse(t), server.address),
+  ]);
+  for (const [page, strokes] of [
+    [one, STROKES.slice(0, 2)],
+    [two, STROKES.slice(2)],
+  ]) {
+    for (const [tool, ...places] of strokes) {
+      await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
+    }
+  }
+  assert.notEqual(await state(one, "masks"), await state(two, "masks"));
+  assert.equal(await state(one, "strokes"), "2");
+  assert.equal(await state(two, "strokes"), "1");
+});
+
+test("a killed server loses no stroke", { skip }, async (t) => {
+  const place = folder();
+  const first = await serve(t, place);
+  const browser = await browse(t);
+  const page = await open(t, browser, first.address);
+  await paintAll(page);
+  const made = await state(page, "masks");
+  await first.kill();
+  await page.locator("#notice").waitFor();
+  assert.match(await page.locator("#notice-text").innerText(), /ended.*strokes are kept/s);
+  // What is painted without a server is kept too.
+  await paint(page, "not-light", [0.3, 0.1], [0.33, 0.12]);
+  assert.equal(await state(page, "strokes"), "4");
+  await page.close();
+
+  const second = await serve(t, place, ["--port", first.port]);
+  assert.equal(second.port, first.port);
+  const again = await open(t, browser, second.address);
+  assert.equal(await state(again, "strokes"), "4");
+  assert.match(await again.locator("#notice-text").innerText(), /is back/);
+  await again.keyboard.press("Control+z");
+  await again.waitForFunction(() => document.body.dataset.masks !== "");
+  assert.ok(made);
+});
+
+test("who is not let in, and files that are none", { skip }, async (t) => {
+  const server = await serve(t, folder());
+  const browser = await browse(t);
+  const page = await open(t, browser, server.address);
+  const wrong = await browser.newPage();
+  const answer = await wrong.goto(server.address.replace(/\/[^/]+\/$/, "/wrong-token/"));
+  assert.equal(answer.status(), 403);
+  assert.match(await wrong.locator("body").innerText(), /token/);
+
+  // A page of another origin can neither ask nor connect, though it knows the address.
+  const { createServer } = await import("node:http");
+  const foreign = createServer((_, out) => out.end("<!doctype html><title>foreign</title>"));
+  await new Promise((done) => foreign.listen(0, "127.0.0.1", done));
+  t.after(() => foreign.close());
+  await wrong.goto(`http://127.0.0.1:${foreign.address().port}/`);
+  const tried = await wrong.evaluate(async (address) => {
+    const asked = await fetch(`${address}start`, { mode: "no-cors" }).then(
+      () => "opaque",
+      () => "refused",
+    );
+    const read = await fetch(`${address}start`).then(
+      (a) => a.status,
+      () => "refused",
+    );
+    const socket = await new Promise((done) => {
+      const s = new WebSocket(`${address.replace("http", "ws")}ws?session=foreign01`);
+      s.onopen = () => done("open");
+      s.onerror = () => done("refused");
+    });
+    return { asked, read, socket };
+  }, server.address);
+  assert.deepEqual([tried.read, tried.socket], ["refused", "refused"]);
+
+  await page.locator("#open").click();
+  await page
+    .locator("#files")
+    .setInputFiles({ name: "broken.jpg", mimeType: "image/jpeg", buffer: Buffer.from("no photo") });
+  await page.locator("#notice-text", { hasText: "broken.jpg cannot be read" }).waitFor();
+  assert.equal(await state(page, "strokes"), "0");
+});
