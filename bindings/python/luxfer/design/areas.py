@@ -30,6 +30,8 @@ WALKING = 1.5
 #: Distance of the points from the wall or ceiling that they lie on, and depth that still counts as this wall, in metres.
 #: [convention]
 OFFSET, DEPTH = 0.01, 0.05
+#: Height in metres of the points of the background above the floor, so that a carpet does not hide them. [convention]
+CARPET = 0.03
 #: A wall is looked for from this distance, in metres, so that furniture in front of it hides it. [convention]
 LOOK = 1.0
 #: Vertical planes around a point whose mean illuminance is the cylindrical one. With 9 planes the error for one small
@@ -157,7 +159,7 @@ def surrounding(room: Room, of: Area, name: str | None = None, band: float = BAN
 def background(room: Room, tasks: Sequence[Area] = (), name: str = "background", border: float = BORDER) -> Area:
     """The floor without a strip along the walls, without task and surrounding areas, and where people can walk."""
     rectangle = _within(room, border)
-    area = _made(name, "background", room, [rectangle], 0.0, clearance=WALKING)
+    area = _made(name, "background", room, [rectangle], CARPET, clearance=WALKING)
     patch = area.patches[0]
     plan = room.plan(patch.points.reshape(-1, 3))
     keep = patch.keep.copy().reshape(-1)
@@ -181,8 +183,8 @@ def cylindrical(room: Room, name: str = "faces", height: float = SEATED, border:
 
 
 def walls(room: Room, name: str = "walls", without: Sequence[str] = ("window", "glass", "door", "curtain")) -> Area:
-    """The four walls, without what lies deeper or in front of them, such as windows and cupboards, and without objects
-    whose name contains one of these words."""
+    """The four walls, without what lies deeper or in front of them, such as windows, pictures and cupboards, and without
+    objects whose name contains one of these words."""
     sides = (
         (room.world([(0, 0)])[0], room.along * room.length, room.across),
         (room.world([(0, room.width)])[0], room.along * room.length, -room.across),
@@ -204,7 +206,8 @@ def _on_wall(room: Room, patch: Patch, without: Sequence[str]) -> NDArray[np.boo
     reach = min(LOOK, 0.5 * min(room.length, room.width))
     start = (patch.points + (reach - OFFSET) * patch.normal).reshape(-1, 3)
     hits = room.scene.intersect(start, np.broadcast_to(-patch.normal, start.shape))
-    near = np.abs(hits["t"] - reach) <= DEPTH
+    # The points themselves lie in front of whatever counts as the wall.
+    near = (hits["t"] > reach - 0.9 * OFFSET) & (hits["t"] <= reach + DEPTH)
     names = {m: room.scene.mesh_name(int(m)).lower() for m in set(hits["mesh"][near].tolist())}
     wanted = [ok and not any(w in names[int(m)] for w in without) for ok, m in zip(near, hits["mesh"])]
     return np.array(wanted, bool).reshape(patch.rows, patch.columns)
@@ -234,10 +237,8 @@ def _made(
         corner = room.world([(a0, b0)], height)[0]
         patch = Patch(corner, room.along * (a1 - a0), room.across * (b1 - b0), np.array(normal, float), columns, rows,
                       np.ones((rows, columns), bool))
-        # A grid on the floor tests the air above it.
-        points = patch.points.reshape(-1, 3) + (0.0, 0.03 if height <= 0 else 0.0, 0.0)
         patches.append(patch)
-        keeps.append(room.free(points, clearance).reshape(rows, columns))
+        keeps.append(room.free(patch.points.reshape(-1, 3), clearance).reshape(rows, columns))
     outline = tuple((float(a), float(b), float(c), float(d)) for a, b, c, d in rectangles)
     return _filled(Area(name, kind, tuple(patches), float(height), outline), keeps)
 

@@ -35,9 +35,9 @@ class Settings:
     """Maintenance factor in (0, 1]: maintained over initial illuminance. There is no default, because it decides."""
     confidence: float = 0.975
     """Confidence at which a requirement passes or fails."""
-    samples: int = 1024
+    samples: int = 256
     """Paths for each point at the first look."""
-    max_samples: int = 65536
+    max_samples: int = 16384
     """Paths for each point at the last look."""
     seed: int = 1
     """Seed of the paths."""
@@ -93,7 +93,8 @@ class Finding:
         head = f"{r}: {self.value:.4g} {r.unit}".rstrip()
         if self.high > self.low:
             head += f" [{self.low:.4g}, {self.high:.4g}]"
-        tail = {"passes": f"passes with {percent(self.probability)}", "fails": f"fails by {abs(self.reserve) * 100:.1f} %"}
+        sure = percent(self.probability, exact=self.samples == 0)
+        tail = {"passes": f"passes with {sure}", "fails": f"fails by {abs(self.reserve) * 100:.1f} %"}
         return f"{head}, {tail.get(self.outcome, self.outcome)}" + (f" ({self.note})" if self.note else "")
 
 
@@ -252,12 +253,12 @@ def _outcome(met: float, missed: float, level: float) -> str:
     return "passes" if met >= level else "fails" if missed >= level else "undecided"
 
 
-def percent(probability: float) -> str:
-    """A confidence as a report prints it: never 100 %, where it is not exact.
+def percent(probability: float, exact: bool = False) -> str:
+    """A confidence as a report prints it: 100 % only for numbers that are exact.
 
-    >>> percent(0.975), percent(0.99999), percent(1.0)
+    >>> percent(0.975), percent(0.99999), percent(1.0, exact=True)
     ('97.5 %', '> 99.9 %', '100 %')
     """
-    if 0.999 < probability < 1:
+    if probability > 0.999 and not exact:
         return "> 99.9 %"
-    return f"{100 * probability:.4g} %" if probability < 1 else "100 %"
+    return f"{100 * probability:.4g} %"

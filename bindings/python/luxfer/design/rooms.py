@@ -88,8 +88,7 @@ class Room:
         start = np.asarray(points, float).reshape(-1, 3)
         distance, leaves = self._cast(start, UP)
         inside = leaves & (distance < SOLID_REACH)
-        # A point on the floor starts its ray downwards a little above it.
-        below, _ = self._cast(start + 0.01 * UP, -UP)
+        below, _ = self._cast(start, -UP)
         return np.isfinite(distance) & np.isfinite(below) & ~inside & (distance >= clearance)
 
     def _cast(self, start: NDArray[np.float64], direction: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
