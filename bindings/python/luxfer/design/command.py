@@ -14,6 +14,7 @@ from .areas import Area
 from .check import Settings
 from .luminaires import Product, dimmed, layout
 from .observers import Observers
+from .pictures import views
 from .project import Project
 from .report import save
 from .rooms import Room
@@ -75,8 +76,10 @@ def _run(options: argparse.Namespace) -> int:
     checked = solution.checked if solution else project.check()
     print("\n".join(str(f) for f in checked.findings))
     print(checked.verdict())
+    drawn = any(not path.endswith(".json") for path in options.out)
+    images = views(room, project.lit(), seed=options.seed) if drawn else {}
     for path in options.out:
-        print(save(project, path, checked, solution))
+        print(save(project, path, checked, solution, images=images))
     return PASSED if checked.passes else FAILED
 
 

@@ -138,8 +138,10 @@ def _requirements(checked: Checked) -> Table:
     rows = []
     for f in checked.findings:
         r = f.requirement
-        quantity = {"mean": "Ēm", "uniformity": "U0", "glare": "UGR", "rendering": "Ra", "density": "power per area",
+        quantity = {"mean": "Em", "uniformity": "U0", "glare": "UGR", "rendering": "Ra", "density": "power per area",
                     "flux": "flux per luminaire"}[r.quantity]
+        if r.area in checked.fields and checked.fields[r.area].area.kind == "cylindrical":
+            quantity += " cylindrical"
         limit = f"{'≥' if r.is_minimum else '≤'} {_number(r.limit, r.unit)}"
         result = {"passes": f"passes, {percent(f.probability, f.samples == 0)}", "fails": f"fails by {100 * abs(f.reserve):.1f} %"}
         note = f" ({f.note})" if f.note else ""
@@ -200,7 +202,7 @@ def _areas(project: Project, checked: Checked) -> list[Block]:
         out.append(Heading(f"Area: {name}", 1 if index == 0 else 2, index == 0))
         out.append(_area_table(project, found, checked))
         title = "Maintained cylindrical illuminance" if found.area.kind == "cylindrical" else "Maintained illuminance"
-        where = ("of the four walls, unrolled" if found.area.kind == "walls"
+        where = ("of the walls: those along the upper and lower side of the plan above, those along its left and right side below" if found.area.kind == "walls"
                  else f"{shown(found.area.height, project.unit)} {project.unit} above the floor")
         out.append(Figure(plans.field(project.room, found, project.unit),
                           f"{title} in lx, {where}. Black lines join points of equal illuminance, as marked on the scale."))

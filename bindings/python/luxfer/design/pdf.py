@@ -144,4 +144,4 @@ def _grid(table: Table, width: float) -> Any:
 
 def _breakable(text: str) -> str:
     """Long words, such as hashes, with places to break them."""
-    return " ".join(escape(w) if len(w) <= 32 else " ".join(escape(w[i : i + 32]) for i in range(0, len(w), 32)) for w in text.split(" "))
+    return " ".join(escape(w) if len(w) <= 64 else " ".join(escape(w[i : i + 64]) for i in range(0, len(w), 64)) for w in text.split(" "))

@@ -22,7 +22,7 @@ EYE, FOV = 1.6, 1.1
 WHITE = 3.0
 
 
-def views(room: Room, lit: Scene, width: int = 640, height: int = 400, samples: int = 64, seed: int = 1) -> dict[str, bytes]:
+def views(room: Room, lit: Scene, width: int = 560, height: int = 350, samples: int = 16, seed: int = 1) -> dict[str, bytes]:
     """PNG files of the picture and of its luminance, by their captions."""
     render = Render(lit.context, lit)
     if lit.counts.cameras == 0:

@@ -23,11 +23,11 @@ def save(
     checked: Checked | None = None,
     solution: Solution | None = None,
     *,
-    pictures: bool = True,
-    samples: int = 64,
+    images: dict[str, bytes] | None = None,
 ) -> Path:
-    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first;
-    `samples` are the paths for each pixel of the pictures."""
+    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first. `images`
+    are PNG files by their captions; without them they are rendered (see pictures.views), and an empty dict leaves them
+    out."""
     file = Path(path)
     kind = file.suffix.lower()
     if kind not in (".html", ".pdf", ".json"):
@@ -38,7 +38,8 @@ def save(
         return file
     if checked is None:
         checked = solution.checked if solution is not None else project.check()
-    images = views(project.room, project.lit(), samples=samples, seed=project.chosen.seed) if pictures else None
+    if images is None:
+        images = views(project.room, project.lit(), seed=project.chosen.seed)
     blocks = contents(project, checked, solution, images)
     if kind == ".html":
         file.write_text(html.page(project.name, blocks), encoding="utf-8")
