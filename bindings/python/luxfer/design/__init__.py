@@ -1,5 +1,5 @@
-"""Lighting design that can be signed: requirements of EN 12464-1, areas and grids, checks with confidence, dimmers closest
-to a photo's look, and a report.
+"""Lighting design that can be signed: requirements of EN 12464-1, areas and grids, checks with confidence, dimmers
+closest to a photo's look, and a report.
 
 A Project holds a room, luminaires, areas, observers and requirements. Lengths are metres unless a unit is given.
 """

@@ -1,8 +1,9 @@
-"""Areas of a room by the rules of EN 12464-1, and their measuring grids: task, immediate surrounding, background, walls,
-ceiling, and cylindrical illuminance in the room.
+"""Areas of a room by the rules of EN 12464-1, and their measuring grids: task, immediate surrounding, background,
+walls, ceiling, and cylindrical illuminance in the room.
 
 A grid has cells that are nearly square, with a point at the centre of each. Their size follows the standard's
-`p = 0.2 · 5^log10(d)`, where d is the longer side of the area, or the shorter one if the longer is at least twice as long.
+`p = 0.2 · 5^log10(d)`, where d is the longer side of the area, or the shorter one if the longer is at least twice as
+long.
 """
 
 from __future__ import annotations
@@ -27,16 +28,20 @@ MAX_SPACING, BAND, BORDER = 10.0, 0.5, 0.5
 SEATED = 1.2
 #: Points of the background need this height free above them, in metres: people can walk there. [convention]
 WALKING = 1.5
-#: Distance of the points from the wall or ceiling that they lie on, and depth that still counts as this wall, in metres.
+#: Distance of the points from the wall or ceiling that they lie on, and depth that still counts as this wall, in
+#: metres.
 #: [convention]
 OFFSET, DEPTH = 0.01, 0.05
-#: Height in metres of the points of the background above the floor, so that a carpet does not hide them. [convention]
+#: Height in metres of points on the floor, so that a carpet does not hide them. [convention]
 CARPET = 0.03
 #: A wall is looked for from this distance, in metres, so that furniture in front of it hides it. [convention]
 LOOK = 1.0
-#: Vertical planes around a point whose mean illuminance is the cylindrical one. With 9 planes the error for one small
-#: source is at most 0.62 %: the first harmonic that they miss is the 18th. [convention]
-PLANES, PLANES_ERROR = 9, 0.0062
+#: Vertical planes around a point whose mean illuminance is the cylindrical one. An odd number is as good as twice as
+#: many.
+#: [convention]
+PLANES = 9
+#: Largest relative error of that mean, for one small source in the worst direction: 1.02 %.
+PLANES_ERROR = 1 - math.pi / (2 * PLANES) / math.tan(math.pi / (2 * PLANES))
 
 
 def spacing(length: float, width: float) -> float:
@@ -62,6 +67,10 @@ def counts(length: float, width: float, largest: float | None = None) -> tuple[i
     """
     p = min(spacing(length, width), largest or math.inf)
     return max(1, round(length / p)), max(1, round(width / p))
+
+
+class NoPoints(ValueError):
+    """An area has no point in the room."""
 
 
 @dataclass(frozen=True)
@@ -120,20 +129,26 @@ class Area:
 
 
 def task(room: Room, name: str, rectangle: Sequence[float], height: float, unit: str = "m") -> Area:
-    """A horizontal task area: a0, b0, a1, b1 in the room's plan and its height above the floor, in that unit."""
+    """A horizontal task area: a0, b0, a1, b1 in the room's plan and its height above the floor, in that unit. One on
+    the floor lies as high above it as the background."""
     a0, b0, a1, b1, level = metres([*rectangle, height], unit)
+    level = CARPET if 0 <= level < CARPET else level
     if not (a1 > a0 and b1 > b0):
-        raise ValueError(f"the task area {name!r} has the corners ({a0:g}, {b0:g}) and ({a1:g}, {b1:g}) m: the second must lie "
-                         "beyond the first along both axes")
+        raise ValueError(
+            f"the task area {name!r} has the corners ({a0:g}, {b0:g}) and ({a1:g}, {b1:g}) m: the second must lie "
+            "beyond the first along both axes"
+        )
     if a0 < -1e-6 or b0 < -1e-6 or a1 > room.length + 1e-6 or b1 > room.width + 1e-6 or not 0 <= level < room.height:
-        raise ValueError(f"the task area {name!r} ({a0:g}, {b0:g}) to ({a1:g}, {b1:g}) m at {level:g} m leaves the room of "
-                         f"{room.length:g} by {room.width:g} by {room.height:g} m")
+        raise ValueError(
+            f"the task area {name!r} ({a0:g}, {b0:g}) to ({a1:g}, {b1:g}) m at {level:g} m leaves the room of "
+            f"{room.length:g} by {room.width:g} by {room.height:g} m"
+        )
     return _made(name, "task", room, [(a0, b0, a1, b1)], level)
 
 
 def task_on(room: Room, name: str, objects: str, lift: float = 0.01) -> Area:
-    """The task area on top of objects of the scene with that name, such as "Desk": their bounding rectangle in the plan,
-    at their highest point plus `lift` metres."""
+    """The task area on top of objects of the scene with that name, such as "Desk": their bounding rectangle in the
+    plan, at their highest point plus `lift` metres."""
     scene = room.scene
     meshes = [m for m in range(scene.counts.meshes) if scene.mesh_name(m) == objects]
     if not meshes:
@@ -146,13 +161,13 @@ def task_on(room: Room, name: str, objects: str, lift: float = 0.01) -> Area:
 
 def surrounding(room: Room, of: Area, name: str | None = None, band: float = BAND) -> Area:
     """The band around a task area, at its height, as far as the room reaches."""
-    (a0, b0, a1, b1), = of.outline
+    ((a0, b0, a1, b1),) = of.outline
     left, low = max(0.0, a0 - band), max(0.0, b0 - band)
     right, high = min(room.length, a1 + band), min(room.width, b1 + band)
     strips = [(left, low, right, b0), (left, b1, right, high), (left, b0, a0, b1), (a1, b0, right, b1)]
     strips = [s for s in strips if s[2] - s[0] > 1e-6 and s[3] - s[1] > 1e-6]
     if not strips:
-        raise ValueError(f"{of.name!r} fills the room: it has no surrounding area")
+        raise NoPoints(f"{of.name!r} fills the room: it has no surrounding area")
     return _made(name or f"around {of.name}", "surrounding", room, strips, of.height, largest=band / 2)
 
 
@@ -182,9 +197,11 @@ def cylindrical(room: Room, name: str = "faces", height: float = SEATED, border:
     return Area(name, "cylindrical", patches, height, (_within(room, border),))
 
 
-def walls(room: Room, name: str = "walls", without: Sequence[str] = ("window", "glass", "door", "curtain")) -> Area:
-    """The four walls, without what lies deeper or in front of them, such as windows, pictures and cupboards, and without
-    objects whose name contains one of these words."""
+def walls(
+    room: Room, name: str = "walls", without: Sequence[str] = ("window", "glass", "frame", "door", "curtain")
+) -> Area:
+    """The four walls, without what lies deeper or in front of them, such as windows, pictures and cupboards, and
+    without objects whose name contains one of these words."""
     sides = (
         (room.world([(0, 0)])[0], room.along * room.length, room.across),
         (room.world([(0, room.width)])[0], room.along * room.length, -room.across),
@@ -199,6 +216,24 @@ def walls(room: Room, name: str = "walls", without: Sequence[str] = ("window", "
         patches.append(patch)
     area = Area(name, "walls", tuple(patches), 0.0, ())
     return _filled(area, [_on_wall(room, p, without) for p in patches])
+
+
+def around_tasks(room: Room, tasks: Sequence[Area]) -> list[Area]:
+    """The surrounding areas of tasks, the background, walls, ceiling and cylindrical illuminance, as far as the room
+    has room for them: a task that fills it has no surrounding area, and a small room no background."""
+    out: list[Area] = []
+    for make in (
+        *(lambda of=t: surrounding(room, of) for t in tasks),
+        lambda: background(room, [*tasks, *out]),
+        lambda: walls(room),
+        lambda: ceiling(room),
+        lambda: cylindrical(room),
+    ):
+        try:
+            out.append(make())
+        except NoPoints:
+            continue
+    return out
 
 
 def _on_wall(room: Room, patch: Patch, without: Sequence[str]) -> NDArray[np.bool_]:
@@ -235,8 +270,15 @@ def _made(
     for a0, b0, a1, b1 in rectangles:
         columns, rows = counts(a1 - a0, b1 - b0, largest)
         corner = room.world([(a0, b0)], height)[0]
-        patch = Patch(corner, room.along * (a1 - a0), room.across * (b1 - b0), np.array(normal, float), columns, rows,
-                      np.ones((rows, columns), bool))
+        patch = Patch(
+            corner,
+            room.along * (a1 - a0),
+            room.across * (b1 - b0),
+            np.array(normal, float),
+            columns,
+            rows,
+            np.ones((rows, columns), bool),
+        )
         patches.append(patch)
         keeps.append(room.free(patch.points.reshape(-1, 3), clearance).reshape(rows, columns))
     outline = tuple((float(a), float(b), float(c), float(d)) for a, b, c, d in rectangles)
@@ -246,8 +288,10 @@ def _made(
 def _filled(area: Area, keeps: Sequence[NDArray[np.bool_]]) -> Area:
     """The area with other points kept; without any it is refused."""
     if not any(k.any() for k in keeps):
-        raise ValueError(f"the area {area.name!r} has no point that lies free in the room")
+        raise NoPoints(f"the area {area.name!r} has no point that lies free in the room")
     patches = tuple(
-        Patch(p.origin, p.across, p.down, p.normal, p.columns, p.rows, k) for p, k in zip(area.patches, keeps) if k.any()
+        Patch(p.origin, p.across, p.down, p.normal, p.columns, p.rows, k)
+        for p, k in zip(area.patches, keeps)
+        if k.any()
     )
     return Area(area.name, area.kind, patches, area.height, area.outline)

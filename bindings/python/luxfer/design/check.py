@@ -1,15 +1,17 @@
 """Checks requirements in a lit scene: each with its value, interval, and the confidence that it is met.
 
 A requirement passes if that confidence reaches the wanted one, fails if the confidence that it is not met does, and is
-undecided otherwise. Undecided ones are computed anew with four times the paths, with another seed, up to a limit. Each of
-the looks spends an equal share of the allowed error, so that stopping at a good one does not make it too optimistic.
+undecided otherwise. Undecided ones are computed anew with four times the paths, with another seed, up to a limit.
+Each of the looks spends an equal share of the allowed error, so that stopping at a good one does not make it too
+optimistic.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field as of
+from dataclasses import dataclass
+from dataclasses import field as of
 from typing import TYPE_CHECKING
 
 from .measure import Field, Rating, mean_with_bias, measure, paths_needed, rate, worst
@@ -127,8 +129,10 @@ class Checked:
         open_ = [f for f in self.findings if f.outcome in ("undecided", "unknown")]
         if failed:
             worst_one = min(failed, key=lambda f: f.reserve)
-            return (f"{len(failed)} of {len(self.findings)} requirements fail; {worst_one.requirement} is missed most, by "
-                    f"{abs(worst_one.reserve) * 100:.1f} %")
+            return (
+                f"{len(failed)} of {len(self.findings)} requirements fail; {worst_one.requirement} is missed most, by "
+                f"{abs(worst_one.reserve) * 100:.1f} %"
+            )
         if open_:
             return f"{len(open_)} of {len(self.findings)} requirements are not decided: {open_[0]}"
         return f"all {len(self.findings)} requirements pass, each with at least {percent(self.settings.confidence)}"
@@ -179,8 +183,13 @@ def _known(requirements: Sequence[Requirement], quantities: Sequence[str], names
 
 
 def _find(
-    r: Requirement, luminaires: Sequence[Luminaire], fields: Mapping[str, Field], ratings: Mapping[str, Sequence[Rating]],
-    floor_area: float, settings: Settings, taken: Mapping[str, int],
+    r: Requirement,
+    luminaires: Sequence[Luminaire],
+    fields: Mapping[str, Field],
+    ratings: Mapping[str, Sequence[Rating]],
+    floor_area: float,
+    settings: Settings,
+    taken: Mapping[str, int],
 ) -> Finding:
     """The finding of one requirement."""
     if r.quantity in ("rendering", "density", "flux"):
@@ -192,8 +201,16 @@ def _find(
     if r.quantity == "mean":
         mean, bias = mean_with_bias(field)
         low, high = mean.interval(2 * level - 1)
-        met = mean.probability_at_least(r.limit + bias) if r.is_minimum else 1 - mean.probability_at_least(r.limit - bias)
-        missed = 1 - (mean.probability_at_least(r.limit - bias) if r.is_minimum else 1 - mean.probability_at_least(r.limit + bias))
+        met = (
+            mean.probability_at_least(r.limit + bias)
+            if r.is_minimum
+            else 1 - mean.probability_at_least(r.limit - bias)
+        )
+        missed = 1 - (
+            mean.probability_at_least(r.limit - bias)
+            if r.is_minimum
+            else 1 - mean.probability_at_least(r.limit + bias)
+        )
         outcome = _outcome(met, missed, level)
         need = paths_needed(field, r.limit, level, samples) if outcome == "undecided" else 0
         note = f"{need:.2g} paths per point would decide" if 0 < need < math.inf else ""
@@ -202,22 +219,24 @@ def _find(
     low, high = uniformity.interval(2 * level - 1)
     low, high = low * (1 - 2 * field.bias), high * (1 + 2 * field.bias)
     met = uniformity.probability_at_least(r.limit * (1 + 2 * field.bias))
-    # The worst single point bounds the confidence that U0 is too small.
-    missed = float(uniformity.failing(r.limit * (1 - 2 * field.bias)).max())
+    missed = uniformity.probability_below(r.limit * (1 - 2 * field.bias))
     if not r.is_minimum:
         met, missed = missed, met
     return Finding(r, uniformity.value, low, high, met, _outcome(met, missed, level), samples)
 
 
 def _glare(r: Requirement, found: Sequence[Rating], level: float, samples: int) -> Finding:
-    """The finding of the worst observer."""
+    """The finding of the worst observer. All must pass, and one that fails by chance is likelier among many: so the
+    error of the worst counts once for each of them."""
     rating = worst(found)
-    low, high = rating.interval(2 * level - 1)
+    # Each end of the interval is that of the observer where it lies highest.
+    low = max(x.interval(1 - 2 * (1 - level) / len(found))[0] for x in found)
+    high = max(x.interval(2 * level - 1)[1] for x in found)
     met = min(x.probability_at_most(r.limit) for x in found)
-    missed = max(1 - x.probability_at_most(r.limit) for x in found)
+    missed = max(0.0, 1 - len(found) * met)
     seen = max(x.background.value for x in found) * math.pi
     if any(x.unrated > UNRATED * max(seen, x.unrated) for x in found):
-        note = "light from lamps that the rating leaves out reaches an eye: give luminaires an opening, and no emissive surfaces"
+        note = "light that the rating leaves out reaches an eye: from luminaires without opening, or emissive surfaces"
         outcome = "fails" if missed >= level else "unknown"
         return Finding(r, rating.ugr, low, math.inf, 0, outcome, samples, note)
     if not r.is_minimum:

@@ -27,8 +27,8 @@ PASSED, FAILED, UNUSABLE = 0, 1, 2
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Checks a room with luminaires, or solves for their dimmers, and writes a report. Returns 0 if all requirements pass,
-    1 if not, 2 if the input cannot be used.
+    """Checks a room with luminaires, or solves for their dimmers, and writes a report. Returns 0 if all requirements
+    pass, 1 if not, 2 if the input cannot be used.
 
     >>> main(["--places"])
     34.2    office: writing, typing, reading, data processing
@@ -56,7 +56,11 @@ def _run(options: argparse.Namespace) -> int:
             raise ValueError(f"{'the scene' if name == 'scene' else '--' + name} is missing; see --help")
     context = Context()
     demo = options.scene == "demo"
-    scene = Scene.demo(context, "target-room") if demo else Scene.load(context, options.scene, unit=METRES[options.scene_unit])
+    scene = (
+        Scene.demo(context, "target-room")
+        if demo
+        else Scene.load(context, options.scene, unit=METRES[options.scene_unit])
+    )
     room = Room.find(scene, options.floor, options.ceiling)
     found, eyes = _places(room, options)
     columns, rows = _pair(options.lamps)
@@ -91,10 +95,7 @@ def _places(room: Room, options: argparse.Namespace) -> tuple[list[Area], list[O
         if len(values) != 5:
             raise ValueError(f"--task is a0,b0,a1,b1,height, not {text!r}")
         tasks.append(areas.task(room, f"task {number}", values[:4], values[4], options.unit))
-    found: list[Area] = list(tasks)
-    found += [areas.surrounding(room, t) for t in tasks]
-    found.append(areas.background(room, found))
-    found += [areas.walls(room), areas.ceiling(room), areas.cylindrical(room)]
+    found = [*tasks, *areas.around_tasks(room, tasks)]
     eyes = [observers.at_task(room, t) for t in tasks] or [observers.along_room(room)]
     return found, eyes
 
@@ -107,7 +108,9 @@ def _pair(text: str) -> tuple[int, int]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("luxfer design", description="Checks or solves the lighting of a room by EN 12464-1.")
+    parser = argparse.ArgumentParser(
+        "luxfer design", description="Checks or solves the lighting of a room by EN 12464-1."
+    )
     add = parser.add_argument
     add("scene", nargs="?", help="a glTF file, or 'demo'")
     add("--scene-unit", choices=METRES, default="m", help="unit of the file's lengths")

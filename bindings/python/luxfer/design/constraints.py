@@ -86,8 +86,11 @@ class Model:
         bound = 10 ** ((r.limit - margin) / UGR_FACTOR)
         seen = (response.sources > 0).any(axis=1)
         scale = bound * np.maximum(response.background[seen].sum(axis=1), 1e-300)[:, None]
-        return Limits(2 * UGR_SCALE * response.sources[seen] / scale, -bound * response.background[seen] / scale,
-                      np.zeros(int(seen.sum())))
+        return Limits(
+            2 * UGR_SCALE * response.sources[seen] / scale,
+            -bound * response.background[seen] / scale,
+            np.zeros(int(seen.sum())),
+        )
 
 
 def _linear(rows: NDArray[np.float64], constants: NDArray[np.float64]) -> Limits:

@@ -1,7 +1,7 @@
 """Minimises a convex quadratic under convex quadratic limits, by a barrier method (Boyd and Vandenberghe, chapter 11).
 
-Each limit j has the form `½ Σ D_ji x_i² + Σ G_ji x_i + h_j ≤ 0` with D ≥ 0: linear, or an ellipsoid along the axes. The
-problems of a lighting design have up to a few hundred variables and a thousand limits, which dense matrices suit.
+Each limit j has the form `½ Σ D_ji x_i² + Σ G_ji x_i + h_j ≤ 0` with D ≥ 0: linear, or an ellipsoid along the axes.
+The problems of a lighting design have up to a few hundred variables and a thousand limits, which dense matrices suit.
 
 Not modelled: equations, sparse matrices, limits with mixed quadratic terms.
 """
@@ -75,7 +75,8 @@ class Optimum:
 def minimise(hessian: Array, gradient: Array, limits: Limits, start: Array) -> Optimum:
     """The minimum of ½ x'Hx + g'x from a start strictly inside the limits.
 
-    >>> nearest = minimise(np.eye(2), np.zeros(2), box(np.array([1.0, -1.0]), np.array([3.0, 1.0])), np.array([2.0, 0.5]))
+    >>> limits = box(np.array([1.0, -1.0]), np.array([3.0, 1.0]))
+    >>> nearest = minimise(np.eye(2), np.zeros(2), limits, np.array([2.0, 0.5]))
     >>> print(nearest.x.round(6) + 0.0, nearest.multipliers.round(4))
     [1. 0.] [1. 0. 0. 0.]
     """

@@ -19,7 +19,9 @@ class Drawing:
     height: float
     shapes: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
 
-    def polygon(self, points: list[Point], fill: str | None = None, stroke: str | None = None, width: float = 0.5) -> None:
+    def polygon(
+        self, points: list[Point], fill: str | None = None, stroke: str | None = None, width: float = 0.5
+    ) -> None:
         """A closed polygon."""
         self.shapes.append(("polygon", {"points": points, "fill": fill, "stroke": stroke, "width": width}))
 
@@ -40,8 +42,10 @@ class Drawing:
         for kind, s in self.shapes:
             if kind == "text":
                 x, y = s["at"]
-                parts.append(f'<text x="{x:.2f}" y="{y:.2f}" font-size="{s["size"]}" text-anchor="{s["anchor"]}" '
-                             f'fill="{s["fill"]}">{escape(s["words"])}</text>')
+                parts.append(
+                    f'<text x="{x:.2f}" y="{y:.2f}" font-size="{s["size"]}" text-anchor="{s["anchor"]}" '
+                    f'fill="{s["fill"]}">{escape(s["words"])}</text>'
+                )
                 continue
             points = " ".join(f"{x:.2f},{y:.2f}" for x, y in s["points"])
             paint = f'fill="{s.get("fill") or "none"}" stroke="{s["stroke"] or "none"}" stroke-width="{s["width"]}"'
@@ -59,8 +63,17 @@ class Drawing:
         for kind, s in self.shapes:
             if kind == "text":
                 x, y = s["at"]
-                out.add(shapes.String(x, self.height - y, s["words"], fontName="LuxferSans", fontSize=s["size"],
-                                      textAnchor=s["anchor"], fillColor=colour(s["fill"])))
+                out.add(
+                    shapes.String(
+                        x,
+                        self.height - y,
+                        s["words"],
+                        fontName="LuxferSans",
+                        fontSize=s["size"],
+                        textAnchor=s["anchor"],
+                        fillColor=colour(s["fill"]),
+                    )
+                )
                 continue
             flat = [v for x, y in s["points"] for v in (x, self.height - y)]
             made = shapes.Polygon if kind == "polygon" else shapes.PolyLine

@@ -35,7 +35,11 @@ class Relaxation:
 
 
 def relaxations(
-    model: Model, requirements: Sequence[Requirement], groups: NDArray[np.float64], hard: Limits, start: NDArray[np.float64]
+    model: Model,
+    requirements: Sequence[Requirement],
+    groups: NDArray[np.float64],
+    hard: Limits,
+    start: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], list[Relaxation]]:
     """The dimmers that miss all requirements by the least equal share, and for each requirement what it would have to
     become if only it were relaxed; requirements whose relaxation alone does not help are left out."""

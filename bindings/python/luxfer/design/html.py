@@ -6,7 +6,7 @@ import base64
 from collections.abc import Sequence
 from html import escape
 
-from .content import Block, Code, Figure, Heading, OUTCOME_TONES, Paragraph, Signature, Table
+from .content import OUTCOME_TONES, Block, Code, Figure, Heading, Paragraph, Signature, Table
 from .drawing import Drawing
 
 STYLE = """
@@ -16,8 +16,10 @@ table{border-collapse:collapse;width:100%;margin:.6rem 0;font-size:.86rem}
 th{text-align:left;border-bottom:1px solid #222}td,th{padding:.25rem .4rem;vertical-align:top;overflow-wrap:anywhere}
 tr:nth-child(even) td{background:#f5f5f5}figure{margin:1rem 0}figure img,figure svg{max-width:100%;height:auto}
 figcaption,.small{font-size:.82rem;color:#555}.good{color:#0a6b2d}.bad{color:#b00020}.open{color:#8a5a00}
-p.good,p.bad,p.open{font-weight:bold;font-size:1.05rem}pre{background:#f5f5f5;padding:.6rem;font-size:.75rem;white-space:pre-wrap;overflow-wrap:anywhere}
-.sign{display:flex;gap:2rem;margin-top:3rem}.sign div{flex:1;border-top:1px solid #222;padding-top:.2rem;font-size:.8rem}
+p.good,p.bad,p.open{font-weight:bold;font-size:1.05rem}
+pre{background:#f5f5f5;padding:.6rem;font-size:.75rem;white-space:pre-wrap;overflow-wrap:anywhere}
+.sign{display:flex;gap:2rem;margin-top:3rem}
+.sign div{flex:1;border-top:1px solid #222;padding-top:.2rem;font-size:.8rem}
 @media print{h1{break-before:page}h1:first-child{break-before:auto}figure,table{break-inside:avoid}}
 """
 
@@ -29,8 +31,10 @@ def page(title: str, blocks: Sequence[Block]) -> str:
     True
     """
     body = "\n".join(_block(b) for b in blocks)
-    return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-            f"<style>{STYLE}</style></head>\n<body>\n{body}\n</body></html>\n")
+    return (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        f"<style>{STYLE}</style></head>\n<body>\n{body}\n</body></html>\n"
+    )
 
 
 def _block(block: Block) -> str:

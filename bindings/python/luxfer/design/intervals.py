@@ -1,8 +1,9 @@
 """Estimates with their intervals, and the probability that a limit is met.
 
-An estimate of the path tracer comes with the standard error of 16 independent batches, so it follows Student's t with 15
-degrees of freedom; sums of points have more (Welch-Satterthwaite). Probabilities are read in the sense of confidence:
-"passes with 97.5 %" means that the one-sided 97.5 % confidence interval of the quantity lies within the limit.
+An estimate of the path tracer comes with the standard error of 16 independent batches, so it follows Student's t with
+15 degrees of freedom; sums of points have more (Welch-Satterthwaite). Probabilities are read in the sense of
+confidence: "passes with 97.5 %" means that the one-sided 97.5 % confidence interval of the quantity lies within the
+limit.
 """
 
 from __future__ import annotations
@@ -105,9 +106,10 @@ def mean_of(values: ArrayLike, errors: ArrayLike) -> Estimate:
 class Uniformity:
     """U0, the smallest over the mean illuminance of independent points.
 
-    The smallest of noisy values is too small on average, so no interval is centred on it. Instead each point is compared
-    with U0 times the mean: the probability that all points pass is at least one less the sum of those that one fails
-    (Boole's inequality), and at most that of the worst point.
+    The smallest of noisy values is too small on average, so no interval is centred on it. Instead each point is
+    compared with U0 times the mean. U0 is at least a limit if every point passes: the confidence is that of the worst
+    point (intersection-union test). It is below the limit if any point fails, and the more points there are, the
+    likelier one does by chance: the error of the worst point counts once for each of them (Bonferroni).
     """
 
     values: NDArray[np.float64]
@@ -130,14 +132,18 @@ class Uniformity:
         return np.array([1 - Estimate(g, s).probability_at_least(0) for g, s in zip(gap, spread)])
 
     def probability_at_least(self, limit: float) -> float:
-        """A lower bound of the confidence that U0 is at least the limit."""
-        return max(0.0, 1 - float(self.failing(limit).sum()))
+        """Confidence that U0 is at least the limit."""
+        return 1 - float(self.failing(limit).max())
+
+    def probability_below(self, limit: float) -> float:
+        """Confidence that U0 is below the limit."""
+        return max(0.0, 1 - len(self.values) * float((1 - self.failing(limit)).min()))
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
-        """An interval of at least that confidence."""
-        tail = (1 - confidence) / 2
-        low = bisect(lambda u: self.failing(u).sum() >= tail, 0.0, 1.0)
-        high = bisect(lambda u: self.failing(u).max() >= 1 - tail, 0.0, 1.0)
+        """The two-sided interval of that confidence."""
+        sure = (1 + confidence) / 2
+        low = bisect(lambda u: self.probability_at_least(u) < sure, 0.0, 1.0)
+        high = bisect(lambda u: self.probability_below(u) >= sure, 0.0, 1.0)
         return (low, max(low, high)) if self.values.mean() > 0 else (0.0, 0.0)
 
 

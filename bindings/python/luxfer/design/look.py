@@ -1,4 +1,5 @@
-"""The distance of a design's look from the photo's: how the brightness is shared among the lamps, and how bright all is.
+"""The distance of a design's look from the photo's: how the brightness is shared among the lamps, and how bright all
+is.
 
 The lamps keep the photo's places and colours, so their look changes by their dimmers alone:
 
@@ -16,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-#: Weight of the squared relative exposure against that of the pattern. [convention: a change of all lamps by a tenth counts
-#: as much as a change of single lamps by a hundredth]
+#: Weight of the squared relative exposure against that of the pattern. [convention: a change of all lamps by a tenth
+#: counts as much as a change of single lamps by a hundredth]
 EXPOSURE_WEIGHT = 0.01
 #: A lamp that the photo shows off counts as this share of the brightest. [convention]
 DARKEST = 1e-3
@@ -33,10 +34,13 @@ class Distance:
     """Change of the brightness of all lamps together, in stops; 0: none."""
 
     def __str__(self) -> str:
-        return f"brightness ratios of the lamps changed by {100 * self.pattern:.1f} %, all lamps by {self.exposure:+.2f} stops"
+        ratios = f"brightness ratios of the lamps changed by {100 * self.pattern:.1f} %"
+        return f"{ratios}, all lamps by {self.exposure:+.2f} stops"
 
 
-def distance(photo: Sequence[float] | NDArray, now: Sequence[float] | NDArray, flux: Sequence[float] | NDArray) -> Distance:
+def distance(
+    photo: Sequence[float] | NDArray, now: Sequence[float] | NDArray, flux: Sequence[float] | NDArray
+) -> Distance:
     """The distance between two sets of dimmers of lamps with these fluxes at full power.
 
     >>> distance([0.5, 0.5], [1, 1], [100, 100])
@@ -57,8 +61,8 @@ def distance(photo: Sequence[float] | NDArray, now: Sequence[float] | NDArray, f
 
 
 def objective(photo: NDArray, flux: NDArray) -> tuple[NDArray, NDArray]:
-    """Hessian and gradient over the dimmers and the exposure k of `Σ w (s / p - k)² + EXPOSURE_WEIGHT (k - 1)²`, where w
-    is the share of a lamp in the photo's flux, s its dimmer and p that of the photo."""
+    """Hessian and gradient over the dimmers and the exposure k of `Σ w (s / p - k)² + EXPOSURE_WEIGHT (k - 1)²`,
+    where w is the share of a lamp in the photo's flux, s its dimmer and p that of the photo."""
     before = _at_least(photo)
     weights = before * flux
     weights = weights / weights.sum()

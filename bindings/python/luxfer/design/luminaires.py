@@ -48,7 +48,12 @@ class Product:
 
     @classmethod
     def load(
-        cls, context: Context, path: str | os.PathLike[str], name: str | None = None, watts: float = 0, rendering: float = 0
+        cls,
+        context: Context,
+        path: str | os.PathLike[str],
+        name: str | None = None,
+        watts: float = 0,
+        rendering: float = 0,
     ) -> Product:
         """A product from its .ies or .ldt file; watts of 0 are those of the file."""
         file = Path(path)
@@ -73,16 +78,28 @@ class Product:
 
     @classmethod
     def panel(
-        cls, context: Context, length: float, width: float, flux: float, name: str = "", watts: float = 0, rendering: float = 0
+        cls,
+        context: Context,
+        length: float,
+        width: float,
+        flux: float,
+        name: str = "",
+        watts: float = 0,
+        rendering: float = 0,
     ) -> Product:
         """A flat diffuse panel of that opening in metres, whose intensity falls with the cosine."""
         angles = range(0, 181, PANEL_STEP)
         peak = flux / math.pi
         candela = " ".join(f"{max(0.0, peak * math.cos(math.radians(a))) if a < 90 else 0:.6g}" for a in angles)
         # IES gives the width along C = 90 first, then the length along C = 0.
-        text = (f"IESNA:LM-63-2002\n[LUMINAIRE] {name or 'diffuse panel'}\nTILT=NONE\n1 -1 1 {len(angles)} 1 1 2 {width:.6g} "
-                f"{length:.6g} 0\n1 1 {watts:.6g}\n{' '.join(str(a) for a in angles)}\n0\n{candela}\n")
-        made = cls.from_bytes(context, text.encode(), "ies", name or f"panel {length:.2f} x {width:.2f} m", watts, rendering)
+        text = (
+            f"IESNA:LM-63-2002\n[LUMINAIRE] {name or 'diffuse panel'}\nTILT=NONE\n1 -1 1 {len(angles)} 1 1 2 "
+            f"{width:.6g} "
+            f"{length:.6g} 0\n1 1 {watts:.6g}\n{' '.join(str(a) for a in angles)}\n0\n{candela}\n"
+        )
+        made = cls.from_bytes(
+            context, text.encode(), "ies", name or f"panel {length:.2f} x {width:.2f} m", watts, rendering
+        )
         return replace(made, flux=flux)
 
     @property
@@ -138,7 +155,9 @@ def lit_scene(scene: Scene, luminaires: Sequence[Luminaire]) -> Scene:
         data = lamp.product.photometry
         if data not in loaded:
             loaded[data] = Distribution.load_memory(context, data, lamp.product.format)
-        copy.add_luminaire(loaded[data], flux=lamp.flux, position=lamp.position, axis=lamp.axis, c0=lamp.c0, colour=lamp.colour)
+        copy.add_luminaire(
+            loaded[data], flux=lamp.flux, position=lamp.position, axis=lamp.axis, c0=lamp.c0, colour=lamp.colour
+        )
     return copy
 
 
@@ -149,7 +168,9 @@ def layout(
     in metres below the ceiling."""
     if columns < 1 or rows < 1:
         raise ValueError(f"a layout of {columns} by {rows} luminaires has none")
-    plan = [(room.length * (i + 0.5) / columns, room.width * (j + 0.5) / rows) for j in range(rows) for i in range(columns)]
+    plan = [
+        (room.length * (i + 0.5) / columns, room.width * (j + 0.5) / rows) for j in range(rows) for i in range(columns)
+    ]
     c0 = (float(room.along[0]), float(room.along[1]), float(room.along[2]))
     places = room.world(plan, room.height - below)
     return [Luminaire(product, (float(x), float(y), float(z)), c0=c0, group=group) for x, y, z in places]
@@ -160,9 +181,9 @@ def from_transfer(
 ) -> list[Luminaire]:
     """The lamps of a photo's lighting as luminaires: each at its place, with its flux and colour.
 
-    Without a product each lamp becomes a flat diffuse panel of its size, of that efficacy in lm/W (0: power unknown) and
-    colour rendering index. With one, each becomes that product, whose full flux must suffice: its dimmer is the photo's
-    flux over the product's."""
+    Without a product each lamp becomes a flat diffuse panel of its size, of that efficacy in lm/W (0: power unknown)
+    and colour rendering index. With one, each becomes that product, whose full flux must suffice: its dimmer is the
+    photo's flux over the product's."""
     out = []
     for fixture in transfer.fixtures:
         if fixture.flux <= 0:
@@ -192,8 +213,11 @@ def near_field(luminaires: Sequence[Luminaire], heights: Sequence[float]) -> lis
         lowest = min(lamp.position[1] for lamp in luminaires if lamp.product is product or lamp.product == product)
         gap = min((lowest - h for h in heights if h < lowest), default=math.inf)
         if gap < FAR_FIELD * largest:
-            out.append(f"{product.name}: its opening of {largest:.2f} m counts as a point, which the five-times rule allows from "
-                       f"{FAR_FIELD * largest:.2f} m on; the nearest area lies {gap:.2f} m below it")
+            out.append(
+                f"{product.name}: its opening of {largest:.2f} m counts as a point, which the five-times rule "
+                f"allows from "
+                f"{FAR_FIELD * largest:.2f} m on; the nearest area lies {gap:.2f} m below it"
+            )
     return out
 
 

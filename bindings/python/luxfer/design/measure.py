@@ -1,4 +1,5 @@
-"""Measures what requirements ask for in a lit scene, and nothing else: illuminance of areas, and glare of observers."""
+"""Measures what requirements ask for in a lit scene, and nothing else: illuminance of areas, and glare of
+observers."""
 
 from __future__ import annotations
 
@@ -83,8 +84,13 @@ class Rating:
         if math.isinf(self.ugr):
             return self.ugr, self.ugr
         low, high = self.background.interval(confidence)
-        at = lambda b: self.ugr + UGR_FACTOR * math.log10(self.background.value / b) if b > 0 else math.inf  # noqa: E731
-        return at(high), at(low)
+        return self._at(high), self._at(low)
+
+    def _at(self, background: float) -> float:
+        """The rating before another background."""
+        if background <= 0:
+            return math.inf
+        return self.ugr + UGR_FACTOR * math.log10(self.background.value / background)
 
 
 def measure(scene: Scene, area: Area, samples: int = 1024, seed: int = 1) -> Field:
@@ -107,8 +113,12 @@ def rate(scene: Scene, observers: Observers, samples: int = 1024, seed: int = 1)
     """The glare of each observer."""
     found = scene.glare(observers.positions, observers.directions, samples, seed)
     return [
-        Rating(float(r["ugr"]), Estimate(float(r["background"]), float(r["background_error"])), float(r["unrated_lux"]),
-               int(r["outside_range"]))
+        Rating(
+            float(r["ugr"]),
+            Estimate(float(r["background"]), float(r["background_error"])),
+            float(r["unrated_lux"]),
+            int(r["outside_range"]),
+        )
         for r in found
     ]
 
@@ -151,5 +161,3 @@ def paths_needed(field: Field, limit: float, confidence: float, samples: int) ->
     if gap <= 0:
         return math.inf
     return samples * (mean.error * quantile(confidence, mean.freedom) / gap) ** 2
-
-

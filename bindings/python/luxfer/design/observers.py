@@ -35,7 +35,7 @@ class Observers:
 
 def at_task(room: Room, area: Area, name: str | None = None, eye: float = SEATED_EYE) -> Observers:
     """People who sit at each side of a task area where there is room, and look across it."""
-    (a0, b0, a1, b1), = area.outline
+    ((a0, b0, a1, b1),) = area.outline
     a, b = (a0 + a1) / 2, (b0 + b1) / 2
     seats = [(a, b0 - SEAT), (a, b1 + SEAT), (a0 - SEAT, b), (a1 + SEAT, b)]
     views = [room.across, -room.across, room.along, -room.along]
@@ -50,8 +50,12 @@ def along_room(room: Room, name: str = "people in the room", eye: float = SEATED
 
 
 def at(
-    room: Room, name: str, plan: Sequence[Sequence[float]], towards: Sequence[Sequence[float]],
-    eye: float = SEATED_EYE, unit: str = "m",
+    room: Room,
+    name: str,
+    plan: Sequence[Sequence[float]],
+    towards: Sequence[Sequence[float]],
+    eye: float = SEATED_EYE,
+    unit: str = "m",
 ) -> Observers:
     """People at points of the plan who look towards other points of it."""
     here = np.array([metres(p, unit) for p in plan])

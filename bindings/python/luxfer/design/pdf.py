@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any
 
-from .content import Block, Code, Figure, Heading, OUTCOME_TONES, Paragraph, Signature, Table
+from .content import OUTCOME_TONES, Block, Code, Figure, Heading, Paragraph, Signature, Table
 from .drawing import Drawing
 
 #: Margin of the pages in points, and the largest height of a picture. [convention]
@@ -34,8 +34,17 @@ def document(title: str, blocks: Sequence[Block], footer: str) -> bytes:
         canvas.restoreState()
 
     out = io.BytesIO()
-    made = BaseDocTemplate(out, pagesize=A4, title=title, author="luxfer", invariant=1, leftMargin=MARGIN, rightMargin=MARGIN,
-                           topMargin=MARGIN, bottomMargin=MARGIN)
+    made = BaseDocTemplate(
+        out,
+        pagesize=A4,
+        title=title,
+        author="luxfer",
+        invariant=1,
+        leftMargin=MARGIN,
+        rightMargin=MARGIN,
+        topMargin=MARGIN,
+        bottomMargin=MARGIN,
+    )
     frame = Frame(MARGIN, MARGIN, width, A4[1] - 2 * MARGIN, 0, 0, 0, 0)
     made.addPageTemplates([PageTemplate(frames=[frame], onPage=edge)])
     made.build(_story(blocks, width))
@@ -56,13 +65,21 @@ def _style(size: float, tone: str = "", bold: bool = False, before: float = 0, a
     from reportlab.lib.styles import ParagraphStyle
 
     font = "LuxferSans-Bold" if bold else "LuxferSans"
-    return ParagraphStyle(f"{size}{tone}{bold}", fontName=font, fontSize=size, leading=size * 1.32, textColor=TONES[tone],
-                          spaceBefore=before, spaceAfter=after)
+    return ParagraphStyle(
+        f"{size}{tone}{bold}",
+        fontName=font,
+        fontSize=size,
+        leading=size * 1.32,
+        textColor=TONES[tone],
+        spaceBefore=before,
+        spaceAfter=after,
+    )
 
 
 def _story(blocks: Sequence[Block], width: float) -> list[Any]:
     """Flowables; a heading stays with what follows it."""
-    from reportlab.platypus import CondPageBreak, PageBreak, Paragraph as Text
+    from reportlab.platypus import CondPageBreak, PageBreak
+    from reportlab.platypus import Paragraph as Text
 
     out: list[Any] = []
     for index, block in enumerate(blocks):
@@ -92,15 +109,24 @@ def _needed(following: Sequence[Block]) -> float:
 
 def _flow(block: Block, width: float) -> list[Any]:
     from reportlab.lib.colors import HexColor
-    from reportlab.platypus import KeepTogether, Paragraph as Text, Spacer, Table as Grid, XPreformatted
+    from reportlab.platypus import KeepTogether, Spacer, XPreformatted
+    from reportlab.platypus import Paragraph as Text
+    from reportlab.platypus import Table as Grid
 
     if isinstance(block, Paragraph):
         strong = block.tone in ("good", "bad", "open")
-        return [Text(escape(block.text), _style(9.5 if strong else 7 if block.tone == "small" else 8, block.tone, strong, 2, 4))]
+        return [
+            Text(
+                escape(block.text),
+                _style(9.5 if strong else 7 if block.tone == "small" else 8, block.tone, strong, 2, 4),
+            )
+        ]
     if isinstance(block, Table):
         return [_grid(block, width), Spacer(1, 5)]
     if isinstance(block, Figure):
-        return [KeepTogether([_picture(block.picture, width), Text(escape(block.caption), _style(7, "small", after=6))])]
+        return [
+            KeepTogether([_picture(block.picture, width), Text(escape(block.caption), _style(7, "small", after=6))])
+        ]
     if isinstance(block, Code):
         style = _style(6)
         style.fontName = "Courier"
@@ -108,7 +134,9 @@ def _flow(block: Block, width: float) -> list[Any]:
     assert isinstance(block, Signature)
     cells = [[Text(t, _style(7)) for t in ("Date", "", escape(block.name or "Name"), "", "Signature")]]
     line = [("LINEABOVE", (c, 0), (c, 0), 0.6, HexColor("#222222")) for c in (0, 2, 4)]
-    return [KeepTogether([Spacer(1, 42), Grid(cells, [width * w for w in (0.28, 0.06, 0.28, 0.06, 0.32)], style=line)])]
+    return [
+        KeepTogether([Spacer(1, 42), Grid(cells, [width * w for w in (0.28, 0.06, 0.28, 0.06, 0.32)], style=line)])
+    ]
 
 
 def _picture(picture: Drawing | bytes, width: float) -> Any:
@@ -124,7 +152,8 @@ def _picture(picture: Drawing | bytes, width: float) -> Any:
 
 def _grid(table: Table, width: float) -> Any:
     from reportlab.lib.colors import HexColor
-    from reportlab.platypus import Paragraph as Text, Table as Grid
+    from reportlab.platypus import Paragraph as Text
+    from reportlab.platypus import Table as Grid
 
     rows = [[Text(escape(h), _style(7, bold=True, after=0)) for h in table.header]] if any(table.header) else []
     top = len(rows)
@@ -134,9 +163,14 @@ def _grid(table: Table, width: float) -> Any:
         if tone:
             cells[-1] = Text(escape(row[-1]), _style(7, tone, True, after=0))
         rows.append(cells)
-    style = [("VALIGN", (0, 0), (-1, -1), "TOP"), ("TOPPADDING", (0, 0), (-1, -1), 2), ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
-             ("LEFTPADDING", (0, 0), (-1, -1), 2), ("RIGHTPADDING", (0, 0), (-1, -1), 4),
-             ("LINEBELOW", (0, top), (-1, -1), 0.25, HexColor("#cccccc"))]
+    style = [
+        ("VALIGN", (0, 0), (-1, -1), "TOP"),
+        ("TOPPADDING", (0, 0), (-1, -1), 2),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
+        ("LEFTPADDING", (0, 0), (-1, -1), 2),
+        ("RIGHTPADDING", (0, 0), (-1, -1), 4),
+        ("LINEBELOW", (0, top), (-1, -1), 0.25, HexColor("#cccccc")),
+    ]
     if top:
         style.append(("LINEBELOW", (0, 0), (-1, 0), 0.8, HexColor("#222222")))
     return Grid(rows, [width * w for w in table.widths], style=style, repeatRows=top, hAlign="LEFT")
@@ -144,4 +178,7 @@ def _grid(table: Table, width: float) -> Any:
 
 def _breakable(text: str) -> str:
     """Long words, such as hashes, with places to break them."""
-    return " ".join(escape(w) if len(w) <= 64 else " ".join(escape(w[i : i + 64]) for i in range(0, len(w), 64)) for w in text.split(" "))
+    return " ".join(
+        escape(w) if len(w) <= 64 else " ".join(escape(w[i : i + 64]) for i in range(0, len(w), 64))
+        for w in text.split(" ")
+    )

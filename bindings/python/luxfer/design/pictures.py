@@ -22,7 +22,9 @@ EYE, FOV = 1.6, 1.1
 WHITE = 3.0
 
 
-def views(room: Room, lit: Scene, width: int = 560, height: int = 350, samples: int = 16, seed: int = 1) -> dict[str, bytes]:
+def views(
+    room: Room, lit: Scene, width: int = 560, height: int = 350, samples: int = 16, seed: int = 1
+) -> dict[str, bytes]:
     """PNG files of the picture and of its luminance, by their captions."""
     render = Render(lit.context, lit)
     if lit.counts.cameras == 0:
@@ -35,9 +37,12 @@ def views(room: Room, lit: Scene, width: int = 560, height: int = 350, samples: 
     luminance = pixels @ np.array([0.2126, 0.7152, 0.0722], np.float32)
     white = WHITE * float(np.median(luminance[luminance > 0])) if (luminance > 0).any() else 1.0
     shown = Image(lit.context, _toned(pixels / white))
-    falsely = false_colour(lit.context, picture, scale="logarithmic", maximum=float(np.percentile(luminance, 99.5)) or 1.0)
+    falsely = false_colour(
+        lit.context, picture, scale="logarithmic", maximum=float(np.percentile(luminance, 99.5)) or 1.0
+    )
     return {
-        "The room with the luminaires of this design, initial luminance. Luminaires shine from points, so their openings are not "
+        "The room with the luminaires of this design, initial luminance. Luminaires shine from points, so their "
+        "openings are not "
         "in the picture.": _png(shown),
         "Initial luminance in cd/m² in false colours.": _png(falsely),
     }

@@ -44,7 +44,9 @@ class Scale:
         return self.left + a * self.factor, TOP + b * self.factor
 
 
-def plan(room: Room, luminaires: Sequence[Luminaire], areas: Sequence[Area], observers: Sequence[Observers], unit: str) -> Drawing:
+def plan(
+    room: Room, luminaires: Sequence[Luminaire], areas: Sequence[Area], observers: Sequence[Observers], unit: str
+) -> Drawing:
     """The floor with areas, numbered luminaires and observers."""
     scale = Scale(room.length, room.width)
     drawing = scale.drawing
@@ -68,7 +70,8 @@ def plan(room: Room, luminaires: Sequence[Luminaire], areas: Sequence[Area], obs
 
 
 def field(room: Room, found: Field, unit: str) -> Drawing:
-    """The maintained illuminance of an area in false colours, with numbers where they can be read, and isolux lines."""
+    """The maintained illuminance of an area in false colours, with numbers where they can be read, and isolux
+    lines."""
     low, high = float(found.values.min()), float(found.values.max())
     if found.area.kind == "walls":
         scale = _unrolled(room, found, low, high)
@@ -98,7 +101,12 @@ def _unrolled(room: Room, found: Field, low: float, high: float) -> Scale:
         for index in row:
             origin, up = np.array([left, top + room.height]), np.array([0.0, -room.height])
             _cells(scale, found.image(index), origin, np.array([lengths[index], 0.0]), up, low, high)
-            corners = [(left, top), (left + lengths[index], top), (left + lengths[index], top + room.height), (left, top + room.height)]
+            corners = [
+                (left, top),
+                (left + lengths[index], top),
+                (left + lengths[index], top + room.height),
+                (left, top + room.height),
+            ]
             scale.drawing.polygon([scale.at(p) for p in corners], None, INK, 0.6)
             left += lengths[index] + gap
     return scale
@@ -182,7 +190,9 @@ def _lamp(scale: Scale, room: Room, lamp: Luminaire, number: int) -> None:
     u = np.array([np.dot(lamp.c0, room.along), np.dot(lamp.c0, room.across)])
     u = u / max(float(np.linalg.norm(u)), 1e-9)
     v = np.array([-u[1], u[0]])
-    corners = [np.array([a, b]) + x * length / 2 * u + y * width / 2 * v for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    corners = [
+        np.array([a, b]) + x * length / 2 * u + y * width / 2 * v for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
     scale.drawing.polygon([scale.at(p) for p in corners], "#fff3c4" if lamp.dimmer > 0 else "#eeeeee", LAMP, 0.9)
     x, y = scale.at((a, b))
     scale.drawing.text((x, y + 2.5), str(number), 7, "middle", INK)
@@ -192,5 +202,9 @@ def _eye(scale: Scale, place: NDArray, view: NDArray) -> None:
     """An observer as an arrow head along the line of sight."""
     side = np.array([-view[1], view[0]])
     size = 5 / scale.factor
-    corners = [place + size * view, place - 0.6 * size * view + 0.6 * size * side, place - 0.6 * size * view - 0.6 * size * side]
+    corners = [
+        place + size * view,
+        place - 0.6 * size * view + 0.6 * size * side,
+        place - 0.6 * size * view - 0.6 * size * side,
+    ]
     scale.drawing.polygon([scale.at(p) for p in corners], EYE, EYE, 0.5)

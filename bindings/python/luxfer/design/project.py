@@ -21,6 +21,7 @@ from .standard import Place, Requirement, requirements
 class Project:
     """A room with its luminaires, areas, observers and requirements.
 
+    >>> from luxfer.design import areas, layout
     >>> room = Room.find(luxfer_scene)
     >>> desk = areas.task_on(room, "desk", "Table")
     >>> project = Project(room, layout(room, panel, 3, 2), (desk,), settings=Settings(maintenance=0.8))
@@ -55,7 +56,9 @@ class Project:
     def chosen(self) -> Settings:
         """The settings; without them the maintenance factor is unknown, which is an error."""
         if self.settings is None:
-            raise ValueError("the project has no settings: give Settings(maintenance=...), such as 0.8 for a clean office")
+            raise ValueError(
+                "the project has no settings: give Settings(maintenance=...), such as 0.8 for a clean office"
+            )
         return self.settings
 
     def lit(self) -> Scene:
@@ -64,13 +67,28 @@ class Project:
 
     def check(self) -> Checked:
         """Checks all requirements."""
-        return check(self.lit(), self.luminaires, self.requirements, self.areas, self.observers,
-                     floor_area=self.room.floor_area, settings=self.chosen)
+        return check(
+            self.lit(),
+            self.luminaires,
+            self.requirements,
+            self.areas,
+            self.observers,
+            floor_area=self.room.floor_area,
+            settings=self.chosen,
+        )
 
     def solve(self, wishes: Wishes = Wishes()) -> Solution:
         """Finds the dimmers closest to the present ones that meet the requirements."""
-        return solve(self.room.scene, self.luminaires, self.requirements, self.areas, self.observers,
-                     floor_area=self.room.floor_area, settings=self.chosen, wishes=wishes)
+        return solve(
+            self.room.scene,
+            self.luminaires,
+            self.requirements,
+            self.areas,
+            self.observers,
+            floor_area=self.room.floor_area,
+            settings=self.chosen,
+            wishes=wishes,
+        )
 
     def solved(self, solution: Solution) -> Project:
         """The project with the luminaires of a solution."""
@@ -78,4 +96,6 @@ class Project:
 
     def record(self) -> dict[str, Any]:
         """Everything that the numbers depend on (see fingerprint)."""
-        return fingerprint.record(self.room.scene, self.luminaires, self.requirements, self.areas, self.observers, self.chosen)
+        return fingerprint.record(
+            self.room.scene, self.luminaires, self.requirements, self.areas, self.observers, self.chosen
+        )

@@ -25,9 +25,9 @@ def save(
     *,
     images: dict[str, bytes] | None = None,
 ) -> Path:
-    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first. `images`
-    are PNG files by their captions; without them they are rendered (see pictures.views), and an empty dict leaves them
-    out."""
+    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first.
+    `images` are PNG files by their captions; without them they are rendered (see pictures.views), and an empty dict
+    leaves them out."""
     file = Path(path)
     kind = file.suffix.lower()
     if kind not in (".html", ".pdf", ".json"):

@@ -1,9 +1,9 @@
 """Linear responses: the illuminance of every point, and the glare of every observer, by each luminaire at full power.
 
-Light is linear in the flux of the luminaires, so one set of paths for each point measures its light from all of them at
-once (the library's Lamps), and every choice of dimmers is then a product of a matrix and a vector. The unified glare
-rating of CIE 117 is not linear, but its parts are: the sum over luminaires is quadratic in the dimmers without mixed
-terms, and the luminance of the background is linear.
+Light is linear in the flux of the luminaires, so one set of paths for each point measures its light from all of them
+at once (the library's Lamps), and every choice of dimmers is then a product of a matrix and a vector. The unified
+glare rating of CIE 117 is not linear, but its parts are: the sum over luminaires is quadratic in the dimmers without
+mixed terms, and the luminance of the background is linear.
 """
 
 from __future__ import annotations
@@ -94,7 +94,9 @@ def _respond(lit: Scene, count: int, area: Area, paths: int, seed: int) -> Respo
         for point in patch.points[patch.keep]:
             corner = point - 0.5 * (across + down)
             grids.append({"origin": corner, "across": across, "down": down, "normal": patch.normal})
-    parts = [_goals(lit, count, grids[i : i + MAX_GOALS], paths, seed * 1000 + i) for i in range(0, len(grids), MAX_GOALS)]
+    parts = [
+        _goals(lit, count, grids[i : i + MAX_GOALS], paths, seed * 1000 + i) for i in range(0, len(grids), MAX_GOALS)
+    ]
     matrix, other = np.concatenate([m for m, _ in parts]), np.concatenate([o for _, o in parts])
     if area.kind == "cylindrical":
         matrix = matrix.reshape(PLANES, -1, count).mean(axis=0)

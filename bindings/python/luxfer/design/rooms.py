@@ -123,7 +123,8 @@ def _likely_floor(level: list[SurfaceCandidate], above: Surface) -> str:
     found = [c for c in level if c.height < above.origin[1] - MIN_HEIGHT and c.level_area >= needed]
     if not found:
         raise ValueError(
-            f"the room has no floor: no object has {needed:.1f} m² of level surface at least {MIN_HEIGHT} m below the ceiling "
+            f"the room has no floor: no object has {needed:.1f} m² of level surface at least {MIN_HEIGHT} m below "
+            f"the ceiling "
             f"at {above.origin[1]:.2f} m; name one by floor=, or add one to the scene"
         )
     return min(found, key=lambda c: (round(c.height, 2), -c.level_area)).name

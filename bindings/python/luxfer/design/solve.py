@@ -2,8 +2,8 @@
 
 1. Measure once the linear responses of what the requirements ask for.
 2. Minimise the distance of the look (look.objective) under the requirements as convex limits. Nothing is traced again.
-3. Check the result with independent paths. A requirement that does not pass with the wanted confidence gets a margin, and
-   step 2 is repeated.
+3. Check the result with independent paths. A requirement that does not pass with the wanted confidence gets a
+   margin, and step 2 is repeated.
 
 If no dimmers meet the requirements, explain.py says which bind and what relaxing each would give.
 """
@@ -95,15 +95,17 @@ def solve(
     wishes: Wishes = Wishes(),
     model: Model | None = None,
 ) -> Solution:
-    """Solves for the dimmers; those of the given luminaires are the photo's look. With the model of an earlier solution for
-    the same luminaires and areas (see measured_model) only the check traces light."""
+    """Solves for the dimmers; those of the given luminaires are the photo's look. With the model of an earlier
+    solution for the same luminaires and areas (see measured_model) only the check traces light."""
     if model is None:
         model = measured_model(scene, luminaires, requirements, areas, observers, floor_area, settings, wishes)
     groups = _groups(luminaires)
     photo, flux = np.array([lamp.dimmer for lamp in luminaires]), np.array([lamp.product.flux for lamp in luminaires])
     solvable = [r for r in requirements if r.quantity in DIMMABLE and not (r.quantity == "flux" and r.is_minimum)]
-    margins = {r: GLARE_MARGIN if r.quantity == "glare" else 0.0 if r.quantity in ("density", "flux") else MARGIN
-               for r in solvable}
+    margins = {
+        r: GLARE_MARGIN if r.quantity == "glare" else 0.0 if r.quantity in ("density", "flux") else MARGIN
+        for r in solvable
+    }
     best: tuple[NDArray, Checked] | None = None
     for turn in range(1, ROUNDS + 1):
         dimmers = _dimmers(model, solvable, margins, photo, flux, groups, wishes)
@@ -122,12 +124,20 @@ def solve(
     dimmers, checked = best if best else (closest, None)
     if checked is None:
         checked = _checked(scene, luminaires, dimmers, requirements, areas, observers, floor_area, settings)
-    return Solution(False, tuple(dimmed(luminaires, dimmers)), distance(photo, dimmers, flux), checked, tuple(found), turn, wishes)
+    return Solution(
+        False, tuple(dimmed(luminaires, dimmers)), distance(photo, dimmers, flux), checked, tuple(found), turn, wishes
+    )
 
 
 def measured_model(
-    scene: Scene, luminaires: Sequence[Luminaire], requirements: Sequence[Requirement], areas: Sequence[Area],
-    observers: Sequence[Observers], floor_area: float, settings: Settings, wishes: Wishes,
+    scene: Scene,
+    luminaires: Sequence[Luminaire],
+    requirements: Sequence[Requirement],
+    areas: Sequence[Area],
+    observers: Sequence[Observers],
+    floor_area: float,
+    settings: Settings,
+    wishes: Wishes,
 ) -> Model:
     """The linear responses of what the requirements ask for."""
     if not luminaires:
@@ -142,8 +152,13 @@ def measured_model(
     seed = settings.seed + SEED_OFFSET
     responses = respond_all(scene, luminaires, chosen, wishes.paths, seed) if chosen else []
     glare = respond_glare(scene, luminaires, groups, seed) if groups else []
-    return Model(luminaires, {r.area.name: r for r in responses}, {g.observers.name: g for g in glare}, settings.maintenance,
-                 floor_area)
+    return Model(
+        luminaires,
+        {r.area.name: r for r in responses},
+        {g.observers.name: g for g in glare},
+        settings.maintenance,
+        floor_area,
+    )
 
 
 def _groups(luminaires: Sequence[Luminaire]) -> NDArray[np.float64]:
@@ -168,8 +183,13 @@ def _box(groups: NDArray, wishes: Wishes) -> tuple[Limits, NDArray]:
 
 
 def _dimmers(
-    model: Model, solvable: Sequence[Requirement], margins: dict[Requirement, float], photo: NDArray, flux: NDArray,
-    groups: NDArray, wishes: Wishes,
+    model: Model,
+    solvable: Sequence[Requirement],
+    margins: dict[Requirement, float],
+    photo: NDArray,
+    flux: NDArray,
+    groups: NDArray,
+    wishes: Wishes,
 ) -> NDArray | None:
     """The dimmers closest to the look within the limits and margins; None if there are none."""
     hard, start = _box(groups, wishes)
@@ -197,8 +217,8 @@ def _dimmers(
 def _in_steps(
     dimmers: NDArray, limits: Limits, hessian: NDArray, gradient: NDArray, groups: NDArray, wishes: Wishes
 ) -> NDArray | None:
-    """Dimmers among the drivers' levels: the next level above, then changes of single dimmers as long as the limits hold
-    and the look improves. A heuristic: the best choice of all is not looked for."""
+    """Dimmers among the drivers' levels: the next level above, then changes of single dimmers as long as the limits
+    hold and the look improves. A heuristic: the best choice of all is not looked for."""
     levels = np.array(sorted(v for v in wishes.levels if wishes.min_dimmer <= v <= wishes.max_dimmer))
     if not len(levels):
         raise ValueError(f"no level of {wishes.levels} is in [{wishes.min_dimmer}, {wishes.max_dimmer}]")
@@ -226,8 +246,14 @@ def _in_steps(
 
 
 def _checked(
-    scene: Scene, luminaires: Sequence[Luminaire], dimmers: NDArray, requirements: Sequence[Requirement],
-    areas: Sequence[Area], observers: Sequence[Observers], floor_area: float, settings: Settings,
+    scene: Scene,
+    luminaires: Sequence[Luminaire],
+    dimmers: NDArray,
+    requirements: Sequence[Requirement],
+    areas: Sequence[Area],
+    observers: Sequence[Observers],
+    floor_area: float,
+    settings: Settings,
 ) -> Checked:
     final = dimmed(luminaires, dimmers)
     lit = lit_scene(scene, final)
@@ -242,4 +268,3 @@ def _more(finding: Finding) -> float:
     if r.quantity == "glare":
         return max(0.1, lack) if np.isfinite(lack) else 1.0
     return max(0.002, lack / r.limit * 1.1)
-

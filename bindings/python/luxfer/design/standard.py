@@ -123,10 +123,12 @@ _OFFICES = "Table 34 (offices)"
 _EDUCATION = "Table 44 (educational buildings)"
 _LIBRARIES = "table of libraries"
 
-#: The rows that this package knows, all as Glamox publishes them of the edition of 2021. Its excerpt of libraries has no
-#: cylindrical illuminance and no modified one.
+#: The rows that this package knows, all as Glamox publishes them of the edition of 2021. Its excerpt of libraries has
+#: no cylindrical illuminance and no modified one.
 PLACES = (
-    Place("34.2", "office: writing, typing, reading, data processing", _OFFICES, 500, 0.6, 19, 80, 150, 150, 100, 1000),
+    Place(
+        "34.2", "office: writing, typing, reading, data processing", _OFFICES, 500, 0.6, 19, 80, 150, 150, 100, 1000
+    ),
     Place("", "school: entrance halls", _EDUCATION, 200, 0.4, 22, 80, 75, 75, 50, 300),
     Place("", "school: circulation areas, corridors", _EDUCATION, 100, 0.4, 25, 80, 50, 50, 30, 150),
     Place("", "school: stairs", _EDUCATION, 150, 0.4, 25, 80, 50, 50, 30, 200),
