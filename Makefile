@@ -60,7 +60,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
-	@benches/peers/install.sh mitsuba python dask exr usd onnx docs
+	@benches/peers/install.sh mitsuba python dask exr usd report onnx docs
 
 # Rustup's minimal profile has neither rustfmt nor clippy: a tool that is not installed is named and skipped.
 format:
