@@ -24,6 +24,8 @@ from .units import METRES
 
 #: Exit codes: all requirements pass; some fail or stay open; the input cannot be used.
 PASSED, FAILED, UNUSABLE = 0, 1, 2
+#: Distance of luminaires below the ceiling in metres. [convention]
+BELOW = 0.01
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -65,7 +67,9 @@ def _run(options: argparse.Namespace) -> int:
     found, eyes = _places(room, options)
     columns, rows = _pair(options.lamps)
     product = Product.load(context, options.product, watts=options.watts, rendering=options.rendering)
-    lamps = layout(room, product, columns, rows, options.below * METRES[options.unit])
+    lamps = layout(
+        room, product, columns, rows, BELOW if options.below is None else options.below * METRES[options.unit]
+    )
     lamps = dimmed(lamps, [options.dimmer] * len(lamps))
     settings = Settings(options.maintenance, options.confidence, seed=options.seed)
     project = Project(room, lamps, found, eyes, settings=settings, unit=options.unit, name=options.name)
@@ -125,7 +129,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--watts", type=float, default=0, help="power of a luminaire; without it that of the file")
     add("--rendering", type=float, default=0, help="colour rendering index Ra")
     add("--lamps", default="4x3", metavar="CxR", help="luminaires along and across the room")
-    add("--below", type=float, default=0.01, help="distance of the luminaires below the ceiling")
+    add("--below", type=float, help="distance of the luminaires below the ceiling; 10 mm if not given")
     add("--dimmer", type=float, default=1.0, help="share of the full flux")
     add("--solve", action="store_true", help="solves for the dimmers")
     add("--levels", type=float, nargs="+", help="dimmers that the drivers can set")

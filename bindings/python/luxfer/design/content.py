@@ -93,8 +93,8 @@ def contents(
         ),
     ]
     blocks += [Heading("Luminaires", 2), *_luminaires(project)]
-    blocks += _areas(project, checked)
     blocks += _glare(project, checked)
+    blocks += _areas(project, checked)
     if pictures:
         blocks.append(Heading("Pictures", 1, True))
         blocks += [Figure(data, caption) for caption, data in pictures.items()]
@@ -127,7 +127,7 @@ def _summary(project: Project, checked: Checked, solution: Solution | None, made
         ("Power", f"{power:.0f} W, {power / room.floor_area:.2f} W/m²" if known else "not stated for all luminaires"),
     ]
     if solution is not None:
-        rows.append(("Look of the photo", str(solution.look)))
+        rows.append(("Change of the look", str(solution.look)))
     rows.append(("Hash", fingerprint.digest(made_of)))
     return [Paragraph(verdict[0].upper() + verdict[1:] + ".", tone), Table(("", ""), tuple(rows), (0.28, 0.72))]
 
@@ -178,14 +178,11 @@ def _requirements(checked: Checked) -> Table:
 def _reading(checked: Checked) -> str:
     s = checked.settings
     return (
-        f"Illuminances are maintained values, those at the start times {s.maintenance:g}; glare is rated at the "
-        f"start. Intervals contain "
-        f"the computed quantity with {100 * (2 * s.look_confidence - 1):.1f} %. A requirement passes if it holds "
-        f"with at least "
-        f"{percent(s.confidence)} over all looks at the paths; the percentage is the confidence of the deciding "
-        f"look. They cover the "
-        "randomness of the calculation, not errors of the model: geometry, reflectances, photometry and maintenance "
-        "are taken as given."
+        f"Illuminances are maintained values, those at the start times {s.maintenance:g}; glare is rated at the start. "
+        f"Intervals contain the computed quantity with {100 * (2 * s.look_confidence - 1):.1f} %. A requirement passes "
+        f"if it holds with at least {percent(s.confidence)} over all looks at the paths; the percentage is the "
+        "confidence of the deciding look. They cover the randomness of the calculation, not errors of the model: "
+        "geometry, reflectances, photometry and maintenance are taken as given."
     )
 
 
@@ -223,7 +220,7 @@ def _luminaires(project: Project) -> list[Block]:
         a, b = room.plan(lamp.position)[0]
         height = lamp.position[1] - room.origin[1]
         place = ", ".join(shown(v, unit) for v in (float(a), float(b), float(height)))
-        kelvin = colour_temperature(context, lamp.colour)[0]
+        kelvin = "–" if lamp.colour == (1, 1, 1) else f"{colour_temperature(context, lamp.colour)[0]:.0f}"
         rows.append(
             (
                 str(number),
@@ -232,7 +229,7 @@ def _luminaires(project: Project) -> list[Block]:
                 f"{100 * lamp.dimmer:.1f} %",
                 f"{lamp.flux:.0f}",
                 f"{lamp.watts:.1f}" if p.watts > 0 else "–",
-                f"{kelvin:.0f}",
+                kelvin,
             )
         )
     total = (
@@ -257,9 +254,8 @@ def _luminaires(project: Project) -> list[Block]:
         ),
         Paragraph(
             "Positions are along the room, across it, and above the floor, from the corner at the top left of the "
-            "plan. Flux and "
-            "power are as dimmed, power in proportion to flux. Colour temperatures are those of the light's linear "
-            "colour.",
+            "plan. Flux and power are as dimmed, power in proportion to flux. K: colour temperature where the design "
+            "gives the light a colour, such as that of a photo.",
             "small",
         ),
     ]

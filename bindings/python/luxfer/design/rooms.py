@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 #: A floor lies at least this much below the ceiling, in metres. [convention]
 MIN_HEIGHT = 1.5
+#: Smallest score of a candidate for the ceiling that is taken without being named; real rooms have 0.9 and more.
+#: [convention]
+MIN_SCORE = 0.2
 #: A floor has at least this share of the ceiling's level area. [convention]
 MIN_FLOOR_SHARE = 0.3
 #: Rays that look for a surface around a point reach this far, in metres. [convention]
@@ -60,7 +63,7 @@ class Room:
         ('Floor', 'Ceiling', 6.0, 4.0, 2.8)
         """
         level = sorted((c for c in scene.candidates if c.kind.name == "OBJECT"), key=lambda c: -c.score)
-        top = ceiling or (level[0].name if level and level[0].score > 0 else None)
+        top = ceiling or (level[0].name if level and level[0].score >= MIN_SCORE else None)
         if top is None:
             raise ValueError("the scene has no level surface that could be a ceiling: name one by ceiling=")
         above = _surface(scene, top, "ceiling")
