@@ -116,6 +116,15 @@ class Grids(Case):
         under = room.plan(areas.background(room).patches[0].points[areas.background(room).patches[0].keep])
         self.assertFalse(((under > (2.2, 1.55)) & (under < (3.8, 2.35))).all(axis=1).any())
 
+    def test_walls_are_found_where_the_floor_goes_on_under_them(self):
+        scene = box()
+        wider = [[-0.1, 0, -0.1], [-0.1, 0, WIDTH + 0.1], [LENGTH + 0.1, 0, WIDTH + 0.1], [LENGTH + 0.1, 0, -0.1]]
+        scene.add_mesh(wider, [[0, 1, 2], [0, 2, 3]], name="Slab")
+        walls = areas.walls(design.Room.find(scene, "Slab", "Ceiling"))
+        inside = np.concatenate([p.points[p.keep] for p in walls.patches])
+        gaps = np.stack([inside[:, 0], LENGTH - inside[:, 0], inside[:, 2], WIDTH - inside[:, 2]])
+        np.testing.assert_allclose(gaps.min(axis=0), areas.OFFSET, atol=1e-5)
+
     def test_isolux_lines_of_a_ramp_are_straight(self):
         grid = np.tile(np.arange(5.0), (4, 1))
         found = isolux.lines(grid, 2.5)

@@ -36,6 +36,8 @@ OFFSET, DEPTH = 0.01, 0.05
 CARPET = 0.03
 #: A wall is looked for from this distance, in metres, so that furniture in front of it hides it. [convention]
 LOOK = 1.0
+#: Share of the rays that must meet a plane for it to be the wall. [convention]
+WALL_SHARE = 0.15
 #: Vertical planes around a point whose mean illuminance is the cylindrical one. An odd number is as good as twice as
 #: many.
 #: [convention]
@@ -208,14 +210,9 @@ def walls(
         (room.world([(0, 0)])[0], room.across * room.width, room.along),
         (room.world([(room.length, 0)])[0], room.across * room.width, -room.along),
     )
-    patches = []
-    for corner, edge, inwards in sides:
-        columns, rows = counts(float(np.linalg.norm(edge)), room.height)
-        up = np.array([0.0, room.height, 0.0])
-        patch = Patch(corner + OFFSET * inwards, edge, up, inwards, columns, rows, np.ones((rows, columns), bool))
-        patches.append(patch)
-    area = Area(name, "walls", tuple(patches), 0.0, ())
-    return _filled(area, [_on_wall(room, p, without) for p in patches])
+    found = [_wall(room, np.asarray(corner), edge, inwards, without) for corner, edge, inwards in sides]
+    area = Area(name, "walls", tuple(patch for patch, _ in found), 0.0, ())
+    return _filled(area, [keep for _, keep in found])
 
 
 def around_tasks(room: Room, tasks: Sequence[Area]) -> list[Area]:
@@ -236,16 +233,37 @@ def around_tasks(room: Room, tasks: Sequence[Area]) -> list[Area]:
     return out
 
 
-def _on_wall(room: Room, patch: Patch, without: Sequence[str]) -> NDArray[np.bool_]:
-    """Whether the wall is seen at each point from a step inside the room."""
-    reach = min(LOOK, 0.5 * min(room.length, room.width))
-    start = (patch.points + (reach - OFFSET) * patch.normal).reshape(-1, 3)
-    hits = room.scene.intersect(start, np.broadcast_to(-patch.normal, start.shape))
-    # The points themselves lie in front of whatever counts as the wall.
-    near = (hits["t"] > reach - 0.9 * OFFSET) & (hits["t"] <= reach + DEPTH)
-    names = {m: room.scene.mesh_name(int(m)).lower() for m in set(hits["mesh"][near].tolist())}
-    wanted = [ok and not any(w in names[int(m)] for w in without) for ok, m in zip(near, hits["mesh"])]
-    return np.array(wanted, bool).reshape(patch.rows, patch.columns)
+def _wall(
+    room: Room,
+    corner: NDArray[np.float64],
+    edge: NDArray[np.float64],
+    inwards: NDArray[np.float64],
+    without: Sequence[str],
+) -> tuple[Patch, NDArray[np.bool_]]:
+    """The grid of a wall near an edge of the floor, and the points where the wall is seen from a step inside."""
+    columns, rows = counts(float(np.linalg.norm(edge)), room.height)
+    up = np.array([0.0, room.height, 0.0])
+    step = min(LOOK, 0.5 * min(room.length, room.width))
+    whole = np.ones((rows, columns), bool)
+    look = Patch(corner + step * inwards, edge, up, inwards, columns, rows, whole)
+    start = look.points.reshape(-1, 3)
+    hits = room.scene.intersect(start, np.broadcast_to(-inwards, start.shape))
+    distance = hits["t"].astype(float)
+    names = {m: room.scene.mesh_name(m).lower() for m in set(hits["mesh"][np.isfinite(distance)].tolist())}
+    wanted = [m in names and not any(w in names[m] for w in without) for m in hits["mesh"].tolist()]
+    distance[~np.array(wanted)] = np.inf
+    # The wall is the farthest plane that a good part of the rays meet; furniture and pictures lie in front of it.
+    bins = np.round(distance[distance < 2 * step] / OFFSET)
+    planes = [
+        v * OFFSET for v in sorted(set(bins), reverse=True) if (abs(bins - v) <= 1).sum() >= WALL_SHARE * whole.size
+    ]
+    if not planes:
+        return look, np.zeros_like(whole)
+    seen = distance[np.abs(distance - planes[0]) <= 1.5 * OFFSET]
+    wall = float(np.median(seen))
+    near = (distance > wall - 0.9 * OFFSET) & (distance <= wall + DEPTH)
+    moved = corner + (step - wall + OFFSET) * inwards
+    return Patch(moved, edge, up, inwards, columns, rows, whole), near.reshape(rows, columns)
 
 
 def _within(room: Room, border: float) -> tuple[float, float, float, float]:

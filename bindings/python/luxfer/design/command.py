@@ -100,6 +100,9 @@ def _places(room: Room, options: argparse.Namespace) -> tuple[list[Area], list[O
             raise ValueError(f"--task is a0,b0,a1,b1,height, not {text!r}")
         tasks.append(areas.task(room, f"task {number}", values[:4], values[4], options.unit))
     found = [*tasks, *areas.around_tasks(room, tasks)]
+    kinds = {area.kind for area in found}
+    if absent := [k for k in ("surrounding", "background", "walls", "ceiling", "cylindrical") if k not in kinds]:
+        print(f"not checked, because no points were found: {', '.join(absent)}", file=sys.stderr)
     eyes = [observers.at_task(room, t) for t in tasks] or [observers.along_room(room)]
     return found, eyes
 
