@@ -179,10 +179,10 @@ def _reading(checked: Checked) -> str:
     s = checked.settings
     return (
         f"Illuminances are maintained values, those at the start times {s.maintenance:g}; glare is rated at the "
-        f"start. Intervals contain the computed quantity with {100 * (2 * s.look_confidence - 1):.1f} %. A requirement "
-        f"passes if it holds with at least {percent(s.confidence)} over all looks at the paths; the percentage is the "
-        "confidence of the deciding look. They cover the randomness of the calculation, not errors of the model: "
-        "geometry, reflectances, photometry and maintenance are taken as given."
+        f"start. Intervals contain the computed quantity with {100 * (2 * s.look_confidence - 1):.1f} %. "
+        f"A requirement passes if it holds with at least {percent(s.confidence)} over all looks at the paths; the "
+        "percentage is the confidence of the deciding look. They cover the randomness of the calculation, not errors "
+        "of the model: geometry, reflectances, photometry and maintenance are taken as given."
     )
 
 
