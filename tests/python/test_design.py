@@ -462,6 +462,22 @@ class Reports(Case):
             self.assertIn(text, page)
         self.assertNotIn("http", page.replace("http://www.w3.org/2000/svg", ""), "a report stands alone")
 
+    def test_a_report_of_wishes_that_contradict_says_so(self):
+        lit = project(0.0, 2, 16).requiring(at_least("mean", 1e5))
+        found = lit.solve()
+        page = design.save(lit.solved(found), self.folder / "report.html", solution=found, images={}).read_text()
+        for words in ("No dimmers meet all requirements together", "The dimmers below come closest"):
+            self.assertTrue(words in page, words)
+        self.assertFalse("-0.0 %" in page)
+
+    def test_nobody_sits_in_a_cupboard(self):
+        scene = box()
+        shelf = [[0.1, 1.9, 1.0], [0.6, 1.9, 1.0], [0.6, 1.9, 2.0], [0.1, 1.9, 2.0]]
+        scene.add_mesh(shelf, [[0, 1, 2], [0, 2, 3]], name="Top of a cupboard")
+        people = observers.along_room(design.Room.find(scene))
+        self.assertEqual(len(people.positions), 3)
+        self.assertTrue((people.positions[:, 0] > 0.6).all())
+
     def test_the_hash_follows_what_matters(self):
         digest = luxfer.design.fingerprint.digest
         lit = self.full()

@@ -129,7 +129,11 @@ def _summary(project: Project, checked: Checked, solution: Solution | None, made
     if solution is not None:
         rows.append(("Change of the look", str(solution.look)))
     rows.append(("Hash", fingerprint.digest(made_of)))
-    return [Paragraph(verdict[0].upper() + verdict[1:] + ".", tone), Table(("", ""), tuple(rows), (0.28, 0.72))]
+    said: list[Block] = [Paragraph(verdict[0].upper() + verdict[1:] + ".", tone)]
+    if solution is not None and not solution.feasible:
+        why = solution.explanation()
+        said.append(Paragraph(why[0].upper() + why[1:] + ". The dimmers below come closest.", "bad"))
+    return [*said, Table(("", ""), tuple(rows), (0.28, 0.72))]
 
 
 def _number(value: float, unit: str) -> str:
@@ -137,7 +141,9 @@ def _number(value: float, unit: str) -> str:
         return "unknown"
     if math.isinf(value):
         return "none" if value < 0 else "unlimited"
-    digits = 1 if unit == "" and abs(value) >= 2 else 0 if abs(value) >= 100 else 2
+    digits = 1 if unit in ("", "lx") and abs(value) >= 2 else 2
+    if abs(value) >= 100 or unit == "lx" and value == round(value):
+        digits = 0
     return f"{value:.{digits}f} {unit}".strip()
 
 

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 SEATED_EYE, STANDING_EYE = 1.2, 1.7
 #: Distance of an observer from the edge of the task area, and from the wall behind, in metres. [convention]
 SEAT, BEHIND = 0.2, 0.3
+#: Share of the height above an eye up to the ceiling that must be free. [convention]
+HEADROOM = 0.7
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,8 @@ def _seen(room: Room, name: str, seats: Sequence, views: Sequence, eye: float) -
     positions = room.world(seats, eye)
     plan = np.asarray(seats, float)
     inside = (plan > 0).all(axis=1) & (plan < (room.length, room.width)).all(axis=1)
-    free = inside & room.free(positions)
+    # Not under a table, nor in a cupboard.
+    free = inside & room.free(positions, HEADROOM * (room.height - eye))
     if not free.any():
         raise ValueError(f"no observer of {name!r} has a free place in the room: give their places by observers.at()")
     return Observers(name, positions[free], np.asarray(views, float)[free])

@@ -121,7 +121,7 @@ def solve(
             margins[finding.requirement] += _more(finding)
     hard, start = _box(groups, wishes)
     closest, found = relaxations(model, solvable, groups, hard, start)
-    dimmers, checked = best if best else (closest, None)
+    dimmers, checked = best if best else (np.clip(closest, 0, wishes.max_dimmer), None)
     if checked is None:
         checked = _checked(scene, luminaires, dimmers, requirements, areas, observers, floor_area, settings)
     return Solution(
